@@ -1,1 +1,32 @@
-//! stub
+//! The real-time core of hysteron: hysteresis models that run anywhere.
+//!
+//! The model is a weighted sum of elementary operators on a triangular plane (equation 2 of the
+//! chapter): MKP, KP or relay. [`Definition`] computes it as written, in `O(K²)` per sample;
+//! [`Model`] computes the same numbers in amortised `O(1)`, and [`Inverse`] solves it for the
+//! input, exactly, in `O(log K)`.
+//!
+//! No allocation, no unsafe code, no panic on any input, `f32` or `f64`; all memory is the caller's.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod definition;
+mod error;
+mod everett;
+mod interface;
+mod inverse;
+mod model;
+mod operator;
+mod plane;
+mod scalar;
+mod state;
+
+pub use definition::Definition;
+pub use error::{Error, NegativeWeights};
+pub use everett::{table_index, table_len};
+pub use interface::Region;
+pub use inverse::{Direction, Inverse, Policy, Solution, Status};
+pub use model::{ClippedCount, Model, Output};
+pub use operator::{Operator, mkp, relay, ridge};
+pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index};
+pub use scalar::Real;
+pub use state::{Corner, State, corner_capacity};

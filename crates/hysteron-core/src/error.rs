@@ -1,0 +1,140 @@
+//! What can go wrong in the core.
+
+use core::fmt;
+
+/// Why the core refused a call. The state is never touched when an error is returned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Error {
+    /// Fewer than 2 or more than [`crate::MAX_LEVELS`] levels.
+    Levels(usize),
+    /// The plane's range is not finite, or empty, or too narrow to tell its levels apart.
+    Range,
+    /// As many weights as operators are needed: `expected = K(K + 1)/2`.
+    WeightCount {
+        /// `K(K + 1)/2`.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+    /// A weight is NaN or infinite, or the weights' sum overflows.
+    WeightNotFinite {
+        /// Its place, row by row: `j = 1…K`, within a row `i = 1…j`; counted from 0.
+        index: usize,
+    },
+    /// The inverse needs weights that are not negative.
+    NegativeWeights(NegativeWeights),
+    /// Memory that the caller provides is too small.
+    MemoryTooSmall {
+        /// Elements needed.
+        needed: usize,
+        /// Elements given.
+        found: usize,
+    },
+    /// An input (or target) is NaN or infinite.
+    InputNotFinite {
+        /// Its place in the array; 0 for a single sample.
+        index: usize,
+    },
+    /// Turning points to restore do not nest: they must be finite, alternate, lie in `[0, K]`
+    /// and each within the two before it.
+    TurningPoints {
+        /// The first one that does not fit, counted from 0.
+        index: usize,
+    },
+    /// A state was used with a model of other levels or another operator.
+    StateMismatch,
+}
+
+impl Error {
+    /// A number for each kind of error that never changes, for interfaces without enums.
+    #[must_use]
+    pub const fn code(self) -> i32 {
+        match self {
+            Error::Levels(_) => 1,
+            Error::Range => 2,
+            Error::WeightCount { .. } => 3,
+            Error::WeightNotFinite { .. } => 4,
+            Error::NegativeWeights(_) => 5,
+            Error::MemoryTooSmall { .. } => 6,
+            Error::InputNotFinite { .. } => 7,
+            Error::TurningPoints { .. } => 8,
+            Error::StateMismatch => 9,
+        }
+    }
+}
+
+/// Which weights are negative: how many, and the first of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NegativeWeights {
+    /// How many weights are below zero.
+    pub count: usize,
+    /// `(i, j)` of the first ones, counted from 1 as in equation (3).
+    pub first: [Option<(usize, usize)>; 3],
+}
+
+impl fmt::Display for NegativeWeights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} negative weight(s)", self.count)?;
+        for (n, (i, j)) in self.first.iter().flatten().enumerate() {
+            write!(
+                f,
+                "{} i={i} j={j}",
+                if n == 0 { ": operators" } else { "," }
+            )?;
+        }
+        if self.count > self.first.len() {
+            write!(f, ", …")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Levels(k) => write!(
+                f,
+                "{k} levels: a plane has from 2 to {} levels",
+                crate::MAX_LEVELS
+            ),
+            Error::Range => write!(
+                f,
+                "the plane's range must be finite, with min below max by more than rounding"
+            ),
+            Error::WeightCount { expected, found } => {
+                write!(f, "{found} weights where K(K+1)/2 = {expected} are needed")
+            }
+            Error::WeightNotFinite { index } => {
+                write!(
+                    f,
+                    "weight number {index} (from 0) or the sum up to it is not finite"
+                )
+            }
+            Error::NegativeWeights(which) => {
+                write!(
+                    f,
+                    "the inverse needs weights that are not negative, but there are {which}"
+                )
+            }
+            Error::MemoryTooSmall { needed, found } => {
+                write!(
+                    f,
+                    "memory for {found} elements given where {needed} are needed"
+                )
+            }
+            Error::InputNotFinite { index } => {
+                write!(f, "sample number {index} (from 0) is not a finite number")
+            }
+            Error::TurningPoints { index } => {
+                write!(
+                    f,
+                    "turning point number {index} (from 0) does not lie within the two before it"
+                )
+            }
+            Error::StateMismatch => write!(f, "the state belongs to another model"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}

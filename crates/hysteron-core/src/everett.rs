@@ -1,0 +1,133 @@
+//! The Everett function of the model: what the output loses when the input falls from `M` to `m`.
+//!
+//! An MKP operator is the average of ideal relays whose thresholds lie on the diagonal of its grid
+//! cell, so the whole model is a classical Preisach model. Its Everett function on grid corners is
+//! the prefix sum `C[p][q] = Σ μ_ij over j ≤ p, i > q`, and between corners it is exactly piecewise
+//! linear on triangles (Everett 1955; Mayergoyz 1991).
+
+use crate::plane::operator_index;
+use crate::{Error, NegativeWeights, Real};
+
+/// Elements of the table for `levels` levels: `(K + 1)(K + 2)/2`, the corners `0 ≤ q ≤ p ≤ K`.
+#[must_use]
+pub const fn table_len(levels: usize) -> usize {
+    (levels + 1) * (levels + 2) / 2
+}
+
+/// Place of `C[p][q]`, `0 ≤ q ≤ p ≤ K`, in the table.
+#[must_use]
+pub const fn table_index(p: usize, q: usize) -> usize {
+    p * (p + 1) / 2 + q
+}
+
+/// Writes the table of `weights` (`N = K(K + 1)/2` of them) to the front of `table`.
+///
+/// Row sums first, then rows on rows, so that every entry is a sum of at most `2K` terms and
+/// weights that are exactly zero leave neighbouring entries exactly equal.
+pub(crate) fn fill<T: Real>(
+    levels: usize,
+    weights: &[T],
+    table: &mut [T],
+) -> Result<Option<NegativeWeights>, Error> {
+    table[0] = T::ZERO;
+    let mut negative: Option<NegativeWeights> = None;
+    for p in 1..=levels {
+        let (above, row) = table[table_index(p - 1, 0)..].split_at_mut(p);
+        row[p] = T::ZERO;
+        let mut row_sum = T::ZERO;
+        for q in (0..p).rev() {
+            let index = operator_index(q + 1, p);
+            let weight = weights[index];
+            row_sum = row_sum + weight;
+            row[q] = above[q] + row_sum;
+            if !row[q].is_finite() {
+                return Err(Error::WeightNotFinite { index });
+            }
+        }
+        for i in 1..=p {
+            if weights[operator_index(i, p)] < T::ZERO {
+                let which = negative.get_or_insert(NegativeWeights {
+                    count: 0,
+                    first: [None; 3],
+                });
+                if let Some(free) = which.first.iter_mut().find(|place| place.is_none()) {
+                    *free = Some((i, p));
+                }
+                which.count += 1;
+            }
+        }
+    }
+    Ok(negative)
+}
+
+/// A normalised input split into its grid cell and the place within it: `x = cell + part`.
+///
+/// `x = K` is the far end of the last cell, so that a cell always has a corner beyond it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Split<T> {
+    pub(crate) cell: usize,
+    pub(crate) part: T,
+}
+
+impl<T: Real> Split<T> {
+    #[inline(always)]
+    pub(crate) fn of(x: T, levels: usize) -> Self {
+        let cell = x.floor_index().min(levels - 1);
+        Self {
+            cell,
+            part: x - T::from_index(cell),
+        }
+    }
+}
+
+/// `e(M, m)` as three table entries and their factors.
+///
+/// Both triangles of design equation `e(M, m)` in one form: with `u`, `v` the parts of `M`, `m`,
+/// `e = (1 − max) C[p][q] + (max − min) C_mid + min C[p+1][q+1]`, where `C_mid` is the corner on
+/// the side of the larger part.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Triangle<T> {
+    pub(crate) near: usize,
+    pub(crate) mid: usize,
+    pub(crate) far: usize,
+    pub(crate) larger: T,
+    pub(crate) smaller: T,
+}
+
+impl<T: Real> Triangle<T> {
+    /// The triangle of `(M, m)`; meaningful only where `M > m`.
+    #[inline(always)]
+    pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
+        let near = table_index(max.cell, min.cell);
+        let below = near + max.cell + 1; // C[p+1][q]
+        let (mid, larger, smaller) = if max.part > min.part {
+            (below, max.part, min.part)
+        } else {
+            (near + 1, min.part, max.part)
+        };
+        Self {
+            near,
+            mid,
+            far: below + 1,
+            larger,
+            smaller,
+        }
+    }
+
+    /// The Everett function from the table.
+    #[inline(always)]
+    pub(crate) fn evaluate(self, table: &[T]) -> T {
+        let (near, mid, far) = (table[self.near], table[self.mid], table[self.far]);
+        near + self.larger * (mid - near) + self.smaller * (far - mid)
+    }
+}
+
+/// `e(M, m)`, 0 where `M ≤ m`.
+#[inline(always)]
+pub(crate) fn everett<T: Real>(table: &[T], levels: usize, max: T, min: T) -> T {
+    if max > min {
+        Triangle::of(Split::of(max, levels), Split::of(min, levels)).evaluate(table)
+    } else {
+        T::ZERO
+    }
+}

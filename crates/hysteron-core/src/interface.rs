@@ -1,0 +1,70 @@
+//! The state seen on the plane, as in the chapter's Fig. 6.
+
+use crate::operator::mkp;
+use crate::state::{Corner, State};
+use crate::{Error, Plane, Real};
+
+/// Which of the plane's three sets an operator belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Region {
+    /// `S_min`: the operator is fully off.
+    Min,
+    /// `S_bon`: it lies on the boundary, at an intermediate state.
+    Boundary,
+    /// `S_max`: it is fully on.
+    Max,
+}
+
+impl<T: Real, S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>> State<T, S> {
+    /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`, by equation (5) over the turning points. `O(depth)`.
+    ///
+    /// # Errors
+    /// [`Error::Levels`] with the index that is out of range.
+    pub fn gamma(&self, i: usize, j: usize) -> Result<T, Error> {
+        if i < 1 || i > j {
+            return Err(Error::Levels(i));
+        }
+        if j > self.levels() {
+            return Err(Error::Levels(j));
+        }
+        Ok(self
+            .turning_points()
+            .fold(T::ZERO, |gamma, x| mkp(gamma, x, i, j)))
+    }
+
+    /// The set that operator `(i, j)` is in.
+    ///
+    /// # Errors
+    /// As [`State::gamma`].
+    pub fn region(&self, i: usize, j: usize) -> Result<Region, Error> {
+        let gamma = self.gamma(i, j)?;
+        Ok(if gamma <= T::ZERO {
+            Region::Min
+        } else if gamma >= T::ONE {
+            Region::Max
+        } else {
+            Region::Boundary
+        })
+    }
+
+    /// The staircase between what is on and what is off: its vertices `(α, β)` in the input's unit,
+    /// from the left edge of the plane to the diagonal.
+    pub fn staircase<'a>(&'a self, plane: &'a Plane<T>) -> impl Iterator<Item = (T, T)> + 'a {
+        let mut vertex = (T::ZERO, T::ZERO);
+        let last = self.turning_points().count() - 1;
+        self.turning_points()
+            .enumerate()
+            .flat_map(move |(n, x)| {
+                // A maximum is a height of the staircase, a minimum a place along it.
+                if n % 2 == 0 {
+                    vertex.1 = x;
+                } else {
+                    vertex.0 = x;
+                }
+                let end = (n == last).then_some((x, x));
+                [Some(vertex), end]
+            })
+            .flatten()
+            .map(|(alpha, beta)| (plane.denormalise(alpha), plane.denormalise(beta)))
+    }
+}

@@ -1,0 +1,400 @@
+//! The exact inverse: which input gives a wanted output, `O(log K)` (equations 6 to 14).
+//!
+//! With weights that are not negative, the output is monotone along a branch. The outputs stored at
+//! the turning points tell which of the nested branches the target lies on, a bisection over one
+//! row or column of the Everett table tells the grid cell, and inside the cell there are two linear
+//! pieces to solve. The chapter's minimum (10) and maximum (13) over candidates are that first crossing.
+
+use crate::everett::{Split, table_index};
+use crate::state::{Corner, State};
+use crate::{Error, Model, Operator, Real};
+
+/// The inverse of a model whose weights are not negative ([`Model::inverse`]).
+#[derive(Debug, Clone, Copy)]
+pub struct Inverse<'m, T, C> {
+    model: &'m Model<T, C>,
+    /// Outputs closer than this are equal: the rounding of a table entry.
+    slack: T,
+}
+
+/// Where a target goes next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// To larger outputs (of the model without sign: `Σ μ γ`).
+    Rising,
+    /// To smaller outputs.
+    Falling,
+}
+
+/// What the input does while the target stands still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Policy<T> {
+    /// It stands still as well (equation 14).
+    Hold,
+    /// It crosses the dead band at once, to the edge where the output starts to move that way.
+    Anticipate {
+        /// Where the target goes next.
+        heading: Direction,
+        /// Outputs within this distance of the present one count as standing still; 0 for the exact dead band.
+        tolerance: T,
+    },
+}
+
+/// Whether a target can be reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The input gives the target.
+    Ok,
+    /// The target lies below every output; the input is the lowest one, `T_min − ΔT`.
+    Low,
+    /// The target lies above every output; the input is the highest one, `T_max`.
+    High,
+}
+
+/// An input, and whether it gives the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solution<T> {
+    /// The input, in its unit, within the plane's active range `[T_min − ΔT, T_max]`.
+    pub input: T,
+    /// Whether it reaches the target.
+    pub status: Status,
+}
+
+impl<T: Real, C: AsRef<[T]>> Model<T, C> {
+    /// The inverse of this model.
+    ///
+    /// # Errors
+    /// [`Error::NegativeWeights`]: with any weight below zero the output is not monotone.
+    pub fn inverse(&self) -> Result<Inverse<'_, T, C>, Error> {
+        match self.negative_weights() {
+            Some(which) => Err(Error::NegativeWeights(which)),
+            None => {
+                let slack = T::from_index(4) * T::EPSILON * self.total();
+                Ok(Inverse { model: self, slack })
+            }
+        }
+    }
+}
+
+impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
+    /// Finds the input for `target` and moves `state` there.
+    ///
+    /// On a flat stretch it is the first input that reaches the target. A relay model moves in
+    /// jumps: the input is that of the first jump that reaches or passes the target.
+    ///
+    /// # Errors
+    /// [`Error::InputNotFinite`] for a target that is NaN or infinite, [`Error::StateMismatch`];
+    /// the state is then as it was.
+    ///
+    /// ```
+    /// use hysteron_core::{Corner, Model, Operator, Plane, Policy, Status, corner_capacity, table_len};
+    /// let plane = Plane::new(0.0, 1.0, 2)?;
+    /// let model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
+    /// let mut state = model.state([Corner::default(); corner_capacity(2)])?;
+    /// let inverse = model.inverse()?;
+    /// let solution = inverse.step(&mut state, 4.0, Policy::Hold)?;
+    /// assert_eq!((solution.input, solution.status), (0.5, Status::Ok));
+    /// assert_eq!(inverse.step(&mut state, 9.0, Policy::Hold)?.status, Status::High);
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    pub fn step<S>(
+        &self,
+        state: &mut State<T, S>,
+        target: T,
+        policy: Policy<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        let solution = self.solve(state, target, policy)?;
+        self.model.step(state, solution.input)?;
+        Ok(solution)
+    }
+
+    /// Finds the input for `target` without moving `state`.
+    ///
+    /// # Errors
+    /// As [`Inverse::step`].
+    pub fn solve<S>(
+        &self,
+        state: &State<T, S>,
+        target: T,
+        policy: Policy<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.model.check(state)?;
+        if !target.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        let plane = self.model.plane();
+        let total = self.model.total();
+        let wanted = match self.model.operator() {
+            Operator::Mkp => target,
+            Operator::Kp | Operator::Relay => {
+                let half = T::ONE / T::from_index(2);
+                half * target + half * total
+            }
+        };
+        if wanted > total + self.slack {
+            return Ok(Solution {
+                input: plane.max(),
+                status: Status::High,
+            });
+        }
+        if wanted < -self.slack {
+            return Ok(Solution {
+                input: plane.bottom(),
+                status: Status::Low,
+            });
+        }
+        let input = match policy {
+            Policy::Anticipate { heading, tolerance }
+                if within(wanted, state.y, tolerance.larger(self.slack)) =>
+            {
+                match heading {
+                    Direction::Rising => self.rising(state, Goal::Leave(state.y + tolerance)),
+                    Direction::Falling => self.falling(state, Goal::Leave(state.y - tolerance)),
+                }
+            }
+            _ if within(wanted, state.y, self.slack) => {
+                state.input().limited(plane.bottom(), plane.max())
+            }
+            _ if wanted > state.y => self.rising(state, Goal::Reach(wanted - self.slack)),
+            _ => self.falling(state, Goal::Reach(wanted + self.slack)),
+        };
+        Ok(Solution {
+            input,
+            status: Status::Ok,
+        })
+    }
+
+    /// The first input on the way up that meets `goal`.
+    fn rising<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        let plane = self.model.plane();
+        let corners = state.corners();
+        let top = T::from_index(plane.levels());
+        // A virtual pop: every maximum whose output falls short of the goal is passed.
+        let kept = corners.partition_point(|c| goal.met_rising(c.output_max));
+        let pending = state.peak().filter(|&(_, output)| goal.met_rising(output));
+        let (start, base, end) = match (pending, kept.checked_sub(1)) {
+            // Falling now, and met before the branch's own peak is reached again.
+            (Some((peak, _)), _) => (state.x, (state.x, state.y), peak),
+            (None, Some(k)) => {
+                let passed = corners.get(kept).map(|c| c.max);
+                let passed = passed.or(state.peak().map(|(peak, _)| peak));
+                let base = (corners[k].min, corners[k].output_min);
+                (passed.unwrap_or(state.x), base, corners[k].max)
+            }
+            (None, None) => {
+                let passed = corners.first().map(|c| c.max);
+                let passed = passed.or(state.peak().map(|(peak, _)| peak));
+                (passed.unwrap_or(state.x), (T::ZERO, T::ZERO), top)
+            }
+        };
+        let (min, output_min) = base;
+        let x = self.climb(min, start, goal.shifted(output_min));
+        let x = x.limited(start, end);
+        match self.model.operator() {
+            Operator::Relay => {
+                let level = plane.level(ceil_index(x, plane.levels()));
+                level.larger(state.input() + plane.nudge())
+            }
+            _ => plane.denormalise(x),
+        }
+    }
+
+    /// The first input on the way down that meets `goal`.
+    fn falling<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        let plane = self.model.plane();
+        let corners = state.corners();
+        let kept = corners.partition_point(|c| goal.met_falling(c.output_min));
+        // The branch ends at the innermost minimum kept, and began at the maximum just inside it.
+        let (start, peak, output_peak) = match corners.get(kept) {
+            Some(inside) => (inside.min, inside.max, inside.output_max),
+            None => match state.peak() {
+                Some((peak, output)) => (state.x, peak, output),
+                None => (state.x, state.x, state.y),
+            },
+        };
+        let end = kept.checked_sub(1).map_or(T::ZERO, |k| corners[k].min);
+        let x = self.descend(peak, start, goal.mirrored(output_peak));
+        let x = x.limited(end, start);
+        match self.model.operator() {
+            // Off at the level itself: one above the last level left on.
+            Operator::Relay => {
+                let level = plane.level(x.floor_index().min(plane.levels() - 1) + 1);
+                level.smaller(state.input() - plane.nudge())
+            }
+            _ => plane.denormalise(x),
+        }
+    }
+
+    /// The first `x` from `start` up at which `e(x, min)` meets `goal`: along column `q` of the table.
+    fn climb(&self, min: T, start: T, goal: Goal<T>) -> T {
+        let levels = self.model.plane().levels();
+        let table = self.model.table();
+        let Split { cell: q, part: v } = Split::of(min, levels);
+        let at = |p: usize| {
+            let n = table_index(p, q);
+            if p > q {
+                table[n] + v * (table[n + 1] - table[n])
+            } else {
+                T::ZERO
+            }
+        };
+        // Grid lines beyond `start`: first one that meets the goal, the crossing is in the cell before it.
+        let first = Split::of(start, levels).cell + 1;
+        let Some(row) = first_true(first, levels, |p| goal.met_rising(at(p))) else {
+            return T::from_index(levels);
+        };
+        let p = row - 1;
+        let (near, below) = (table_index(p, q), table_index(p + 1, q));
+        // The two pieces, u ≤ v and u ≥ v, meet where the diagonal of the cell is crossed.
+        let knot = if p > q {
+            table[near] + v * (table[below + 1] - table[near])
+        } else {
+            T::ZERO
+        };
+        let u = if goal.met_rising(knot) {
+            // On the diagonal cell this piece is zero and never holds the crossing.
+            let slope = if p > q {
+                table[below + 1] - table[near + 1]
+            } else {
+                T::ZERO
+            };
+            along(goal.value() - at(p), slope, v)
+        } else {
+            v + along(goal.value() - knot, table[below] - table[near], T::ONE - v)
+        };
+        T::from_index(p) + u
+    }
+
+    /// The first `x` from `start` down at which `e(max, x)` meets `goal`: along rows `p`, `p + 1`.
+    fn descend(&self, max: T, start: T, goal: Goal<T>) -> T {
+        let levels = self.model.plane().levels();
+        let table = self.model.table();
+        let Split { cell: p, part: u } = Split::of(max, levels);
+        let at = |q: usize| {
+            let (near, below) = (table[table_index(p, q)], table[table_index(p + 1, q)]);
+            near + u * (below - near)
+        };
+        let last = Split::of(start, levels).cell;
+        // Columns from `last` down to 0: the first whose grid line meets the goal.
+        let Some(steps) = first_true(0, last, |n| goal.met_rising(at(last - n))) else {
+            return T::ZERO;
+        };
+        let q = last - steps;
+        let (near, below) = (table_index(p, q), table_index(p + 1, q));
+        let knot = if p > q {
+            table[near] + u * (table[below + 1] - table[near])
+        } else {
+            T::ZERO
+        };
+        let v = if goal.met_rising(knot) {
+            // From v = 1, where the cell is entered, back to the diagonal.
+            let slope = if p > q {
+                table[near] - table[near + 1]
+            } else {
+                T::ZERO
+            };
+            u + along(knot - goal.value(), slope, T::ONE - u)
+        } else {
+            along(at(q) - goal.value(), table[below] - table[below + 1], u)
+        };
+        T::from_index(q) + v
+    }
+}
+
+/// What an output on the way has to do.
+#[derive(Clone, Copy)]
+enum Goal<T> {
+    /// Come to this value or beyond.
+    Reach(T),
+    /// Go beyond this value: its last place on a flat stretch is wanted.
+    Leave(T),
+}
+
+impl<T: Real> Goal<T> {
+    fn value(self) -> T {
+        match self {
+            Goal::Reach(value) | Goal::Leave(value) => value,
+        }
+    }
+
+    fn met_rising(self, output: T) -> bool {
+        match self {
+            Goal::Reach(value) => output >= value,
+            Goal::Leave(value) => output > value,
+        }
+    }
+
+    fn met_falling(self, output: T) -> bool {
+        match self {
+            Goal::Reach(value) => output <= value,
+            Goal::Leave(value) => output < value,
+        }
+    }
+
+    /// The goal for `output − base`.
+    fn shifted(self, base: T) -> Self {
+        match self {
+            Goal::Reach(value) => Goal::Reach(value - base),
+            Goal::Leave(value) => Goal::Leave(value - base),
+        }
+    }
+
+    /// The goal for `peak − output`, which rises where the output falls.
+    fn mirrored(self, peak: T) -> Self {
+        match self {
+            Goal::Reach(value) => Goal::Reach(peak - value),
+            Goal::Leave(value) => Goal::Leave(peak - value),
+        }
+    }
+}
+
+fn within<T: Real>(a: T, b: T, distance: T) -> bool {
+    a - b <= distance && b - a <= distance
+}
+
+/// How far along a linear piece of length `length` a rise of `rise` is reached.
+fn along<T: Real>(rise: T, slope: T, length: T) -> T {
+    if rise <= T::ZERO {
+        T::ZERO
+    } else if slope * length > rise {
+        rise / slope
+    } else {
+        length
+    }
+}
+
+/// The smallest number in `first..=last` for which `test` holds; it holds from there on.
+fn first_true(first: usize, last: usize, test: impl Fn(usize) -> bool) -> Option<usize> {
+    let (mut low, mut high) = (first, last + 1);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if test(middle) {
+            high = middle
+        } else {
+            low = middle + 1
+        }
+    }
+    (low <= last).then_some(low)
+}
+
+/// `⌈x⌉` of a position in `[0, K]`.
+fn ceil_index<T: Real>(x: T, levels: usize) -> usize {
+    let floor = x.floor_index();
+    if T::from_index(floor) < x {
+        (floor + 1).min(levels)
+    } else {
+        floor
+    }
+}

@@ -1,0 +1,271 @@
+//! The forward model, `O(1)` per sample whatever the number of levels.
+
+use crate::everett;
+use crate::plane::operator_count;
+use crate::state::{Corner, State};
+use crate::{Clipped, Error, NegativeWeights, Operator, Plane, Real};
+
+/// A model ready to run: the configuration apart from the [`State`].
+///
+/// `C` is the memory for the Everett table: `&mut [T]`, an array or a vector with at least
+/// [`crate::table_len`] elements.
+///
+/// ```
+/// use hysteron_core::{Corner, Model, Operator, Plane, corner_capacity, table_len};
+/// const K: usize = 3;
+/// let plane = Plane::new(20.0, 80.0, K)?;
+/// let weights = [1.0, 0.5, 1.0, 0.0, 0.5, 1.0]; // row by row: j = 1…K, i = 1…j
+/// let model = Model::new(plane, Operator::Mkp, &weights, [0.0; table_len(K)])?;
+/// let mut state = model.state([Corner::default(); corner_capacity(K)])?;
+/// assert_eq!(model.step(&mut state, 80.0)?.output, 4.0);
+/// let cooled = model.step(&mut state, 50.0)?;
+/// assert_eq!(cooled.output, 3.0); // operator (3, 3) is off again
+/// assert_eq!(cooled.clipped, None);
+/// # Ok::<(), hysteron_core::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model<T, C> {
+    plane: Plane<T>,
+    operator: Operator,
+    table: C,
+    negative: Option<NegativeWeights>,
+}
+
+/// What one step gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Output<T> {
+    /// `H = Σ μ_ij γ_ij`, with the operator's own outputs.
+    pub output: T,
+    /// Whether the input lay outside the plane, and at which end.
+    pub clipped: Option<Clipped>,
+}
+
+/// How many samples of an array lay outside the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ClippedCount {
+    /// Below `T_min − ΔT`.
+    pub low: usize,
+    /// Above `T_max`.
+    pub high: usize,
+}
+
+impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
+    /// Builds the Everett table of `weights` (`N = K(K + 1)/2`, row by row: `j = 1…K`, `i = 1…j`) in `table`. `O(K²)`.
+    ///
+    /// # Errors
+    /// [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::MemoryTooSmall`].
+    pub fn new(
+        plane: Plane<T>,
+        operator: Operator,
+        weights: &[T],
+        mut table: C,
+    ) -> Result<Self, Error> {
+        let levels = plane.levels();
+        let expected = operator_count(levels);
+        if weights.len() != expected {
+            let found = weights.len();
+            return Err(Error::WeightCount { expected, found });
+        }
+        let needed = everett::table_len(levels);
+        let found = table.as_ref().len();
+        if found < needed {
+            return Err(Error::MemoryTooSmall { needed, found });
+        }
+        let negative = everett::fill(levels, weights, table.as_mut())?;
+        Ok(Self {
+            plane,
+            operator,
+            table,
+            negative,
+        })
+    }
+}
+
+impl<T: Real, C: AsRef<[T]>> Model<T, C> {
+    /// The plane.
+    #[must_use]
+    pub fn plane(&self) -> &Plane<T> {
+        &self.plane
+    }
+
+    /// The elementary operator.
+    #[must_use]
+    pub fn operator(&self) -> Operator {
+        self.operator
+    }
+
+    /// The weights below zero, if there are any.
+    #[must_use]
+    pub fn negative_weights(&self) -> Option<NegativeWeights> {
+        self.negative
+    }
+
+    /// The outputs with every operator off and with every operator on.
+    #[must_use]
+    pub fn output_range(&self) -> (T, T) {
+        (self.outward(T::ZERO), self.outward(self.total()))
+    }
+
+    /// A state with every operator off, over memory for at least [`crate::corner_capacity`] corners.
+    ///
+    /// # Errors
+    /// [`Error::MemoryTooSmall`].
+    pub fn state<S>(&self, corners: S) -> Result<State<T, S>, Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        State::new(&self.plane, self.operator, corners)
+    }
+
+    /// Every operator off, the input at the bottom of the plane.
+    ///
+    /// # Errors
+    /// [`Error::StateMismatch`].
+    pub fn reset_off<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.check(state)?;
+        state.reset_off(&self.plane);
+        Ok(())
+    }
+
+    /// Every operator on (saturated), the input at `T_max`.
+    ///
+    /// # Errors
+    /// [`Error::StateMismatch`].
+    pub fn reset_on<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.reset_off(state)?;
+        state.advance(&self.plane, self.table(), self.plane.max());
+        Ok(())
+    }
+
+    /// Rebuilds the state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]).
+    ///
+    /// # Errors
+    /// [`Error::StateMismatch`], [`Error::InputNotFinite`], [`Error::TurningPoints`] where the
+    /// points are not finite, leave `[0, K]` or do not nest; the state is then as it was.
+    pub fn restore<S>(
+        &self,
+        state: &mut State<T, S>,
+        turning_points: &[T],
+        input: T,
+    ) -> Result<(), Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.check(state)?;
+        if !input.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        let (mut low, mut high) = (T::ZERO, T::from_index(self.plane.levels()));
+        for (index, &x) in turning_points.iter().enumerate() {
+            // Comparisons written so that NaN fails them.
+            if !(low <= x && x <= high) {
+                return Err(Error::TurningPoints { index });
+            }
+            if index % 2 == 0 { high = x } else { low = x }
+        }
+        state.reset_off(&self.plane);
+        for &x in turning_points {
+            state.travel(self.table(), x);
+        }
+        state.set_input(input);
+        Ok(())
+    }
+
+    /// Moves to `input` and returns the output: amortised `O(1)`, at most `2K` turning points passed.
+    ///
+    /// # Errors
+    /// [`Error::InputNotFinite`], [`Error::StateMismatch`]; the state is then as it was.
+    #[inline]
+    pub fn step<S>(&self, state: &mut State<T, S>, input: T) -> Result<Output<T>, Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.check(state)?;
+        if !input.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        let clipped = state.advance(&self.plane, self.table(), input);
+        Ok(Output {
+            output: self.outward(state.y),
+            clipped,
+        })
+    }
+
+    /// Steps through `input` and writes the outputs to `output`, as many as inputs.
+    ///
+    /// # Errors
+    /// As [`Model::step`], and [`Error::MemoryTooSmall`] where `output` is shorter than `input`;
+    /// the state is then as it was.
+    pub fn run<S>(
+        &self,
+        state: &mut State<T, S>,
+        input: &[T],
+        output: &mut [T],
+    ) -> Result<ClippedCount, Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        self.check(state)?;
+        if output.len() < input.len() {
+            return Err(Error::MemoryTooSmall {
+                needed: input.len(),
+                found: output.len(),
+            });
+        }
+        if let Some(index) = input.iter().position(|value| !value.is_finite()) {
+            return Err(Error::InputNotFinite { index });
+        }
+        let mut count = ClippedCount::default();
+        for (&value, place) in input.iter().zip(output) {
+            match state.advance(&self.plane, self.table(), value) {
+                None => {}
+                Some(Clipped::Low) => count.low += 1,
+                Some(Clipped::High) => count.high += 1,
+            }
+            *place = self.outward(state.y);
+        }
+        Ok(count)
+    }
+
+    /// The output at the state's present position.
+    #[must_use]
+    pub fn output<S>(&self, state: &State<T, S>) -> T {
+        self.outward(state.y)
+    }
+
+    pub(crate) fn table(&self) -> &[T] {
+        self.table.as_ref()
+    }
+
+    /// `Σ μ_ij`.
+    pub(crate) fn total(&self) -> T {
+        self.table()[everett::table_index(self.plane.levels(), 0)]
+    }
+
+    /// From `Σ μ γ` to the sum of the operators' own outputs.
+    #[inline(always)]
+    pub(crate) fn outward(&self, sum: T) -> T {
+        match self.operator {
+            Operator::Mkp => sum,
+            Operator::Kp | Operator::Relay => sum + sum - self.total(),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn check<S>(&self, state: &State<T, S>) -> Result<(), Error>
+    where
+        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+    {
+        if state.levels() == self.plane.levels() && state.operator == self.operator {
+            Ok(())
+        } else {
+            Err(Error::StateMismatch)
+        }
+    }
+}

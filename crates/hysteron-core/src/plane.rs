@@ -1,0 +1,176 @@
+//! The discrete Preisach plane of equation (3).
+
+use crate::{Error, Real};
+
+/// Most levels a plane may have: its operators are then counted within 31 bits.
+pub const MAX_LEVELS: usize = 46_340;
+
+/// Number of operators on a plane of `levels` levels, `N = K(K + 1)/2`.
+#[must_use]
+pub const fn operator_count(levels: usize) -> usize {
+    levels * (levels + 1) / 2
+}
+
+/// Place of operator `(i, j)`, `1 ≤ i ≤ j`, among the weights: row by row, `j = 1…K`, within a row `i = 1…j`.
+#[must_use]
+pub const fn operator_index(i: usize, j: usize) -> usize {
+    j * (j - 1) / 2 + (i - 1)
+}
+
+/// Which end of the plane an input was clipped to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clipped {
+    /// Below `T_min − ΔT`: taken as that, where every operator is off.
+    Low,
+    /// Above `T_max`: taken as that, where every operator is on.
+    High,
+}
+
+/// `K` levels over `[T_min, T_max]`, spaced by `ΔT = (T_max − T_min)/(K − 1)` (equation 3).
+///
+/// ```
+/// use hysteron_core::Plane;
+/// let plane = Plane::new(20.0, 80.0, 20)?; // Table 2 of the chapter, degC
+/// assert_eq!(plane.operators(), 210);
+/// assert!((plane.step() - 3.16_f64).abs() < 0.003);
+/// assert_eq!(plane.level(1), 20.0);
+/// # Ok::<(), hysteron_core::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane<T> {
+    min: T,
+    max: T,
+    levels: usize,
+    step: T,
+    per_unit: T,
+    bottom: T,
+}
+
+impl<T: Real> Plane<T> {
+    /// A plane of `levels` levels (2 to [`MAX_LEVELS`]) over `[min, max]`, in the input's unit.
+    ///
+    /// # Errors
+    /// [`Error::Levels`], or [`Error::Range`] where `min` and `max` are not finite, are not in
+    /// order, or are so close that neighbouring levels coincide.
+    pub fn new(min: T, max: T, levels: usize) -> Result<Self, Error> {
+        if !(2..=MAX_LEVELS).contains(&levels) {
+            return Err(Error::Levels(levels));
+        }
+        let steps = T::from_index(levels - 1);
+        let step = (max - min) / steps;
+        let per_unit = steps / (max - min);
+        let bottom = min - step;
+        let distinct = min + step > min && max - step < max && bottom < min;
+        if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct) {
+            return Err(Error::Range);
+        }
+        Ok(Self {
+            min,
+            max,
+            levels,
+            step,
+            per_unit,
+            bottom,
+        })
+    }
+
+    /// `T_min`, the lowest level.
+    #[must_use]
+    pub fn min(&self) -> T {
+        self.min
+    }
+
+    /// `T_max`, the highest level.
+    #[must_use]
+    pub fn max(&self) -> T {
+        self.max
+    }
+
+    /// `K`, the number of levels.
+    #[must_use]
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// `ΔT`, the distance between levels.
+    #[must_use]
+    pub fn step(&self) -> T {
+        self.step
+    }
+
+    /// `N = K(K + 1)/2`, the number of operators.
+    #[must_use]
+    pub fn operators(&self) -> usize {
+        operator_count(self.levels)
+    }
+
+    /// `T_min − ΔT`, where the lowest ridge starts: the active input range is `[bottom, max]`.
+    #[must_use]
+    pub fn bottom(&self) -> T {
+        self.bottom
+    }
+
+    /// Level `k`, `α_k = β_k = T_min + (k − 1) ΔT`; level 0 is [`Plane::bottom`].
+    #[must_use]
+    pub fn level(&self, k: usize) -> T {
+        self.denormalise(T::from_index(k))
+    }
+
+    /// The normalised input `x = (T − T_min)/ΔT + 1`, limited to `[0, K]`, and whether it had to be.
+    #[must_use]
+    #[inline(always)]
+    pub fn normalise(&self, input: T) -> (T, Option<Clipped>) {
+        if input >= self.max {
+            // Said outright: the division below may round to just under K.
+            let clipped = (input > self.max).then_some(Clipped::High);
+            (T::from_index(self.levels), clipped)
+        } else if input <= self.bottom {
+            (T::ZERO, (input < self.bottom).then_some(Clipped::Low))
+        } else {
+            let x = (input - self.min) * self.per_unit + T::ONE;
+            (x.limited(T::ZERO, T::from_index(self.levels)), None)
+        }
+    }
+
+    /// The input at the normalised position `x`: `T = T_min + (x − 1) ΔT`.
+    #[must_use]
+    pub fn denormalise(&self, x: T) -> T {
+        if x >= T::from_index(self.levels) {
+            self.max
+        } else {
+            self.min + (x - T::ONE) * self.step
+        }
+    }
+
+    /// A move just large enough to be one: a relay that stands on its level switches on the next move only.
+    pub(crate) fn nudge(&self) -> T {
+        let size = self
+            .max
+            .larger(-self.max)
+            .larger(self.bottom.larger(-self.bottom));
+        size * (T::EPSILON + T::EPSILON)
+    }
+
+    /// The highest level at or below `input`, 0 if there is none: relays up to it switch on when rising.
+    pub(crate) fn level_at_or_below(&self, input: T) -> usize {
+        let near = self.normalise(input).0.floor_index();
+        // The levels themselves decide, not the rounding of the normalised position.
+        if near < self.levels && self.level(near + 1) <= input {
+            near + 1
+        } else if near > 0 && self.level(near) > input {
+            near - 1
+        } else {
+            near
+        }
+    }
+
+    /// The lowest level at or above `input`, `K + 1` if there is none: relays from it on switch off when falling.
+    pub(crate) fn level_at_or_above(&self, input: T) -> usize {
+        let below = self.level_at_or_below(input);
+        if below > 0 && self.level(below) >= input {
+            below
+        } else {
+            below + 1
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Random models and the input sequences that are hardest on a turning-point memory.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use hysteron_core::{
+    Corner, Model, Operator, Plane, State, corner_capacity, operator_count, table_len,
+};
+use rand::rngs::StdRng;
+use rand::{Rng, RngExt, SeedableRng};
+
+pub const OPERATORS: [Operator; 3] = [Operator::Mkp, Operator::Kp, Operator::Relay];
+
+pub fn rng(seed: u64) -> StdRng {
+    StdRng::seed_from_u64(seed)
+}
+
+/// Levels from 2 to `most`, small ones more often.
+pub fn levels(rng: &mut impl Rng, most: usize) -> usize {
+    let spread: f64 = rng.random();
+    2 + (spread * spread * (most - 1) as f64) as usize
+}
+
+/// Weights of several kinds: dense, mostly zero, one only, of very different size.
+pub fn weights(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
+    let n = operator_count(levels);
+    match rng.random_range(0..5) {
+        0 => (0..n)
+            .map(|_| {
+                if rng.random_bool(0.9) {
+                    0.0
+                } else {
+                    rng.random()
+                }
+            })
+            .collect(),
+        1 => {
+            let only = rng.random_range(0..n);
+            (0..n).map(|k| if k == only { 1.0 } else { 0.0 }).collect()
+        }
+        2 => (0..n)
+            .map(|_| 10f64.powf(rng.random_range(-9.0..3.0)))
+            .collect(),
+        _ => (0..n).map(|_| rng.random()).collect(),
+    }
+}
+
+pub fn plane(rng: &mut impl Rng, levels: usize) -> Plane<f64> {
+    let min = rng.random_range(-100.0..100.0);
+    Plane::new(min, min + rng.random_range(0.1..200.0), levels).unwrap()
+}
+
+/// `count` inputs: walks, grid lines, repeats, out-of-range values, decaying and nested oscillations.
+pub fn inputs(rng: &mut impl Rng, plane: &Plane<f64>, count: usize) -> Vec<f64> {
+    let k = plane.levels();
+    let span = k as f64;
+    let mut x: f64 = 0.0;
+    let mut out = Vec::with_capacity(count);
+    while out.len() < count {
+        let burst = rng.random_range(1..=40);
+        match rng.random_range(0..6) {
+            0 => (0..burst).for_each(|_| {
+                x = (x + rng.random_range(-1.0..1.0)).clamp(-1.0, span + 1.0);
+                out.push(x);
+            }),
+            1 => (0..burst).for_each(|_| {
+                x = rng.random_range(0..=k) as f64;
+                out.push(x);
+            }),
+            2 => (0..burst).for_each(|_| out.push(x)),
+            3 => {
+                x = rng.random_range(-0.2..1.2) * span;
+                out.push(x);
+            }
+            4 => {
+                // Oscillation that narrows between two random places.
+                let (low, high) = (rng.random::<f64>() * span, rng.random::<f64>() * span);
+                let (low, high) = (low.min(high), low.max(high));
+                let middle = low + rng.random::<f64>() * (high - low);
+                for n in 0..burst {
+                    let shrink = 0.9f64.powi(n);
+                    out.push(middle + (high - middle) * shrink);
+                    out.push(middle - (middle - low) * shrink);
+                }
+                x = middle;
+            }
+            _ => nested(rng, k, burst as usize, &mut out),
+        }
+    }
+    out.truncate(count);
+    out.iter()
+        .map(|&x| plane.min() + (x - 1.0) * plane.step())
+        .collect()
+}
+
+/// `deep` oscillations with every maximum in one row and every minimum in one column of the grid.
+pub fn nested(rng: &mut impl Rng, levels: usize, deep: usize, out: &mut Vec<f64>) {
+    let p = rng.random_range(0..levels) as f64;
+    let q = rng.random_range(0..=p as usize) as f64;
+    // Parts of the cell that maxima and minima narrow to; on the diagonal cell they must not cross.
+    let to_high: f64 = rng.random();
+    let to_low = if p == q { to_high } else { rng.random() };
+    let widest = (1.0 - f64::EPSILON, 0.0);
+    let (mut high, mut low) = widest;
+    for _ in 0..deep {
+        // Now and then wide again within the cell.
+        if rng.random_bool(0.02) {
+            (high, low) = widest;
+        }
+        high = to_high + (high - to_high) * rng.random_range(0.9..1.0);
+        low += (to_low - low) * rng.random_range(0.0..0.1);
+        out.push(p + high);
+        out.push(q + low);
+    }
+}
+
+pub type Owned<T> = (Model<T, Vec<T>>, State<T, Vec<Corner<T>>>);
+
+pub fn build(plane: Plane<f64>, operator: Operator, weights: &[f64]) -> Owned<f64> {
+    let k = plane.levels();
+    let model = Model::new(plane, operator, weights, vec![0.0; table_len(k)]).unwrap();
+    let state = model
+        .state(vec![Corner::default(); corner_capacity(k)])
+        .unwrap();
+    (model, state)
+}
+
+/// The same model in single precision.
+pub fn build_f32(plane: &Plane<f64>, operator: Operator, weights: &[f64]) -> Owned<f32> {
+    let k = plane.levels();
+    let plane = Plane::new(plane.min() as f32, plane.max() as f32, k).unwrap();
+    let weights: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
+    let model = Model::new(plane, operator, &weights, vec![0.0; table_len(k)]).unwrap();
+    let state = model
+        .state(vec![Corner::default(); corner_capacity(k)])
+        .unwrap();
+    (model, state)
+}

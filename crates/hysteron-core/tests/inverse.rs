@@ -1,0 +1,310 @@
+//! The inverse against the forward model, and against the chapter's candidate formulas.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{OPERATORS, build, inputs, levels, plane, rng, weights};
+use hysteron_core::{
+    Definition, Direction, Error, Operator, Plane, Policy, Status, operator_count, operator_index,
+};
+use rand::{Rng, RngExt};
+
+/// `|H(H⁻¹(y)) − y|` over a walk of targets, relative to the range of the output; the forward model
+/// is stepped apart, through the inputs in their own unit.
+fn worst_return(plane: Plane<f64>, operator: Operator, weights: &[f64], rng: &mut impl Rng) -> f64 {
+    let (model, mut state) = build(plane, operator, weights);
+    let (_, mut forward) = build(plane, operator, weights);
+    for input in inputs(rng, &plane, 100) {
+        model.step(&mut state, input).unwrap();
+        model.step(&mut forward, input).unwrap();
+    }
+    let inverse = model.inverse().unwrap();
+    let (low, high) = model.output_range();
+    let (mut y, mut worst) = (model.output(&state), 0.0_f64);
+    for n in 0..300 {
+        y = match n % 7 {
+            0 => rng.random_range(low..=high),
+            1 => y, // repeated
+            2 => high,
+            3 => low,
+            _ => (y + (high - low) * rng.random_range(-0.2..0.2)).clamp(low, high),
+        };
+        let solution = inverse.step(&mut state, y, Policy::Hold).unwrap();
+        assert_eq!(solution.status, Status::Ok);
+        let reached = model.step(&mut forward, solution.input).unwrap().output;
+        worst = worst.max((reached - y).abs() / (high - low));
+    }
+    assert_eq!(state, forward, "the inverse follows the same states");
+    worst
+}
+
+#[test]
+fn the_forward_model_returns_every_reachable_target() {
+    let mut overall = 0.0_f64;
+    for seed in 0..500 {
+        let mut rng = rng(seed);
+        let k = levels(&mut rng, 200);
+        let plane = plane(&mut rng, k);
+        let weights = weights(&mut rng, k);
+        let operator = if seed % 2 == 0 {
+            Operator::Mkp
+        } else {
+            Operator::Kp
+        };
+        let worst = worst_return(plane, operator, &weights, &mut rng);
+        assert!(worst <= 1e-12, "seed {seed}, K = {k}: {worst:e}");
+        overall = overall.max(worst);
+    }
+    println!("|H(H⁻¹(y)) − y| / range, 500 walks of 300 targets: largest {overall:.1e}");
+}
+
+/// Equations (9) and (10): the input for a larger output, from the operator states.
+fn rising_candidates(plane: &Plane<f64>, mu: &[f64], xi: &[f64], target: f64) -> f64 {
+    let k = plane.levels();
+    let at = |i: usize, j: usize| operator_index(i, j);
+    let rows_above = |m: usize| -> f64 {
+        (m + 1..=k)
+            .flat_map(|j| (1..=j).map(move |i| at(i, j)))
+            .map(|n| xi[n] * mu[n])
+            .sum()
+    };
+    // The output at β_m: rows up to m fully on, the others as they are.
+    let below = |m: usize| -> f64 { mu[..operator_count(m)].iter().sum() };
+    let m = (1..=k)
+        .find(|&m| below(m) + rows_above(m) >= target)
+        .unwrap_or(k);
+    let e = (1..=m).filter(|&i| xi[at(i, m)] >= 1.0).count();
+    let f = (1..=m)
+        .filter(|&i| xi[at(i, m)] > 0.0 && xi[at(i, m)] < 1.0)
+        .count();
+    let rest = target - below(m - 1) - rows_above(m) - (1..=e).map(|i| mu[at(i, m)]).sum::<f64>();
+    (0..=f)
+        .filter_map(|n| {
+            let still: f64 = (e + 1..=e + f - n)
+                .map(|i| xi[at(i, m)] * mu[at(i, m)])
+                .sum();
+            let moved: f64 = (e + f - n + 1..=m).map(|i| mu[at(i, m)]).sum();
+            // With no operator moved there is nothing to solve: no candidate.
+            (moved > 0.0).then(|| plane.level(m - 1) + plane.step() * (rest - still) / moved)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Equations (12) and (13): the input for a smaller output.
+fn falling_candidates(plane: &Plane<f64>, mu: &[f64], xi: &[f64], target: f64) -> f64 {
+    let k = plane.levels();
+    let at = |i: usize, j: usize| operator_index(i, j);
+    let columns_left = |m: usize| -> f64 {
+        (1..m)
+            .flat_map(|i| (i..=k).map(move |j| at(i, j)))
+            .map(|n| xi[n] * mu[n])
+            .sum()
+    };
+    // The output at α_{m−1}: columns from m on fully off.
+    let m = (1..=k)
+        .rev()
+        .find(|&m| columns_left(m) <= target)
+        .unwrap_or(1);
+    let on = (m..=k).filter(|&j| xi[at(m, j)] >= 1.0).count();
+    let f = (m..=k)
+        .filter(|&j| xi[at(m, j)] > 0.0 && xi[at(m, j)] < 1.0)
+        .count();
+    (0..=f)
+        .filter_map(|n| {
+            let moved: f64 = (m..m + on + n).map(|j| mu[at(m, j)]).sum();
+            let still: f64 = (m + on + n..m + on + f)
+                .map(|j| xi[at(m, j)] * mu[at(m, j)])
+                .sum();
+            let rest = target - columns_left(m) - still;
+            (moved > 0.0).then(|| plane.level(m - 1) + plane.step() * rest / moved)
+        })
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[test]
+fn equals_the_candidate_formulas_of_the_chapter() {
+    let (mut rises, mut falls, mut worst) = (0, 0, 0.0_f64);
+    for seed in 0..400 {
+        let mut rng = rng(9000 + seed);
+        let k = levels(&mut rng, 30);
+        let plane = plane(&mut rng, k);
+        // Bounded below, so that the input is well determined by the output.
+        let mu: Vec<f64> = (0..operator_count(k))
+            .map(|_| rng.random_range(0.1..1.0))
+            .collect();
+        let (model, mut state) = build(plane, Operator::Mkp, &mu);
+        let mut xi = vec![0.0; mu.len()];
+        let mut plain = Definition::new(plane, Operator::Mkp, &mu, &mut xi).unwrap();
+        let inverse = model.inverse().unwrap();
+        for input in inputs(&mut rng, &plane, 60) {
+            model.step(&mut state, input).unwrap();
+            let now = plain.step(input).unwrap();
+            let (_, high) = model.output_range();
+            let target = rng.random_range(0.0..high);
+            let expected = if target > now {
+                rises += 1;
+                rising_candidates(&plane, &mu, plain.states(), target)
+            } else {
+                falls += 1;
+                falling_candidates(&plane, &mu, plain.states(), target)
+            };
+            let found = inverse.solve(&state, target, Policy::Hold).unwrap().input;
+            worst = worst.max((found - expected).abs() / plane.step());
+        }
+    }
+    assert!(
+        rises > 5000 && falls > 5000,
+        "{rises} rising, {falls} falling"
+    );
+    // Both solve the same linear pieces; slopes of at least 0.1 amplify the rounding of the sums.
+    assert!(worst <= 1e-9, "{worst:e}");
+    println!(
+        "inverse against (9), (10), (12), (13): {rises} rising, {falls} falling targets, largest difference {worst:.1e} ΔT"
+    );
+}
+
+#[test]
+fn out_of_reach_and_equal_targets() {
+    for operator in OPERATORS {
+        let plane = Plane::new(20.0, 80.0, 20).unwrap();
+        let weights = vec![0.1; 210];
+        let (model, mut state) = build(plane, operator, &weights);
+        let inverse = model.inverse().unwrap();
+        let (low, high) = model.output_range();
+        let above = inverse.step(&mut state, high + 1.0, Policy::Hold).unwrap();
+        assert_eq!((above.input, above.status), (80.0, Status::High));
+        let below = inverse.step(&mut state, low - 1.0, Policy::Hold).unwrap();
+        assert_eq!((below.input, below.status), (plane.bottom(), Status::Low));
+        model.step(&mut state, 51.3).unwrap();
+        let same = inverse
+            .solve(&state, model.output(&state), Policy::Hold)
+            .unwrap();
+        assert_eq!((same.input, same.status), (51.3, Status::Ok));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let before = state.clone();
+            let refused = inverse.step(&mut state, bad, Policy::Hold);
+            assert_eq!(refused, Err(Error::InputNotFinite { index: 0 }));
+            assert_eq!(state, before);
+        }
+    }
+}
+
+/// One operator only: the output rests from 80 down to its left ridge and from there up to its right one.
+fn dead_band() -> (Plane<f64>, Vec<f64>) {
+    let mut weights = vec![0.0; operator_count(7)];
+    weights[operator_index(2, 6)] = 3.0;
+    (Plane::new(20.0, 80.0, 7).unwrap(), weights)
+}
+
+#[test]
+fn anticipation_crosses_the_dead_band_to_its_edge() {
+    let (plane, weights) = dead_band();
+    let (model, mut state) = build(plane, Operator::Mkp, &weights);
+    let inverse = model.inverse().unwrap();
+    let up = inverse.step(&mut state, 2.0, Policy::Hold).unwrap();
+    let y = model.output(&state);
+    assert_eq!(
+        inverse.solve(&state, y, Policy::Hold).unwrap().input,
+        up.input
+    );
+    let falling = Policy::Anticipate {
+        heading: Direction::Falling,
+        tolerance: 0.0,
+    };
+    let edge = inverse.step(&mut state, y, falling).unwrap();
+    // Operator (2, 6): the left ridge rises from α_1 = 20 to α_2 = 30; two thirds up it stands at 2.
+    assert!(
+        (edge.input - (20.0 + 10.0 * 2.0 / 3.0)).abs() < 1e-9,
+        "{edge:?}"
+    );
+    assert!((model.output(&state) - y).abs() < 1e-12);
+    // The edge again: nothing is left to cross. Then up: across the whole band.
+    assert!((inverse.solve(&state, y, falling).unwrap().input - edge.input).abs() < 1e-9);
+    let rising = Policy::Anticipate {
+        heading: Direction::Rising,
+        tolerance: 0.0,
+    };
+    let back = inverse.solve(&state, y, rising).unwrap();
+    assert!((back.input - up.input).abs() < 1e-9, "{back:?}");
+    // A tolerance in output goes that much further; a target beyond it is followed, not anticipated.
+    let loose = Policy::Anticipate {
+        heading: Direction::Falling,
+        tolerance: 0.3,
+    };
+    assert!((inverse.solve(&state, y, loose).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
+    let moved = inverse.solve(&state, y + 0.5, loose).unwrap();
+    assert_eq!(moved, inverse.solve(&state, y + 0.5, Policy::Hold).unwrap());
+}
+
+#[test]
+fn on_a_flat_stretch_the_first_input_is_returned() {
+    let (plane, weights) = dead_band();
+    let (model, mut state) = build(plane, Operator::Mkp, &weights);
+    let inverse = model.inverse().unwrap();
+    // Full output is reached at β_6 = 70, although it lasts to 80.
+    assert!((inverse.step(&mut state, 3.0, Policy::Hold).unwrap().input - 70.0).abs() < 1e-9);
+    model.step(&mut state, 80.0).unwrap();
+    // Zero is reached at α_1 = 20.
+    assert!((inverse.step(&mut state, 0.0, Policy::Hold).unwrap().input - 20.0).abs() < 1e-9);
+}
+
+#[test]
+fn relays_jump_to_or_past_the_target() {
+    for seed in 0..100 {
+        let mut rng = rng(400 + seed);
+        let k = levels(&mut rng, 40);
+        let plane = plane(&mut rng, k);
+        let weights = weights(&mut rng, k);
+        let (model, mut state) = build(plane, Operator::Relay, &weights);
+        let inverse = model.inverse().unwrap();
+        let (low, high) = model.output_range();
+        let slack = 1e-12 * (high - low);
+        for _ in 0..100 {
+            let before = state.clone();
+            let target = rng.random_range(low..=high);
+            let input = inverse
+                .step(&mut state, target, Policy::Hold)
+                .unwrap()
+                .input;
+            let (start, reached) = (model.output(&before), model.output(&state));
+            let rising = target > start;
+            assert!(if rising {
+                reached >= target - slack
+            } else {
+                reached <= target + slack
+            });
+            // One level less would not have done.
+            let mut short = before.clone();
+            let less = if rising {
+                input - plane.step()
+            } else {
+                input + plane.step()
+            };
+            if (less > before.input()) == rising {
+                let missed = model.step(&mut short, less).unwrap().output;
+                assert!(if rising {
+                    missed < target + slack
+                } else {
+                    missed > target - slack
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn negative_weights_are_refused_by_name() {
+    let plane = Plane::new(0.0, 1.0, 4).unwrap();
+    let mut weights = vec![1.0; 10];
+    weights[operator_index(2, 3)] = -0.1;
+    weights[operator_index(1, 4)] = -0.2;
+    let (model, _) = build(plane, Operator::Mkp, &weights);
+    let Err(error) = model.inverse().map(|_| ()) else {
+        panic!("not refused")
+    };
+    let text = error.to_string();
+    assert!(
+        text.contains("2 negative") && text.contains("i=2 j=3, i=1 j=4"),
+        "{text}"
+    );
+}

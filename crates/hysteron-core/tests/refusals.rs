@@ -1,0 +1,163 @@
+//! What the core refuses, and that refusing changes nothing.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::build;
+use hysteron_core::{
+    Clipped, Corner, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Policy,
+    corner_capacity, table_len,
+};
+
+#[test]
+fn planes() {
+    for levels in [0, 1, MAX_LEVELS + 1, 1_000_000, usize::MAX] {
+        assert_eq!(Plane::new(0.0, 1.0, levels), Err(Error::Levels(levels)));
+    }
+    let bad = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::NAN),
+        (f64::NEG_INFINITY, 0.0),
+        (0.0, f64::INFINITY),
+        (-f64::MAX, f64::MAX),
+        (1e16, 1e16 + 2.0), // levels would coincide
+        (0.0, 1e-320),
+    ];
+    for (min, max) in bad {
+        assert_eq!(
+            Plane::new(min, max, 20),
+            Err(Error::Range),
+            "{min} to {max}"
+        );
+    }
+}
+
+#[test]
+fn weights_and_memory() {
+    let plane = Plane::new(0.0, 1.0, 3).unwrap();
+    let table = || vec![0.0; table_len(3)];
+    let new = |weights: &[f64]| Model::new(plane, Operator::Mkp, weights, table()).map(|_| ());
+    assert_eq!(
+        new(&[1.0; 5]),
+        Err(Error::WeightCount {
+            expected: 6,
+            found: 5
+        })
+    );
+    for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+        let refused = new(&[1.0, 1.0, 1.0, 1.0, bad, 1.0]);
+        assert_eq!(refused, Err(Error::WeightNotFinite { index: 4 }));
+    }
+    assert!(matches!(
+        new(&[f64::MAX; 6]),
+        Err(Error::WeightNotFinite { .. })
+    ));
+    let small = Model::new(plane, Operator::Mkp, &[1.0; 6], vec![0.0; 9]).map(|_| ());
+    assert_eq!(
+        small,
+        Err(Error::MemoryTooSmall {
+            needed: 10,
+            found: 9
+        })
+    );
+    let model = Model::new(plane, Operator::Mkp, &[1.0; 6], table()).unwrap();
+    let small = model
+        .state(vec![Corner::default(); corner_capacity(3) - 1])
+        .map(|_| ());
+    assert_eq!(
+        small,
+        Err(Error::MemoryTooSmall {
+            needed: 6,
+            found: 5
+        })
+    );
+    let mut states = [0.0; 5];
+    let plain = Definition::new(plane, Operator::Mkp, &[1.0; 6], &mut states).map(|_| ());
+    assert_eq!(
+        plain,
+        Err(Error::MemoryTooSmall {
+            needed: 6,
+            found: 5
+        })
+    );
+}
+
+#[test]
+fn inputs_that_are_no_numbers_leave_the_state_untouched() {
+    let plane = Plane::new(0.0, 1.0, 3).unwrap();
+    let (model, mut state) = build(plane, Operator::Mkp, &[1.0; 6]);
+    model.step(&mut state, 0.7).unwrap();
+    let before = state.clone();
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert_eq!(
+            model.step(&mut state, bad),
+            Err(Error::InputNotFinite { index: 0 })
+        );
+        let run = model.run(&mut state, &[0.1, 0.9, bad], &mut [0.0; 3]);
+        assert_eq!(run, Err(Error::InputNotFinite { index: 2 }));
+        assert_eq!(state, before);
+    }
+    let short = model.run(&mut state, &[0.1; 3], &mut [0.0; 2]);
+    assert_eq!(
+        short,
+        Err(Error::MemoryTooSmall {
+            needed: 3,
+            found: 2
+        })
+    );
+    assert_eq!(state, before);
+}
+
+#[test]
+fn inputs_outside_the_plane_are_clipped_and_say_so() {
+    let plane = Plane::new(0.0, 1.0, 3).unwrap();
+    let (model, mut state) = build(plane, Operator::Mkp, &[1.0; 6]);
+    let mut step = |input| model.step(&mut state, input).unwrap();
+    assert_eq!(
+        (step(1e300).clipped, step(1.0).clipped),
+        (Some(Clipped::High), None)
+    );
+    assert_eq!(step(f64::MAX).output, 6.0);
+    // The active range starts one step below the lowest level.
+    assert_eq!(
+        (step(-0.5).clipped, step(-0.5 - 1e-9).clipped),
+        (None, Some(Clipped::Low))
+    );
+    assert_eq!(step(f64::MIN).output, 0.0);
+    let mut out = [0.0; 4];
+    let count = model
+        .run(&mut state, &[-9.0, 0.5, 9.0, 9.0], &mut out)
+        .unwrap();
+    assert_eq!((count.low, count.high), (1, 2));
+}
+
+#[test]
+fn states_of_other_models_and_broken_saves() {
+    let plane = |k| Plane::new(0.0, 1.0, k).unwrap();
+    let (model, mut state) = build(plane(3), Operator::Mkp, &[1.0; 6]);
+    let (_, mut larger) = build(plane(4), Operator::Mkp, &[1.0; 10]);
+    let (_, mut relay) = build(plane(3), Operator::Relay, &[1.0; 6]);
+    assert_eq!(model.step(&mut larger, 0.5), Err(Error::StateMismatch));
+    assert_eq!(model.step(&mut relay, 0.5), Err(Error::StateMismatch));
+    assert_eq!(model.reset_on(&mut larger), Err(Error::StateMismatch));
+    let inverse = model.inverse().unwrap();
+    assert_eq!(
+        inverse.step(&mut larger, 0.5, Policy::Hold),
+        Err(Error::StateMismatch)
+    );
+    let before = state.clone();
+    let mut restore = |points: &[f64]| model.restore(&mut state, points, 0.5);
+    assert_eq!(
+        restore(&[2.0, 1.0, 2.5]),
+        Err(Error::TurningPoints { index: 2 })
+    );
+    assert_eq!(restore(&[f64::NAN]), Err(Error::TurningPoints { index: 0 }));
+    assert_eq!(restore(&[3.1]), Err(Error::TurningPoints { index: 0 }));
+    assert_eq!(restore(&[-0.1]), Err(Error::TurningPoints { index: 0 }));
+    assert_eq!(state, before);
+    assert_eq!(state.gamma(2, 1), Err(Error::Levels(2)));
+    assert_eq!(state.gamma(1, 4), Err(Error::Levels(4)));
+    assert_eq!(state.gamma(0, 1), Err(Error::Levels(0)));
+}
