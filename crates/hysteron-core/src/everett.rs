@@ -95,22 +95,19 @@ pub(crate) struct Triangle<T> {
 }
 
 impl<T: Real> Triangle<T> {
-    /// The triangle of `(M, m)`; meaningful only where `M > m`.
+    /// The triangle of `(M, m)`, `m ≤ M`. Where they are equal the terms cancel to exactly zero.
     #[inline(always)]
     pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
         let near = table_index(max.cell, min.cell);
         let below = near + max.cell + 1; // C[p+1][q]
-        let (mid, larger, smaller) = if max.part > min.part {
-            (below, max.part, min.part)
-        } else {
-            (near + 1, min.part, max.part)
-        };
+        // Selected by arithmetic: which side it is cannot be predicted, and a branch would cost more.
+        let mid = near + 1 + max.cell * usize::from(max.part > min.part);
         Self {
             near,
             mid,
             far: below + 1,
-            larger,
-            smaller,
+            larger: max.part.larger(min.part),
+            smaller: max.part.smaller(min.part),
         }
     }
 
@@ -122,12 +119,8 @@ impl<T: Real> Triangle<T> {
     }
 }
 
-/// `e(M, m)`, 0 where `M ≤ m`.
+/// `e(M, m)` for `m ≤ M`.
 #[inline(always)]
 pub(crate) fn everett<T: Real>(table: &[T], levels: usize, max: T, min: T) -> T {
-    if max > min {
-        Triangle::of(Split::of(max, levels), Split::of(min, levels)).evaluate(table)
-    } else {
-        T::ZERO
-    }
+    Triangle::of(Split::of(max, levels), Split::of(min, levels)).evaluate(table)
 }

@@ -1,7 +1,7 @@
 //! The state seen on the plane, as in the chapter's Fig. 6.
 
 use crate::operator::mkp;
-use crate::state::{Corner, State};
+use crate::state::{State, Turn};
 use crate::{Error, Plane, Real};
 
 /// Which of the plane's three sets an operator belongs to.
@@ -15,7 +15,7 @@ pub enum Region {
     Max,
 }
 
-impl<T: Real, S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>> State<T, S> {
+impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`, by equation (5) over the turning points. `O(depth)`.
     ///
     /// # Errors

@@ -6,7 +6,7 @@
 //! pieces to solve. The chapter's minimum (10) and maximum (13) over candidates are that first crossing.
 
 use crate::everett::{Split, table_index};
-use crate::state::{Corner, State};
+use crate::state::{State, Turn};
 use crate::{Error, Model, Operator, Real};
 
 /// The inverse of a model whose weights are not negative ([`Model::inverse`]).
@@ -87,10 +87,10 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// the state is then as it was.
     ///
     /// ```
-    /// use hysteron_core::{Corner, Model, Operator, Plane, Policy, Status, corner_capacity, table_len};
+    /// use hysteron_core::{Model, Operator, Plane, Policy, Status, Turn, table_len, turn_capacity};
     /// let plane = Plane::new(0.0, 1.0, 2)?;
     /// let model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
-    /// let mut state = model.state([Corner::default(); corner_capacity(2)])?;
+    /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
     /// let inverse = model.inverse()?;
     /// let solution = inverse.step(&mut state, 4.0, Policy::Hold)?;
     /// assert_eq!((solution.input, solution.status), (0.5, Status::Ok));
@@ -104,7 +104,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         policy: Policy<T>,
     ) -> Result<Solution<T>, Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         let solution = self.solve(state, target, policy)?;
         self.model.step(state, solution.input)?;
@@ -122,7 +122,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         policy: Policy<T>,
     ) -> Result<Solution<T>, Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.model.check(state)?;
         if !target.is_finite() {
@@ -151,18 +151,22 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         }
         let input = match policy {
             Policy::Anticipate { heading, tolerance }
-                if within(wanted, state.y, tolerance.larger(self.slack)) =>
+                if within(wanted, state.place().y, tolerance.larger(self.slack)) =>
             {
                 match heading {
-                    Direction::Rising => self.rising(state, Goal::Leave(state.y + tolerance)),
-                    Direction::Falling => self.falling(state, Goal::Leave(state.y - tolerance)),
+                    Direction::Rising => {
+                        self.rising(state, Goal::Leave(state.place().y + tolerance))
+                    }
+                    Direction::Falling => {
+                        self.falling(state, Goal::Leave(state.place().y - tolerance))
+                    }
                 }
             }
-            _ if within(wanted, state.y, self.slack) => {
+            _ if within(wanted, state.place().y, self.slack) => {
                 state.input().limited(plane.bottom(), plane.max())
             }
-            _ if wanted > state.y => self.rising(state, Goal::Reach(wanted - self.slack)),
-            _ => self.falling(state, Goal::Reach(wanted + self.slack)),
+            _ if wanted > state.place().y => self.rising(state, Goal::Reach(wanted, self.slack)),
+            _ => self.falling(state, Goal::Reach(wanted, self.slack)),
         };
         Ok(Solution {
             input,
@@ -173,32 +177,12 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way up that meets `goal`.
     fn rising<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         let plane = self.model.plane();
-        let corners = state.corners();
-        let top = T::from_index(plane.levels());
-        // A virtual pop: every maximum whose output falls short of the goal is passed.
-        let kept = corners.partition_point(|c| goal.met_rising(c.output_max));
-        let pending = state.peak().filter(|&(_, output)| goal.met_rising(output));
-        let (start, base, end) = match (pending, kept.checked_sub(1)) {
-            // Falling now, and met before the branch's own peak is reached again.
-            (Some((peak, _)), _) => (state.x, (state.x, state.y), peak),
-            (None, Some(k)) => {
-                let passed = corners.get(kept).map(|c| c.max);
-                let passed = passed.or(state.peak().map(|(peak, _)| peak));
-                let base = (corners[k].min, corners[k].output_min);
-                (passed.unwrap_or(state.x), base, corners[k].max)
-            }
-            (None, None) => {
-                let passed = corners.first().map(|c| c.max);
-                let passed = passed.or(state.peak().map(|(peak, _)| peak));
-                (passed.unwrap_or(state.x), (T::ZERO, T::ZERO), top)
-            }
-        };
-        let (min, output_min) = base;
-        let x = self.climb(min, start, goal.shifted(output_min));
-        let x = x.limited(start, end);
+        let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum));
+        let x = self.climb(branch.began.x, branch.start, goal.shifted(branch.began.y));
+        let x = x.limited(branch.start, branch.end);
         match self.model.operator() {
             Operator::Relay => {
                 let level = plane.level(ceil_index(x, plane.levels()));
@@ -211,22 +195,12 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way down that meets `goal`.
     fn falling<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         let plane = self.model.plane();
-        let corners = state.corners();
-        let kept = corners.partition_point(|c| goal.met_falling(c.output_min));
-        // The branch ends at the innermost minimum kept, and began at the maximum just inside it.
-        let (start, peak, output_peak) = match corners.get(kept) {
-            Some(inside) => (inside.min, inside.max, inside.output_max),
-            None => match state.peak() {
-                Some((peak, output)) => (state.x, peak, output),
-                None => (state.x, state.x, state.y),
-            },
-        };
-        let end = kept.checked_sub(1).map_or(T::ZERO, |k| corners[k].min);
-        let x = self.descend(peak, start, goal.mirrored(output_peak));
-        let x = x.limited(end, start);
+        let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum));
+        let x = self.descend(branch.began.x, branch.start, goal.mirrored(branch.began.y));
+        let x = x.limited(branch.end, branch.start);
         match self.model.operator() {
             // Off at the level itself: one above the last level left on.
             Operator::Relay => {
@@ -313,11 +287,45 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     }
 }
 
+/// The part of a branch that a goal is met on, once the turning points before it are passed.
+struct Branch<T> {
+    /// Where the branch began: `H` on it is this output and the Everett function from here.
+    began: Turn<T>,
+    /// Position from which on it is travelled.
+    start: T,
+    /// Position at which it ends.
+    end: T,
+}
+
+impl<T: Real> Branch<T> {
+    /// Of the nested extremes of one kind (maxima at even places, minima at odd ones), finds the
+    /// innermost whose output meets the goal: all further in are passed, a virtual pop.
+    fn find<S>(state: &State<T, S>, kind: usize, met: impl Fn(T) -> bool) -> Self
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        let turns = state.turns();
+        let here = Turn {
+            x: state.place().x,
+            y: state.place().y,
+        };
+        // The one at `kind` itself, the end of the plane, counts as met.
+        let count = (turns.len() - 1 - kind) / 2;
+        let passed = first_true(1, count, |n| !met(turns[2 * n + kind].y));
+        let end = 2 * passed.map_or(count, |n| n - 1) + kind;
+        Self {
+            began: turns.get(end + 1).copied().unwrap_or(here),
+            start: turns.get(end + 2).map_or(here.x, |turn| turn.x),
+            end: turns[end].x,
+        }
+    }
+}
+
 /// What an output on the way has to do.
 #[derive(Clone, Copy)]
 enum Goal<T> {
-    /// Come to this value or beyond.
-    Reach(T),
+    /// Come to this value or beyond; short of it by the slack, the second number, is there.
+    Reach(T, T),
     /// Go beyond this value: its last place on a flat stretch is wanted.
     Leave(T),
 }
@@ -325,20 +333,20 @@ enum Goal<T> {
 impl<T: Real> Goal<T> {
     fn value(self) -> T {
         match self {
-            Goal::Reach(value) | Goal::Leave(value) => value,
+            Goal::Reach(value, _) | Goal::Leave(value) => value,
         }
     }
 
     fn met_rising(self, output: T) -> bool {
         match self {
-            Goal::Reach(value) => output >= value,
+            Goal::Reach(value, slack) => output >= value - slack,
             Goal::Leave(value) => output > value,
         }
     }
 
     fn met_falling(self, output: T) -> bool {
         match self {
-            Goal::Reach(value) => output <= value,
+            Goal::Reach(value, slack) => output <= value + slack,
             Goal::Leave(value) => output < value,
         }
     }
@@ -346,7 +354,7 @@ impl<T: Real> Goal<T> {
     /// The goal for `output − base`.
     fn shifted(self, base: T) -> Self {
         match self {
-            Goal::Reach(value) => Goal::Reach(value - base),
+            Goal::Reach(value, slack) => Goal::Reach(value - base, slack),
             Goal::Leave(value) => Goal::Leave(value - base),
         }
     }
@@ -354,7 +362,7 @@ impl<T: Real> Goal<T> {
     /// The goal for `peak − output`, which rises where the output falls.
     fn mirrored(self, peak: T) -> Self {
         match self {
-            Goal::Reach(value) => Goal::Reach(peak - value),
+            Goal::Reach(value, slack) => Goal::Reach(peak - value, slack),
             Goal::Leave(value) => Goal::Leave(peak - value),
         }
     }

@@ -29,4 +29,4 @@ pub use model::{ClippedCount, Model, Output};
 pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index};
 pub use scalar::Real;
-pub use state::{Corner, State, corner_capacity};
+pub use state::{State, Turn, turn_capacity};

@@ -2,7 +2,7 @@
 
 use crate::everett;
 use crate::plane::operator_count;
-use crate::state::{Corner, State};
+use crate::state::{State, Turn};
 use crate::{Clipped, Error, NegativeWeights, Operator, Plane, Real};
 
 /// A model ready to run: the configuration apart from the [`State`].
@@ -11,12 +11,12 @@ use crate::{Clipped, Error, NegativeWeights, Operator, Plane, Real};
 /// [`crate::table_len`] elements.
 ///
 /// ```
-/// use hysteron_core::{Corner, Model, Operator, Plane, corner_capacity, table_len};
+/// use hysteron_core::{Model, Operator, Plane, Turn, table_len, turn_capacity};
 /// const K: usize = 3;
 /// let plane = Plane::new(20.0, 80.0, K)?;
 /// let weights = [1.0, 0.5, 1.0, 0.0, 0.5, 1.0]; // row by row: j = 1…K, i = 1…j
 /// let model = Model::new(plane, Operator::Mkp, &weights, [0.0; table_len(K)])?;
-/// let mut state = model.state([Corner::default(); corner_capacity(K)])?;
+/// let mut state = model.state([Turn::default(); turn_capacity(K)])?;
 /// assert_eq!(model.step(&mut state, 80.0)?.output, 4.0);
 /// let cooled = model.step(&mut state, 50.0)?;
 /// assert_eq!(cooled.output, 3.0); // operator (3, 3) is off again
@@ -106,13 +106,13 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         (self.outward(T::ZERO), self.outward(self.total()))
     }
 
-    /// A state with every operator off, over memory for at least [`crate::corner_capacity`] corners.
+    /// A state with every operator off, over memory for at least [`crate::turn_capacity`] turning points.
     ///
     /// # Errors
     /// [`Error::MemoryTooSmall`].
     pub fn state<S>(&self, corners: S) -> Result<State<T, S>, Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         State::new(&self.plane, self.operator, corners)
     }
@@ -123,7 +123,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::StateMismatch`].
     pub fn reset_off<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.check(state)?;
         state.reset_off(&self.plane);
@@ -136,10 +136,10 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::StateMismatch`].
     pub fn reset_on<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.reset_off(state)?;
-        state.advance(&self.plane, self.table(), self.plane.max());
+        state.advance(&self.plane, self.table(), &[self.plane.max()], |_, _| {});
         Ok(())
     }
 
@@ -155,7 +155,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         input: T,
     ) -> Result<(), Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.check(state)?;
         if !input.is_finite() {
@@ -170,10 +170,10 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             if index % 2 == 0 { high = x } else { low = x }
         }
         state.reset_off(&self.plane);
+        state.travel(self.table(), T::ZERO, input);
         for &x in turning_points {
-            state.travel(self.table(), x);
+            state.travel(self.table(), x, input);
         }
-        state.set_input(input);
         Ok(())
     }
 
@@ -184,17 +184,18 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline]
     pub fn step<S>(&self, state: &mut State<T, S>, input: T) -> Result<Output<T>, Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.check(state)?;
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let clipped = state.advance(&self.plane, self.table(), input);
-        Ok(Output {
-            output: self.outward(state.y),
-            clipped,
-        })
+        let mut result = (T::ZERO, None);
+        state.advance(&self.plane, self.table(), &[input], |y, clipped| {
+            result = (self.outward(y), clipped);
+        });
+        let (output, clipped) = result;
+        Ok(Output { output, clipped })
     }
 
     /// Steps through `input` and writes the outputs to `output`, as many as inputs.
@@ -209,7 +210,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         output: &mut [T],
     ) -> Result<ClippedCount, Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.check(state)?;
         if output.len() < input.len() {
@@ -222,21 +223,27 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             return Err(Error::InputNotFinite { index });
         }
         let mut count = ClippedCount::default();
-        for (&value, place) in input.iter().zip(output) {
-            match state.advance(&self.plane, self.table(), value) {
+        let mut places = output.iter_mut();
+        state.advance(&self.plane, self.table(), input, |y, clipped| {
+            match clipped {
                 None => {}
                 Some(Clipped::Low) => count.low += 1,
                 Some(Clipped::High) => count.high += 1,
             }
-            *place = self.outward(state.y);
-        }
+            if let Some(place) = places.next() {
+                *place = self.outward(y);
+            }
+        });
         Ok(count)
     }
 
     /// The output at the state's present position.
     #[must_use]
-    pub fn output<S>(&self, state: &State<T, S>) -> T {
-        self.outward(state.y)
+    pub fn output<S>(&self, state: &State<T, S>) -> T
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        self.outward(state.place().y)
     }
 
     pub(crate) fn table(&self) -> &[T] {
@@ -260,9 +267,9 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline(always)]
     pub(crate) fn check<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Corner<T>]> + AsMut<[Corner<T>]>,
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        if state.levels() == self.plane.levels() && state.operator == self.operator {
+        if state.levels() == self.plane.levels() && state.operator() == self.operator {
             Ok(())
         } else {
             Err(Error::StateMismatch)

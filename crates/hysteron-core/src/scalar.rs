@@ -30,6 +30,8 @@ pub trait Real:
     const ZERO: Self;
     /// One.
     const ONE: Self;
+    /// Larger than every number.
+    const INFINITY: Self;
     /// Distance from one to the next larger number.
     const EPSILON: Self;
 
@@ -64,6 +66,7 @@ macro_rules! real {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            const INFINITY: Self = <$t>::INFINITY;
             const EPSILON: Self = <$t>::EPSILON;
 
             #[inline(always)]

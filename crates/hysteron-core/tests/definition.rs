@@ -4,7 +4,7 @@
 mod common;
 
 use common::{OPERATORS, build, inputs, levels, nested, plane, rng, weights};
-use hysteron_core::{Definition, Operator, Plane, Region, corner_capacity, operator_index};
+use hysteron_core::{Definition, Operator, Plane, Region, operator_index};
 use rand::RngExt;
 
 /// Largest difference between fast and plain outputs, relative to the sum of the weights.
@@ -18,7 +18,7 @@ fn worst(plane: Plane<f64>, operator: Operator, weights: &[f64], inputs: &[f64])
         let fast = model.step(&mut state, input).unwrap().output;
         worst = worst.max((fast - plain.step(input).unwrap()).abs() / scale);
         assert!(
-            state.depth() <= corner_capacity(plane.levels()),
+            state.corners() <= 2 * plane.levels(),
             "memory above its bound"
         );
     }

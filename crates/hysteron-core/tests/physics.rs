@@ -74,7 +74,7 @@ fn wiping_out() {
         let direct = case.go([case.low, case.high]);
         assert!((after - direct).abs() <= case.close);
         assert_eq!(left, case.model.1.turning_points().collect::<Vec<_>>());
-        assert!(case.model.1.depth() <= 1);
+        assert!(case.model.1.corners() <= 1);
     }
 }
 
@@ -90,7 +90,7 @@ fn return_point_memory_and_closed_minor_loops() {
         // Back at the turning point, the loop is closed, whatever happened inside it.
         assert!((case.go([high]) - first).abs() <= case.close);
         assert!((case.go([low, high]) - first).abs() <= case.close);
-        assert!(case.model.1.depth() <= 2 * case.model.0.plane().levels());
+        assert!(case.model.1.corners() <= 2 * case.model.0.plane().levels());
     }
 }
 
@@ -148,7 +148,8 @@ fn monotonicity() {
         let plane = *case.model.0.plane();
         let mut last = case.go([case.low]);
         // The range's own end last: computed from the others it may fall short by rounding.
-        let way = |n| case.low + (plane.max() - case.low) * f64::from(n) / 100.0;
+        let low = case.low;
+        let way = |n| low + (plane.max() - low) * f64::from(n) / 100.0;
         for t in (0..100).map(way).chain([plane.max()]) {
             let now = case.go([t]);
             assert!(now >= last - case.close);

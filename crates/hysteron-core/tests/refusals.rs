@@ -5,8 +5,8 @@ mod common;
 
 use common::build;
 use hysteron_core::{
-    Clipped, Corner, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Policy,
-    corner_capacity, table_len,
+    Clipped, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Policy, Turn, table_len,
+    turn_capacity,
 };
 
 #[test]
@@ -64,13 +64,13 @@ fn weights_and_memory() {
     );
     let model = Model::new(plane, Operator::Mkp, &[1.0; 6], table()).unwrap();
     let small = model
-        .state(vec![Corner::default(); corner_capacity(3) - 1])
+        .state(vec![Turn::default(); turn_capacity(3) - 1])
         .map(|_| ());
     assert_eq!(
         small,
         Err(Error::MemoryTooSmall {
-            needed: 6,
-            found: 5
+            needed: 15,
+            found: 14
         })
     );
     let mut states = [0.0; 5];

@@ -2,7 +2,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use hysteron_core::{
-    Corner, Model, Operator, Plane, State, corner_capacity, operator_count, table_len,
+    Model, Operator, Plane, State, Turn, operator_count, table_len, turn_capacity,
 };
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
@@ -112,13 +112,13 @@ pub fn nested(rng: &mut impl Rng, levels: usize, deep: usize, out: &mut Vec<f64>
     }
 }
 
-pub type Owned<T> = (Model<T, Vec<T>>, State<T, Vec<Corner<T>>>);
+pub type Owned<T> = (Model<T, Vec<T>>, State<T, Vec<Turn<T>>>);
 
 pub fn build(plane: Plane<f64>, operator: Operator, weights: &[f64]) -> Owned<f64> {
     let k = plane.levels();
     let model = Model::new(plane, operator, weights, vec![0.0; table_len(k)]).unwrap();
     let state = model
-        .state(vec![Corner::default(); corner_capacity(k)])
+        .state(vec![Turn::default(); turn_capacity(k)])
         .unwrap();
     (model, state)
 }
@@ -130,7 +130,7 @@ pub fn build_f32(plane: &Plane<f64>, operator: Operator, weights: &[f64]) -> Own
     let weights: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
     let model = Model::new(plane, operator, &weights, vec![0.0; table_len(k)]).unwrap();
     let state = model
-        .state(vec![Corner::default(); corner_capacity(k)])
+        .state(vec![Turn::default(); turn_capacity(k)])
         .unwrap();
     (model, state)
 }
