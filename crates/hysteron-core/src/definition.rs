@@ -68,7 +68,7 @@ impl<'a, T: Real> Definition<'a, T> {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let x = self.plane.normalise(input).0;
+        let x = self.plane.normalise(input);
         let mut sum = T::ZERO;
         for j in 1..=self.plane.levels() {
             for i in 1..=j {

@@ -60,9 +60,10 @@ pub(crate) fn fill<T: Real>(
     Ok(negative)
 }
 
-/// A normalised input split into its grid cell and the place within it: `x = cell + part`.
+/// A normalised input split into its grid cell and the place within it: `x = cell + part`, `0 ≤ part ≤ 1`.
 ///
-/// `x = K` is the far end of the last cell, so that a cell always has a corner beyond it.
+/// On a grid line it is either of the two cells: the Everett function is continuous. `x = K` is the
+/// far end of the last cell, so that a cell always has a corner beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Split<T> {
     pub(crate) cell: usize,
@@ -72,19 +73,20 @@ pub(crate) struct Split<T> {
 impl<T: Real> Split<T> {
     #[inline(always)]
     pub(crate) fn of(x: T, levels: usize) -> Self {
-        let cell = x.floor_index().min(levels - 1);
+        let middle = (x - T::HALF).smaller(T::from_index(levels - 1));
+        let (start, cell) = middle.nearest_index();
         Self {
             cell,
-            part: x - T::from_index(cell),
+            part: x - start,
         }
     }
 }
 
 /// `e(M, m)` as three table entries and their factors.
 ///
-/// Both triangles of design equation `e(M, m)` in one form: with `u`, `v` the parts of `M`, `m`,
-/// `e = (1 − max) C[p][q] + (max − min) C_mid + min C[p+1][q+1]`, where `C_mid` is the corner on
-/// the side of the larger part.
+/// Both triangles of the definition in one form: with `u`, `v` the parts of `M`, `m`,
+/// `e = (1 − max) C[p][q] + (max − min) C_mid + min C[p+1][q+1]`, `max` and `min` of `u` and `v`, where
+/// `C_mid` is the corner on the side of the larger part.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Triangle<T> {
     pub(crate) near: usize,
@@ -95,19 +97,21 @@ pub(crate) struct Triangle<T> {
 }
 
 impl<T: Real> Triangle<T> {
-    /// The triangle of `(M, m)`, `m ≤ M`. Where they are equal the terms cancel to exactly zero.
+    /// The triangle between `a` and `b`; `up` is +1 where `b` is the maximum and −1 where `a` is.
+    ///
+    /// All choices are arithmetic: which way they go cannot be predicted, and a branch would cost
+    /// more than the rest. Where `a = b` the terms cancel to exactly zero.
     #[inline(always)]
-    pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
-        let near = table_index(max.cell, min.cell);
-        let below = near + max.cell + 1; // C[p+1][q]
-        // Selected by arithmetic: which side it is cannot be predicted, and a branch would cost more.
-        let mid = near + 1 + max.cell * usize::from(max.part > min.part);
+    pub(crate) fn between(a: Split<T>, b: Split<T>, up: T) -> Self {
+        let (p, q) = (a.cell.max(b.cell), a.cell.min(b.cell));
+        let near = table_index(p, q);
+        let below = usize::from(up * (b.part - a.part) > T::ZERO); // C[p+1][q], not C[p][q+1]
         Self {
             near,
-            mid,
-            far: below + 1,
-            larger: max.part.larger(min.part),
-            smaller: max.part.smaller(min.part),
+            mid: near + 1 + p * below,
+            far: near + p + 2,
+            larger: a.part.larger(b.part),
+            smaller: a.part.smaller(b.part),
         }
     }
 
@@ -120,7 +124,7 @@ impl<T: Real> Triangle<T> {
 }
 
 /// `e(M, m)` for `m ≤ M`.
-#[inline(always)]
 pub(crate) fn everett<T: Real>(table: &[T], levels: usize, max: T, min: T) -> T {
-    Triangle::of(Split::of(max, levels), Split::of(min, levels)).evaluate(table)
+    let (min, max) = (Split::of(min, levels), Split::of(max, levels));
+    Triangle::between(min, max, T::ONE).evaluate(table)
 }

@@ -132,10 +132,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let total = self.model.total();
         let wanted = match self.model.operator() {
             Operator::Mkp => target,
-            Operator::Kp | Operator::Relay => {
-                let half = T::ONE / T::from_index(2);
-                half * target + half * total
-            }
+            Operator::Kp | Operator::Relay => T::HALF * target + T::HALF * total,
         };
         if wanted > total + self.slack {
             return Ok(Solution {

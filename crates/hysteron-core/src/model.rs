@@ -139,7 +139,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.reset_off(state)?;
-        state.advance(&self.plane, self.table(), &[self.plane.max()], |_, _| {});
+        state.advance(&self.plane, self.table(), &[self.plane.max()], |_| {});
         Ok(())
     }
 
@@ -190,12 +190,11 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let mut result = (T::ZERO, None);
-        state.advance(&self.plane, self.table(), &[input], |y, clipped| {
-            result = (self.outward(y), clipped);
-        });
-        let (output, clipped) = result;
-        Ok(Output { output, clipped })
+        state.advance(&self.plane, self.table(), &[input], |_| {});
+        Ok(Output {
+            output: self.outward(state.place().y),
+            clipped: self.plane.clipped(input),
+        })
     }
 
     /// Steps through `input` and writes the outputs to `output`, as many as inputs.
@@ -219,17 +218,17 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
                 found: output.len(),
             });
         }
-        if let Some(index) = input.iter().position(|value| !value.is_finite()) {
+        // Without an early exit, so that the check costs next to nothing.
+        if input.iter().fold(false, |bad, t| bad | !t.is_finite()) {
+            let index = input.iter().position(|t| !t.is_finite()).unwrap_or(0);
             return Err(Error::InputNotFinite { index });
         }
-        let mut count = ClippedCount::default();
+        let count = ClippedCount {
+            low: input.iter().filter(|&&t| t < self.plane.bottom()).count(),
+            high: input.iter().filter(|&&t| t > self.plane.max()).count(),
+        };
         let mut places = output.iter_mut();
-        state.advance(&self.plane, self.table(), input, |y, clipped| {
-            match clipped {
-                None => {}
-                Some(Clipped::Low) => count.low += 1,
-                Some(Clipped::High) => count.high += 1,
-            }
+        state.advance(&self.plane, self.table(), input, |y| {
             if let Some(place) = places.next() {
                 *place = self.outward(y);
             }

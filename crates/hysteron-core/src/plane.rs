@@ -58,7 +58,11 @@ impl<T: Real> Plane<T> {
         }
         let steps = T::from_index(levels - 1);
         let step = (max - min) / steps;
-        let per_unit = steps / (max - min);
+        let mut per_unit = steps / (max - min);
+        // Rounded up, so that T_max never falls short of K.
+        while per_unit.is_finite() && (max - min) * per_unit < steps {
+            per_unit = per_unit + per_unit * T::EPSILON;
+        }
         let bottom = min - step;
         let distinct = min + step > min && max - step < max && bottom < min;
         if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct) {
@@ -116,19 +120,23 @@ impl<T: Real> Plane<T> {
         self.denormalise(T::from_index(k))
     }
 
-    /// The normalised input `x = (T − T_min)/ΔT + 1`, limited to `[0, K]`, and whether it had to be.
+    /// The normalised input `x = (T − T_min)/ΔT + 1`, limited to `[0, K]`.
     #[must_use]
     #[inline(always)]
-    pub fn normalise(&self, input: T) -> (T, Option<Clipped>) {
-        if input >= self.max {
-            // Said outright: the division below may round to just under K.
-            let clipped = (input > self.max).then_some(Clipped::High);
-            (T::from_index(self.levels), clipped)
-        } else if input <= self.bottom {
-            (T::ZERO, (input < self.bottom).then_some(Clipped::Low))
+    pub fn normalise(&self, input: T) -> T {
+        let x = (input - self.min) * self.per_unit + T::ONE;
+        x.limited(T::ZERO, T::from_index(self.levels))
+    }
+
+    /// Whether `input` lies outside the active range, and on which side.
+    #[must_use]
+    pub fn clipped(&self, input: T) -> Option<Clipped> {
+        if input > self.max {
+            Some(Clipped::High)
+        } else if input < self.bottom {
+            Some(Clipped::Low)
         } else {
-            let x = (input - self.min) * self.per_unit + T::ONE;
-            (x.limited(T::ZERO, T::from_index(self.levels)), None)
+            None
         }
     }
 
@@ -153,7 +161,7 @@ impl<T: Real> Plane<T> {
 
     /// The highest level at or below `input`, 0 if there is none: relays up to it switch on when rising.
     pub(crate) fn level_at_or_below(&self, input: T) -> usize {
-        let near = self.normalise(input).0.floor_index();
+        let near = self.normalise(input).floor_index();
         // The levels themselves decide, not the rounding of the normalised position.
         if near < self.levels && self.level(near + 1) <= input {
             near + 1

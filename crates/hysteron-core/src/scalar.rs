@@ -30,6 +30,8 @@ pub trait Real:
     const ZERO: Self;
     /// One.
     const ONE: Self;
+    /// One half.
+    const HALF: Self;
     /// Larger than every number.
     const INFINITY: Self;
     /// Distance from one to the next larger number.
@@ -39,6 +41,8 @@ pub trait Real:
     fn from_index(n: usize) -> Self;
     /// `⌊self⌋` of a number in `0 ≤ self < 2³¹`; 0 below that range, 2³¹ − 1 above.
     fn floor_index(self) -> usize;
+    /// The nearest whole number to `self` in `−½ ≤ self < 2²²`, ties to even, as a number and as an index.
+    fn nearest_index(self) -> (Self, usize);
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
 
@@ -62,22 +66,36 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ty) => {
+    ($t:ty, $round:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
             const INFINITY: Self = <$t>::INFINITY;
             const EPSILON: Self = <$t>::EPSILON;
 
             #[inline(always)]
             fn from_index(n: usize) -> Self {
-                n as $t
+                // Through i32: one conversion instruction on every target, Cortex-M4F included.
+                n as u32 as i32 as $t
             }
 
             #[inline(always)]
             fn floor_index(self) -> usize {
-                // Through i32: one conversion instruction on every target, Cortex-M4F included.
                 (self as i32).max(0) as usize
+            }
+
+            #[inline(always)]
+            fn nearest_index(self) -> (Self, usize) {
+                // Added to 1.5 · 2^(mantissa bits), the fraction is rounded off and the whole number
+                // stands in the low bits: no conversion instruction, no range check.
+                const ROUND: $t = $round;
+                const LOW_BITS: u32 = (1 << 22) - 1;
+                let shifted = self + ROUND;
+                (
+                    shifted - ROUND,
+                    (shifted.to_bits() as u32 & LOW_BITS) as usize,
+                )
             }
 
             #[inline(always)]
@@ -87,5 +105,5 @@ macro_rules! real {
         }
     };
 }
-real!(f32);
-real!(f64);
+real!(f32, 12_582_912.0); // 1.5 · 2²³
+real!(f64, 6_755_399_441_055_744.0); // 1.5 · 2⁵²

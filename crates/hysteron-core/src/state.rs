@@ -1,7 +1,7 @@
 //! What a model remembers of its input: the dominant turning points, in memory that the caller provides.
 
 use crate::everett::{Split, Triangle, everett};
-use crate::{Clipped, Error, Operator, Plane, Real};
+use crate::{Error, Operator, Plane, Real};
 
 /// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there with `γ` in `[0, 1]`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,19 +36,25 @@ pub struct State<T, S> {
     place: Place<T>,
 }
 
-/// Where the input is. Small and `Copy`, so that a loop over samples can hold it in registers.
+/// Where the input is, and the branch it is on. `Copy` and handed on by value, so that a loop over
+/// samples holds it in registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place<T> {
     /// Normalised position; for relays the level last reached, as a whole number.
     pub(crate) x: T,
     /// `Σ μ γ` there.
     pub(crate) y: T,
-    /// The turning point that the present branch began at: a minimum where odd, a maximum where even.
-    top: usize,
-    /// Direction of the branch, +1 rising, −1 falling.
-    direction: T,
     /// Last input, in its own unit, before clipping.
     pub(crate) input: T,
+    /// Direction of the branch, +1 rising, −1 falling.
+    direction: T,
+    /// The turning point that the branch began at: a minimum where odd, a maximum where even.
+    top: usize,
+    /// That point's cell and output, and the position of the extreme that ends the branch: all follow
+    /// from `top`, kept because they change only with it.
+    began: Split<T>,
+    began_y: T,
+    end: T,
 }
 
 impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
@@ -115,16 +121,13 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         let mut last = T::ZERO;
         for x in self.turning_points() {
             // Up to a maximum adds its triangle, down to a minimum takes one away.
-            let (max, min, sign) = if x > last {
-                (x, last, T::ONE)
-            } else {
-                (last, x, -T::ONE)
-            };
-            if max > min {
-                let t = Triangle::of(Split::of(max, self.levels), Split::of(min, self.levels));
-                term(t.near, sign * (T::ONE - t.larger));
-                term(t.mid, sign * (t.larger - t.smaller));
-                term(t.far, sign * t.smaller);
+            if x != last {
+                let sign = if x > last { T::ONE } else { -T::ONE };
+                let [a, b] = [last, x].map(|x| Split::of(x, self.levels));
+                let triangle = Triangle::between(a, b, sign);
+                term(triangle.near, sign * (T::ONE - triangle.larger));
+                term(triangle.mid, sign * (triangle.larger - triangle.smaller));
+                term(triangle.far, sign * triangle.smaller);
             }
             last = x;
         }
@@ -154,30 +157,46 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
 
     /// Moves to a normalised position, as restored: `input` is what it stands for.
     pub(crate) fn travel(&mut self, table: &[T], x: T, input: T) {
-        let turns = self.turns.as_mut();
-        self.place.travel(turns, table, self.levels, x);
+        self.place = self
+            .place
+            .travel(self.turns.as_mut(), table, self.levels, x);
         self.place.input = input;
     }
 
-    /// Moves to each of `inputs`, all known to be finite, and hands `Σ μ γ` and the clipping to `each`.
+    /// Moves to each of `inputs`, all known to be finite, and hands `Σ μ γ` to `each`.
     #[inline(always)]
     pub(crate) fn advance(
         &mut self,
         plane: &Plane<T>,
         table: &[T],
         inputs: &[T],
-        mut each: impl FnMut(T, Option<Clipped>),
+        each: impl FnMut(T),
+    ) {
+        // Two loops, so that the common one makes no call that would empty its registers.
+        if self.operator == Operator::Relay {
+            self.advance_by(table, inputs, each, |place, t| {
+                place.relay_position(plane, t)
+            });
+        } else {
+            self.advance_by(table, inputs, each, |_, t| plane.normalise(t));
+        }
+    }
+
+    #[inline(always)]
+    fn advance_by(
+        &mut self,
+        table: &[T],
+        inputs: &[T],
+        mut each: impl FnMut(T),
+        position: impl Fn(&Place<T>, T) -> T,
     ) {
         let turns = self.turns.as_mut();
         let mut place = self.place;
         for &input in inputs {
-            let (mut x, clipped) = plane.normalise(input);
-            if self.operator == Operator::Relay {
-                x = place.relay_position(plane, input);
-            }
+            let x = position(&place, input);
+            place = place.travel(turns, table, self.levels, x);
             place.input = input;
-            place.travel(turns, table, self.levels, x);
-            each(place.y, clipped);
+            each(place.y);
         }
         self.place = place;
     }
@@ -188,9 +207,12 @@ impl<T: Real> Place<T> {
         Self {
             x: T::ZERO,
             y: T::ZERO,
-            top: START,
-            direction: T::ONE,
             input: plane.bottom(),
+            direction: T::ONE,
+            top: START,
+            began: Split::of(T::ZERO, plane.levels()),
+            began_y: T::ZERO,
+            end: T::INFINITY,
         }
     }
 
@@ -206,85 +228,108 @@ impl<T: Real> Place<T> {
         }
     }
 
-    /// Moves to the normalised position `x` in `[0, K]`: amortised `O(1)`.
+    /// The place after moving to the normalised position `x` in `[0, K]`: amortised `O(1)`.
     ///
     /// Both directions are one code, told apart by a sign: on noisy input the direction cannot be
     /// predicted, and a mispredicted branch costs as much as all the rest.
     #[inline(always)]
-    fn travel(&mut self, turns: &mut [Turn<T>], table: &[T], levels: usize, x: T) {
-        if self.direction * (x - self.x) < T::ZERO {
-            self.turn(turns, table, levels);
+    fn travel(mut self, turns: &mut [Turn<T>], table: &[T], levels: usize, x: T) -> Self {
+        let turned = self.direction * (x - self.x) < T::ZERO;
+        let ended = self.direction * x >= self.direction * self.end;
+        if turned | ended {
+            self = self.change_branch(turns, table, levels, x, turned);
         }
-        // The input wipes out every extreme that it passes, and the opposite one after it.
-        while self.direction * x >= self.direction * turns[self.top - 1].x {
-            self.top -= 2;
-            if self.top < START {
-                // Below everything: all operators are off, as at the start.
-                self.top = START;
-                self.direction = T::ONE;
-                break;
-            }
-        }
-        let began = turns[self.top];
-        let change = everett(table, levels, x.larger(began.x), x.smaller(began.x));
-        self.y = began.y + self.direction * change;
+        let here = Split::of(x, levels);
+        let change = Triangle::between(self.began, here, self.direction).evaluate(table);
+        self.y = self.began_y + self.direction * change;
         self.x = x;
+        self
     }
 
-    /// Ends the branch at the present position.
+    /// Finds the branch that `x` lies on: the present position becomes a turning point if the input
+    /// `turned` there, and every extreme that `x` passes is wiped out with the opposite one after it.
     #[inline(always)]
-    fn turn(&mut self, turns: &mut [Turn<T>], table: &[T], levels: usize) {
-        let rising_again = self.direction < T::ZERO;
-        self.direction = -self.direction;
-        if rising_again && self.top >= START + 5 {
-            let (outer_max, outer_min) = (turns[self.top - 4].x, turns[self.top - 3].x);
-            // Less than a cell apart, as they must be to share one.
-            let near = outer_max - turns[self.top].x < T::ONE && self.x - outer_min < T::ONE;
-            if near && self.merge(turns, table, levels) {
-                return;
-            }
+    fn change_branch(
+        mut self,
+        turns: &mut [Turn<T>],
+        table: &[T],
+        levels: usize,
+        x: T,
+        turned: bool,
+    ) -> Self {
+        if self.may_merge(turns, x) && merge(turns, self.top, table, levels, self.x) {
+            self.top -= 1;
+        } else if let Some(free) = turns.get_mut(self.top + 1) {
+            // Two corners a cell, K cells along a staircase: the memory is never exceeded. Where
+            // nothing turned the element is written all the same, and stays free.
+            free.x = self.x;
+            free.y = self.y;
+            self.top += usize::from(turned);
         }
-        // Two corners a cell, K cells along a staircase: the memory is never exceeded.
-        if let Some(free) = turns.get_mut(self.top + 1) {
-            *free = Turn {
-                x: self.x,
-                y: self.y,
-            };
-            self.top += 1;
+        if turned {
+            self.direction = -self.direction;
         }
+        let passes = |top: usize| self.direction * x >= self.direction * turns[top - 1].x;
+        // The first one without a branch, which could not be predicted either.
+        let mut top = self.top - 2 * usize::from(passes(self.top));
+        while top > START && passes(top) {
+            top -= 2;
+        }
+        if top < START {
+            // Below everything: all operators are off, as at the start.
+            top = START;
+            self.direction = T::ONE;
+        }
+        self.top = top;
+        self.began = Split::of(turns[top].x, levels);
+        self.began_y = turns[top].y;
+        self.end = turns[top - 1].x;
+        self
     }
 
-    /// Makes one corner of the last one and the one that the present minimum would add, where both
-    /// lie in one grid cell with the corner before them; says whether they do.
+    /// Whether the input, falling, turns at the present position, and the corner that this makes may
+    /// share a grid cell with the two before it: they are less than a cell apart.
     ///
-    /// In the cell, `γ ← min(max(γ, u'), v')` and then `γ ← min(max(γ, u''), v'')`, with `u'' < u'` and
-    /// `v' < v''`. Since the corner before has left `γ < v'`, both together equal
-    /// `γ ← min(max(γ, u), v'')` with `u = clamp(v', u'', u')`. Everything outside the cell sees only
-    /// the corner before and the last minimum.
-    #[cold]
-    fn merge(&mut self, turns: &mut [Turn<T>], table: &[T], levels: usize) -> bool {
-        let peak = self.top;
-        let cell = |max: T, min: T| (Split::of(max, levels).cell, Split::of(min, levels).cell);
-        let here = cell(turns[peak].x, self.x);
-        let [outer, inner] = [peak - 4, peak - 2];
-        if cell(turns[outer].x, turns[outer + 1].x) != here
-            || cell(turns[inner].x, turns[inner + 1].x) != here
-        {
-            return false;
-        }
-        let (p, q) = here;
-        let held = T::from_index(p) + (turns[inner + 1].x - T::from_index(q));
-        let max = held.limited(turns[peak].x, turns[inner].x);
-        // From the corner before on, so that ten thousand of these leave no more rounding than one.
-        let before = turns[outer + 1];
-        let at_max = before.y + everett(table, levels, max, before.x);
-        let at_min = at_max - everett(table, levels, max, self.x);
-        turns[inner] = Turn { x: max, y: at_max };
-        turns[inner + 1] = Turn {
-            x: self.x,
-            y: at_min,
-        };
-        self.top = inner + 1;
-        true
+    /// Four conditions in one comparison, that none of these numbers reaches zero. With fewer than two
+    /// corners before, one of them is the endless height at the start.
+    #[inline(always)]
+    fn may_merge(&self, turns: &[Turn<T>], x: T) -> bool {
+        let back = |n: usize| turns[self.top.saturating_sub(n)].x;
+        let (maxima, minima) = (back(4) - back(0), self.x - back(3));
+        let turned = self.direction * (x - self.x);
+        (maxima.larger(minima) - T::ONE)
+            .larger(turned)
+            .larger(self.direction)
+            < T::ZERO
     }
+}
+
+/// Makes one corner of the last one and the one from the maximum at `peak` to the minimum `min`, where
+/// both lie in one grid cell with the corner before them; says whether they do.
+///
+/// In the cell, `γ ← min(max(γ, u'), v')` and then `γ ← min(max(γ, u''), v'')`, with `u'' < u'` and
+/// `v' < v''`. Since the corner before has left `γ < v'`, both together equal
+/// `γ ← min(max(γ, u), v'')` with `u = clamp(v', u'', u')`. Everything outside the cell sees only
+/// the corner before and the last minimum.
+#[cold]
+#[inline(never)]
+fn merge<T: Real>(turns: &mut [Turn<T>], peak: usize, table: &[T], levels: usize, min: T) -> bool {
+    let cell = |max: T, min: T| (Split::of(max, levels).cell, Split::of(min, levels).cell);
+    let here = cell(turns[peak].x, min);
+    let [outer, inner] = [peak - 4, peak - 2];
+    if cell(turns[outer].x, turns[outer + 1].x) != here
+        || cell(turns[inner].x, turns[inner + 1].x) != here
+    {
+        return false;
+    }
+    let (p, q) = here;
+    let held = T::from_index(p) + (turns[inner + 1].x - T::from_index(q));
+    let max = held.limited(turns[peak].x, turns[inner].x);
+    // From the corner before on, so that ten thousand of these leave no more rounding than one.
+    let before = turns[outer + 1];
+    let at_max = before.y + everett(table, levels, max, before.x);
+    let at_min = at_max - everett(table, levels, max, min);
+    turns[inner] = Turn { x: max, y: at_max };
+    turns[inner + 1] = Turn { x: min, y: at_min };
+    true
 }
