@@ -10,16 +10,20 @@ pub struct Turn<T> {
     pub(crate) y: T,
 }
 
-/// Memory that a state needs, `4K + 3` turning points: the `2K` corners `(M, m)` that a staircase
-/// can have, two for each grid cell it can cross; the peak of the branch being travelled; and the
-/// two that every history starts from.
+/// Memory that a state needs, `4K + 8` turning points: the `2K` corners `(M, m)` that a staircase
+/// can have, two for each grid cell it can cross; the peak of the branch being travelled and the
+/// free place after it; and six that every history starts from.
 #[must_use]
 pub const fn turn_capacity(levels: usize) -> usize {
-    4 * levels + 3
+    4 * levels + 8
 }
 
-/// The start of every history in the turning points: the input below the plane, after an endless height.
-const START: usize = 1;
+/// The start of every history among the turning points: the input below the plane, after endless
+/// heights. There are enough of these for a look at two corners back to need no case of its own.
+const START: usize = LOOK + 1;
+
+/// How far back from the branch's own turning point a step looks: the two corners before it.
+const LOOK: usize = 4;
 
 /// The state of a model: turning points `M_1 > M_2 > …`, `m_1 < m_2 < …` and the branch being travelled.
 ///
@@ -48,7 +52,7 @@ pub(crate) struct Place<T> {
     pub(crate) input: T,
     /// Direction of the branch, +1 rising, −1 falling.
     direction: T,
-    /// The turning point that the branch began at: a minimum where odd, a maximum where even.
+    /// The turning point that the branch began at, counted like `START`, which is a minimum.
     top: usize,
     /// That point's cell and output, and the position of the extreme that ends the branch: all follow
     /// from `top`, kept because they change only with it.
@@ -64,12 +68,12 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         if found < needed {
             return Err(Error::MemoryTooSmall { needed, found });
         }
-        let start = turns.as_mut();
-        start[0] = Turn {
+        let endless = Turn {
             x: T::INFINITY,
             y: T::ZERO,
         };
-        start[START] = Turn {
+        turns.as_mut()[..START].fill(endless);
+        turns.as_mut()[START] = Turn {
             x: T::ZERO,
             y: T::ZERO,
         };
@@ -109,7 +113,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     ///
     /// With [`State::input`] they are the whole state: [`crate::Model::restore`] rebuilds it from them, bit for bit.
     pub fn turning_points(&self) -> impl Iterator<Item = T> + '_ {
-        let turns = &self.turns()[START + 1..];
+        let turns = &self.turns()[2..];
         turns.iter().map(|turn| turn.x).chain([self.place.x])
     }
 
@@ -145,9 +149,9 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         self.place
     }
 
-    /// All turning points, the two of the start included.
+    /// All turning points from the start on, and the endless height before it: maxima at even places.
     pub(crate) fn turns(&self) -> &[Turn<T>] {
-        &self.turns.as_ref()[..=self.place.top]
+        &self.turns.as_ref()[START - 1..=self.place.top]
     }
 
     /// All operators off, at the bottom of the plane.
@@ -237,7 +241,7 @@ impl<T: Real> Place<T> {
         let turned = self.direction * (x - self.x) < T::ZERO;
         let ended = self.direction * x >= self.direction * self.end;
         if turned | ended {
-            self = self.change_branch(turns, table, levels, x, turned);
+            self = self.change_branch(turns, table, levels, x);
         }
         let here = Split::of(x, levels);
         let change = Triangle::between(self.began, here, self.direction).evaluate(table);
@@ -246,44 +250,55 @@ impl<T: Real> Place<T> {
         self
     }
 
-    /// Finds the branch that `x` lies on: the present position becomes a turning point if the input
-    /// `turned` there, and every extreme that `x` passes is wiped out with the opposite one after it.
+    /// Finds the branch that `x` lies on: where the input turned, the present position becomes a
+    /// turning point; every extreme that `x` passes is wiped out with the opposite one after it.
     #[inline(always)]
-    fn change_branch(
-        mut self,
-        turns: &mut [Turn<T>],
-        table: &[T],
-        levels: usize,
-        x: T,
-        turned: bool,
-    ) -> Self {
-        if self.may_merge(turns, x) && merge(turns, self.top, table, levels, self.x) {
+    fn change_branch(mut self, turns: &mut [Turn<T>], table: &[T], levels: usize, x: T) -> Self {
+        let direction = (x - self.x).signum();
+        let recent = turns.get_mut(self.top - LOOK..);
+        let Some(recent) = recent.and_then(|turns| turns.first_chunk_mut::<{ LOOK + 2 }>()) else {
+            return self; // the memory has this many elements beyond the bound
+        };
+        if self.may_merge(recent, x) && merge(recent, table, levels, self.x) {
             self.top -= 1;
-        } else if let Some(free) = turns.get_mut(self.top + 1) {
-            // Two corners a cell, K cells along a staircase: the memory is never exceeded. Where
-            // nothing turned the element is written all the same, and stays free.
-            free.x = self.x;
-            free.y = self.y;
-            self.top += usize::from(turned);
+            self.direction = direction;
+            return self.wipe_out(turns, levels, x);
         }
-        if turned {
-            self.direction = -self.direction;
+        // Where nothing turned the element is written all the same, and stays free.
+        recent[LOOK + 1] = Turn {
+            x: self.x,
+            y: self.y,
+        };
+        let turned = (direction * self.direction).sign_bit();
+        // Signs instead of branches: neither this choice nor the next can be predicted.
+        let short = direction * x - direction * recent[LOOK - 1 + turned].x;
+        let place = LOOK + turned + 2 * short.sign_bit() - 2;
+        self.top = self.top + place - LOOK;
+        self.direction = direction;
+        let (began, end) = (recent[place], recent[place - 1].x);
+        if direction * x >= direction * end {
+            return self.wipe_out(turns, levels, x);
         }
-        let passes = |top: usize| self.direction * x >= self.direction * turns[top - 1].x;
-        // The first one without a branch, which could not be predicted either.
-        let mut top = self.top - 2 * usize::from(passes(self.top));
-        while top > START && passes(top) {
-            top -= 2;
+        self.began = Split::of(began.x, levels);
+        self.began_y = began.y;
+        self.end = end;
+        self
+    }
+
+    /// Drops every extreme that `x` passes, and the opposite one after it.
+    #[inline(always)]
+    fn wipe_out(mut self, turns: &[Turn<T>], levels: usize, x: T) -> Self {
+        while self.top > START && self.direction * x >= self.direction * turns[self.top - 1].x {
+            self.top -= 2;
         }
-        if top < START {
+        if self.top < START {
             // Below everything: all operators are off, as at the start.
-            top = START;
+            self.top = START;
             self.direction = T::ONE;
         }
-        self.top = top;
-        self.began = Split::of(turns[top].x, levels);
-        self.began_y = turns[top].y;
-        self.end = turns[top - 1].x;
+        self.began = Split::of(turns[self.top].x, levels);
+        self.began_y = turns[self.top].y;
+        self.end = turns[self.top - 1].x;
         self
     }
 
@@ -291,11 +306,10 @@ impl<T: Real> Place<T> {
     /// share a grid cell with the two before it: they are less than a cell apart.
     ///
     /// Four conditions in one comparison, that none of these numbers reaches zero. With fewer than two
-    /// corners before, one of them is the endless height at the start.
+    /// corners before, one of them is an endless height.
     #[inline(always)]
-    fn may_merge(&self, turns: &[Turn<T>], x: T) -> bool {
-        let back = |n: usize| turns[self.top.saturating_sub(n)].x;
-        let (maxima, minima) = (back(4) - back(0), self.x - back(3));
+    fn may_merge(&self, recent: &[Turn<T>; LOOK + 2], x: T) -> bool {
+        let (maxima, minima) = (recent[0].x - recent[LOOK].x, self.x - recent[1].x);
         let turned = self.direction * (x - self.x);
         (maxima.larger(minima) - T::ONE)
             .larger(turned)
@@ -304,8 +318,8 @@ impl<T: Real> Place<T> {
     }
 }
 
-/// Makes one corner of the last one and the one from the maximum at `peak` to the minimum `min`, where
-/// both lie in one grid cell with the corner before them; says whether they do.
+/// Makes one corner of the last one and the one that falls to `min`, where both lie in one grid cell
+/// with the corner before them; says whether they do.
 ///
 /// In the cell, `γ ← min(max(γ, u'), v')` and then `γ ← min(max(γ, u''), v'')`, with `u'' < u'` and
 /// `v' < v''`. Since the corner before has left `γ < v'`, both together equal
@@ -313,23 +327,20 @@ impl<T: Real> Place<T> {
 /// the corner before and the last minimum.
 #[cold]
 #[inline(never)]
-fn merge<T: Real>(turns: &mut [Turn<T>], peak: usize, table: &[T], levels: usize, min: T) -> bool {
+fn merge<T: Real>(recent: &mut [Turn<T>; LOOK + 2], table: &[T], levels: usize, min: T) -> bool {
+    let [outer_max, outer_min, inner_max, inner_min, peak, _] = *recent;
     let cell = |max: T, min: T| (Split::of(max, levels).cell, Split::of(min, levels).cell);
-    let here = cell(turns[peak].x, min);
-    let [outer, inner] = [peak - 4, peak - 2];
-    if cell(turns[outer].x, turns[outer + 1].x) != here
-        || cell(turns[inner].x, turns[inner + 1].x) != here
-    {
+    let here = cell(peak.x, min);
+    if cell(outer_max.x, outer_min.x) != here || cell(inner_max.x, inner_min.x) != here {
         return false;
     }
     let (p, q) = here;
-    let held = T::from_index(p) + (turns[inner + 1].x - T::from_index(q));
-    let max = held.limited(turns[peak].x, turns[inner].x);
+    let held = T::from_index(p) + (inner_min.x - T::from_index(q));
+    let max = held.limited(peak.x, inner_max.x);
     // From the corner before on, so that ten thousand of these leave no more rounding than one.
-    let before = turns[outer + 1];
-    let at_max = before.y + everett(table, levels, max, before.x);
+    let at_max = outer_min.y + everett(table, levels, max, outer_min.x);
     let at_min = at_max - everett(table, levels, max, min);
-    turns[inner] = Turn { x: max, y: at_max };
-    turns[inner + 1] = Turn { x: min, y: at_min };
+    recent[2] = Turn { x: max, y: at_max };
+    recent[3] = Turn { x: min, y: at_min };
     true
 }

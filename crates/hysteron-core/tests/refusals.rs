@@ -69,8 +69,8 @@ fn weights_and_memory() {
     assert_eq!(
         small,
         Err(Error::MemoryTooSmall {
-            needed: 15,
-            found: 14
+            needed: 20,
+            found: 19
         })
     );
     let mut states = [0.0; 5];

@@ -11,17 +11,29 @@ pub struct Plane {
 
 impl Plane {
     /// A plane of `levels` levels over `[min, max]`.
-    pub fn new(min: f64, max: f64, levels: usize) -> Self { Self { min, max, levels } }
+    pub fn new(min: f64, max: f64, levels: usize) -> Self {
+        Self { min, max, levels }
+    }
     /// Lowest level.
-    pub fn min(&self) -> f64 { self.min }
+    pub fn min(&self) -> f64 {
+        self.min
+    }
     /// Highest level.
-    pub fn max(&self) -> f64 { self.max }
+    pub fn max(&self) -> f64 {
+        self.max
+    }
     /// K.
-    pub fn levels(&self) -> usize { self.levels }
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
     /// ΔT.
-    pub fn step(&self) -> f64 { (self.max - self.min) / (self.levels - 1) as f64 }
+    pub fn step(&self) -> f64 {
+        (self.max - self.min) / (self.levels - 1) as f64
+    }
     /// Level `k` = 1…K: `min + (k − 1) ΔT`.
-    pub fn level(&self, k: usize) -> f64 { self.min + (k - 1) as f64 * self.step() }
+    pub fn level(&self, k: usize) -> f64 {
+        self.min + (k - 1) as f64 * self.step()
+    }
 }
 
 /// A model.
@@ -46,7 +58,9 @@ impl Model {
     pub fn operator_states(&self, history: &[f64]) -> Vec<f64> {
         let k = self.plane.levels();
         let mut g = vec![0.0f64; k * (k + 1) / 2];
-        let r = |t: f64, lv: usize| ((t - self.plane.level(lv)) / self.plane.step() + 1.0).clamp(0.0, 1.0);
+        let r = |t: f64, lv: usize| {
+            ((t - self.plane.level(lv)) / self.plane.step() + 1.0).clamp(0.0, 1.0)
+        };
         for &t in history {
             for j in 1..=k {
                 for i in 1..=j {
