@@ -218,19 +218,24 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
                 found: output.len(),
             });
         }
-        // Without an early exit, so that the check costs next to nothing.
-        if input.iter().fold(false, |bad, t| bad | !t.is_finite()) {
+        // One pass without an early exit, so that checking costs next to nothing.
+        let mut count = ClippedCount::default();
+        let mut finite = true;
+        for &t in input {
+            finite &= t.is_finite();
+            count.low += usize::from(t < self.plane.bottom());
+            count.high += usize::from(t > self.plane.max());
+        }
+        if !finite {
             let index = input.iter().position(|t| !t.is_finite()).unwrap_or(0);
             return Err(Error::InputNotFinite { index });
         }
-        let count = ClippedCount {
-            low: input.iter().filter(|&&t| t < self.plane.bottom()).count(),
-            high: input.iter().filter(|&&t| t > self.plane.max()).count(),
-        };
+        // What the operators put out is linear in their states, so it can follow in the same loop.
+        let (gain, offset) = self.outward_line();
         let mut places = output.iter_mut();
         state.advance(&self.plane, self.table(), input, |y| {
             if let Some(place) = places.next() {
-                *place = self.outward(y);
+                *place = gain * y + offset;
             }
         });
         Ok(count)
@@ -257,9 +262,16 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// From `Σ μ γ` to the sum of the operators' own outputs.
     #[inline(always)]
     pub(crate) fn outward(&self, sum: T) -> T {
+        let (gain, offset) = self.outward_line();
+        gain * sum + offset
+    }
+
+    /// Gain and offset of that: `γ` itself, or `2γ − 1` for each operator.
+    #[inline(always)]
+    fn outward_line(&self) -> (T, T) {
         match self.operator {
-            Operator::Mkp => sum,
-            Operator::Kp | Operator::Relay => sum + sum - self.total(),
+            Operator::Mkp => (T::ONE, T::ZERO),
+            Operator::Kp | Operator::Relay => (T::ONE + T::ONE, -self.total()),
         }
     }
 
