@@ -35,7 +35,8 @@ pub enum Policy<T> {
     Anticipate {
         /// Where the target goes next.
         heading: Direction,
-        /// Outputs within this distance of the present one count as standing still; 0 for the exact dead band.
+        /// Outputs within this distance of the one at the turning point count as standing still; 0
+        /// for the exact dead band. Never below zero.
         tolerance: T,
     },
 }
@@ -146,29 +147,44 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
                 status: Status::Low,
             });
         }
+        let now = state.place().y;
         let input = match policy {
             Policy::Anticipate { heading, tolerance }
-                if within(wanted, state.place().y, tolerance.larger(self.slack)) =>
+                if within(
+                    wanted,
+                    self.rest(state, heading),
+                    tolerance.larger(self.slack),
+                ) =>
             {
+                let rest = self.rest(state, heading);
+                let tolerance = tolerance.larger(T::ZERO); // NaN too
                 match heading {
-                    Direction::Rising => {
-                        self.rising(state, Goal::Leave(state.place().y + tolerance))
-                    }
-                    Direction::Falling => {
-                        self.falling(state, Goal::Leave(state.place().y - tolerance))
-                    }
+                    Direction::Rising => self.rising(state, Goal::Leave(rest + tolerance)),
+                    Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
                 }
             }
-            _ if within(wanted, state.place().y, self.slack) => {
+            _ if within(wanted, now, self.slack) => {
                 state.input().limited(plane.bottom(), plane.max())
             }
-            _ if wanted > state.place().y => self.rising(state, Goal::Reach(wanted, self.slack)),
+            _ if wanted > now => self.rising(state, Goal::Reach(wanted, self.slack)),
             _ => self.falling(state, Goal::Reach(wanted, self.slack)),
         };
         Ok(Solution {
             input,
             status: Status::Ok,
         })
+    }
+
+    /// The output at which a target that turns to `heading` stands still: where the branch of that
+    /// direction began or, before it has, the present one.
+    fn rest<S>(&self, state: &State<T, S>, heading: Direction) -> T
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        match state.turns().last() {
+            Some(began) if state.is_rising() == (heading == Direction::Rising) => began.y,
+            _ => state.place().y,
+        }
     }
 
     /// The first input on the way up that meets `goal`.

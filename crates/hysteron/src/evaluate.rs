@@ -1,5 +1,11 @@
-//! Forward and inverse tests of a model on a recording.
-use crate::metrics::Errors;
+//! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
+
+use crate::recording::range;
+use crate::turning::{Turning, headings};
+use crate::{Errors, Model, Policy, Recording, Result, Status};
+
+/// Output movements up to this part of the measured range count as standing still.
+const STILL: f64 = 0.01;
 
 /// Forward and inverse tests of a model on one recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,8 +14,10 @@ pub struct Evaluation {
     pub output_model: Vec<f64>,
     /// Modelled against measured output.
     pub forward: Errors,
+    /// How many inputs lay outside the plane.
+    pub clipped: usize,
     /// The inverse test, or why there is none (for example weights below zero).
-    pub inverse: Result<InverseEvaluation, String>,
+    pub inverse: std::result::Result<InverseEvaluation, String>,
 }
 
 /// The inverse test with both policies.
@@ -28,10 +36,103 @@ pub struct InverseEvaluation {
 pub struct InverseRun {
     /// Modelled input, one value a sample.
     pub input_model: Vec<f64>,
+    /// Targets that the model cannot reach.
+    pub out_of_reach: usize,
     /// Over all samples.
     pub all: Errors,
-    /// Over the samples where the output moves.
-    pub moving: Errors,
+    /// Over the samples where the output moves; `None` where it never does.
+    pub moving: Option<Errors>,
     /// Over the samples in the dead band; `None` where there is none.
     pub dead_band: Option<Errors>,
+}
+
+/// Runs `model` forward over the measured input, and its inverse over the measured output, from every operator off.
+///
+/// # Errors
+/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
+    recording.check()?;
+    let mut output_model = vec![0.0; recording.len()];
+    let clipped = model.run(&mut model.start(), &recording.input, &mut output_model)?;
+    let forward = compare(&recording.output, &output_model);
+    let inverse = match model.inverse() {
+        Ok(_) => Ok(evaluate_inverse(model, recording)?),
+        Err(error) => Err(error.to_string()),
+    };
+    Ok(Evaluation {
+        output_model,
+        forward,
+        clipped: clipped.low + clipped.high,
+        inverse,
+    })
+}
+
+fn evaluate_inverse(model: &Model, recording: &Recording) -> Result<InverseEvaluation> {
+    let (low, high) = range(&recording.output);
+    let tolerance = STILL * (high - low);
+    let moving = moving(&recording.output, tolerance);
+    let headings = headings(&recording.output, tolerance);
+    let run = |policy: &dyn Fn(usize) -> Policy<f64>| -> Result<InverseRun> {
+        let inverse = model.inverse()?;
+        let mut state = model.start();
+        let mut input_model = Vec::with_capacity(recording.len());
+        let mut out_of_reach = 0;
+        for (n, &target) in recording.output.iter().enumerate() {
+            let solution = inverse.step(&mut state, target, policy(n))?;
+            out_of_reach += usize::from(solution.status != Status::Ok);
+            input_model.push(solution.input);
+        }
+        Ok(InverseRun {
+            all: compare(&recording.input, &input_model),
+            moving: Errors::between(&recording.input, &input_model, |n| moving[n]),
+            dead_band: Errors::between(&recording.input, &input_model, |n| !moving[n]),
+            input_model,
+            out_of_reach,
+        })
+    };
+    let hold = run(&|_| Policy::Hold)?;
+    let anticipate = run(&|n| match headings[n] {
+        Some(heading) => Policy::Anticipate { heading, tolerance },
+        None => Policy::Hold,
+    })?;
+    Ok(InverseEvaluation {
+        moving,
+        hold,
+        anticipate,
+    })
+}
+
+/// Whether the output moves at each sample: it does not around a turning point, as far as it stays
+/// within `tolerance` of it.
+fn moving(output: &[f64], tolerance: f64) -> Vec<bool> {
+    let mut turning = Turning::new(tolerance);
+    let mut moving = vec![true; output.len()];
+    let turns: Vec<usize> = output
+        .iter()
+        .filter_map(|&y| turning.push(y))
+        .map(|(n, _)| n)
+        .collect();
+    if turns.is_empty() {
+        moving.fill(false);
+    }
+    for turn in turns.into_iter().chain([output.len() - 1]) {
+        let still = |n: &usize| (output[*n] - output[turn]).abs() <= tolerance;
+        let first = (0..=turn).rev().take_while(still).last().unwrap_or(turn);
+        let last = (turn..output.len())
+            .take_while(still)
+            .last()
+            .unwrap_or(turn);
+        moving[first..=last].fill(false);
+    }
+    moving
+}
+
+/// Over all samples, of which a recording has at least one.
+fn compare(measured: &[f64], modelled: &[f64]) -> Errors {
+    Errors::between(measured, modelled, |_| true).unwrap_or(Errors {
+        rmse: 0.0,
+        max_abs: 0.0,
+        nrmse_percent: 0.0,
+        samples: 0,
+    })
 }

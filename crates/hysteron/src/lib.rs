@@ -1,5 +1,35 @@
-//! hysteron
-pub mod evaluate;
-pub mod metrics;
-pub mod model;
-pub mod recording;
+//! hysteron: from a recording of input and output to a calibrated hysteresis model and its exact inverse.
+//!
+//! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
+//! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
+//! [`fit`], simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
+//! [`Model::inverse`], judge with [`evaluate`]. The real-time core below, `hysteron-core`, runs without
+//! allocation.
+#![forbid(unsafe_code)]
+
+mod error;
+mod evaluate;
+mod identify;
+mod metrics;
+mod model;
+mod model_file;
+mod output;
+mod recording;
+mod table;
+mod turning;
+
+pub use error::{Error, Result};
+pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate};
+pub use hysteron_core::{
+    Clipped, ClippedCount, Direction, Operator, Output, Policy, Region, Solution, Status,
+};
+pub use identify::{FitOptions, FitSummary, Solver, fit};
+pub use metrics::Errors;
+pub use model::{Inverse, Model, Sign, State};
+pub use output::{AtomicFile, TableWriter};
+pub use recording::{Columns, Origin, Quantity, Recording, Source};
+pub use table::{Column, TableReader};
+pub use turning::{Turning, headings};
+
+/// The discrete Preisach plane, equation (3).
+pub type Plane = hysteron_core::Plane<f64>;

@@ -1,74 +1,258 @@
-//! The identified model (stub; being written).
+//! The identified model: a core model with its weights, names, offset and sign.
+
 use crate::recording::Quantity;
+use crate::{Direction, Error, FitSummary, Operator, Plane, Policy, Result, Solution, Status};
+use hysteron_core::{Turn, table_len, turn_capacity};
 
-/// The plane of equation (3).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
-    min: f64,
-    max: f64,
-    levels: usize,
+/// The state of a model: its turning points.
+pub type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
+
+/// Direction in which the output moves when the operators switch on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sign {
+    /// The output rises with the input.
+    #[default]
+    Positive,
+    /// The output falls as the input rises, as a strain does that is recovered on heating.
+    Negative,
 }
 
-impl Plane {
-    /// A plane of `levels` levels over `[min, max]`.
-    pub fn new(min: f64, max: f64, levels: usize) -> Self {
-        Self { min, max, levels }
-    }
-    /// Lowest level.
-    pub fn min(&self) -> f64 {
-        self.min
-    }
-    /// Highest level.
-    pub fn max(&self) -> f64 {
-        self.max
-    }
-    /// K.
-    pub fn levels(&self) -> usize {
-        self.levels
-    }
-    /// ΔT.
-    pub fn step(&self) -> f64 {
-        (self.max - self.min) / (self.levels - 1) as f64
-    }
-    /// Level `k` = 1…K: `min + (k − 1) ΔT`.
-    pub fn level(&self, k: usize) -> f64 {
-        self.min + (k - 1) as f64 * self.step()
+impl Sign {
+    /// +1 or −1.
+    #[must_use]
+    pub fn factor(self) -> f64 {
+        match self {
+            Sign::Positive => 1.0,
+            Sign::Negative => -1.0,
+        }
     }
 }
 
-/// A model.
-#[derive(Debug, Clone)]
+/// A model of an actuator: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation (2).
+///
+/// ```
+/// use hysteron::{Model, Operator, Plane, Policy, Sign};
+/// let plane = Plane::new(20.0, 80.0, 3)?;
+/// let weights = vec![1.0, 0.5, 1.0, 0.0, 0.5, 1.0]; // row by row: j = 1…K, i = 1…j
+/// let model = Model::new(Operator::Mkp, plane, weights, 10.0, Sign::Positive)?;
+/// let heated_and_cooled = model.simulate(&[20.0, 80.0, 50.0])?;
+/// assert_eq!(heated_and_cooled, [11.0, 14.0, 13.0]);
+///
+/// let inverse = model.inverse()?;
+/// let mut state = model.start();
+/// let solution = inverse.step(&mut state, 12.5, Policy::Hold)?;
+/// assert!((model.simulate(&[solution.input])?[0] - 12.5).abs() < 1e-12);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// plane
-    pub plane: Plane,
-    /// N weights row by row: j = 1…K, within a row i = 1…j (α_i, β_j).
-    pub weights: Vec<f64>,
-    /// output = offset + sign Σ μ γ
-    pub offset: f64,
-    /// +1 or -1
-    pub sign: f64,
-    /// input
+    core: hysteron_core::Model<f64, Vec<f64>>,
+    weights: Vec<f64>,
+    offset: f64,
+    sign: Sign,
+    /// What the input is.
     pub input: Quantity,
-    /// output
+    /// What the output is.
     pub output: Quantity,
+    /// How the model was obtained, where it was identified.
+    pub fit: Option<FitSummary>,
 }
 
 impl Model {
-    /// The operator states γ (N values from 0 to 1, in the order of the weights) after the inputs `history`, from all-off.
-    pub fn operator_states(&self, history: &[f64]) -> Vec<f64> {
-        let k = self.plane.levels();
-        let mut g = vec![0.0f64; k * (k + 1) / 2];
-        let r = |t: f64, lv: usize| {
-            ((t - self.plane.level(lv)) / self.plane.step() + 1.0).clamp(0.0, 1.0)
-        };
-        for &t in history {
-            for j in 1..=k {
-                for i in 1..=j {
-                    let s = &mut g[j * (j - 1) / 2 + i - 1];
-                    *s = r(t, j).max(s.min(r(t, i)));
-                }
-            }
+    /// A model of `operator`s on `plane`; `weights` holds `N = K(K + 1)/2` numbers row by row,
+    /// `j = 1…K` and within a row `i = 1…j`, in the unit of the output.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for a wrong number of weights or one that is not finite; [`Error::ModelFile`]
+    /// for an offset that is not finite.
+    pub fn new(
+        operator: Operator,
+        plane: Plane,
+        weights: Vec<f64>,
+        offset: f64,
+        sign: Sign,
+    ) -> Result<Self> {
+        if !offset.is_finite() {
+            return Err(Error::ModelFile {
+                path: None,
+                field: "output.offset".into(),
+                problem: format!("{offset} is not a finite number"),
+            });
         }
-        g
+        let table = vec![0.0; table_len(plane.levels())];
+        let core = hysteron_core::Model::new(plane, operator, &weights, table)?;
+        Ok(Self {
+            core,
+            weights,
+            offset,
+            sign,
+            input: Quantity::named("input"),
+            output: Quantity::named("output"),
+            fit: None,
+        })
+    }
+
+    /// The plane.
+    #[must_use]
+    pub fn plane(&self) -> &Plane {
+        self.core.plane()
+    }
+
+    /// The elementary operator.
+    #[must_use]
+    pub fn operator(&self) -> Operator {
+        self.core.operator()
+    }
+
+    /// The weights `μ_ij`, row by row: `j = 1…K`, within a row `i = 1…j`.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Output with `Σ μ γ = 0`.
+    #[must_use]
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// Direction of the output.
+    #[must_use]
+    pub fn sign(&self) -> Sign {
+        self.sign
+    }
+
+    /// The outputs with every operator off and with every operator on, in the output's unit.
+    #[must_use]
+    pub fn output_range(&self) -> (f64, f64) {
+        let (off, on) = self.core.output_range();
+        (self.outward(off), self.outward(on))
+    }
+
+    /// A state with every operator off.
+    #[must_use]
+    pub fn start(&self) -> State {
+        let memory = vec![Turn::default(); turn_capacity(self.plane().levels())];
+        match self.core.state(memory) {
+            Ok(state) => state,
+            Err(_) => unreachable!("the memory has the capacity asked for"),
+        }
+    }
+
+    /// A state with every operator on, at the top of the plane.
+    #[must_use]
+    pub fn saturated(&self) -> State {
+        let mut state = self.start();
+        let reset = self.core.reset_on(&mut state);
+        debug_assert!(reset.is_ok(), "the state is this model's own");
+        state
+    }
+
+    /// Moves `state` to `input` and returns the output, and whether the input was outside the plane.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for an input that is not finite or a state of another model; the state is then as it was.
+    pub fn step(&self, state: &mut State, input: f64) -> Result<hysteron_core::Output<f64>> {
+        let step = self.core.step(state, input)?;
+        Ok(hysteron_core::Output {
+            output: self.outward(step.output),
+            ..step
+        })
+    }
+
+    /// Moves `state` through `input` and writes the outputs, and returns how many inputs were clipped.
+    ///
+    /// # Errors
+    /// As [`Model::step`], with the index of the sample.
+    pub fn run(
+        &self,
+        state: &mut State,
+        input: &[f64],
+        output: &mut [f64],
+    ) -> Result<hysteron_core::ClippedCount> {
+        let clipped = self.core.run(state, input, output)?;
+        for value in &mut output[..input.len()] {
+            *value = self.outward(*value);
+        }
+        Ok(clipped)
+    }
+
+    /// The outputs for `input`, from every operator off.
+    ///
+    /// # Errors
+    /// As [`Model::run`].
+    pub fn simulate(&self, input: &[f64]) -> Result<Vec<f64>> {
+        let mut output = vec![0.0; input.len()];
+        self.run(&mut self.start(), input, &mut output)?;
+        Ok(output)
+    }
+
+    /// The inverse of this model.
+    ///
+    /// # Errors
+    /// [`Error::Core`] naming the first weights below zero, if there are any.
+    pub fn inverse(&self) -> Result<Inverse<'_>> {
+        Ok(Inverse {
+            model: self,
+            core: self.core.inverse()?,
+        })
+    }
+
+    /// The operator states `γ_ij` in `[0, 1]`, in the order of the weights, after `history` from every operator off.
+    ///
+    /// # Errors
+    /// As [`Model::run`].
+    pub fn operator_states(&self, history: &[f64]) -> Result<Vec<f64>> {
+        let mut state = self.start();
+        self.run(&mut state, history, &mut vec![0.0; history.len()])?;
+        let rows = (1..=self.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
+        rows.map(|(i, j)| Ok(state.gamma(i, j)?)).collect()
+    }
+
+    fn outward(&self, sum: f64) -> f64 {
+        self.offset + self.sign.factor() * sum
+    }
+}
+
+/// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model.
+#[derive(Debug, Clone)]
+pub struct Inverse<'m> {
+    model: &'m Model,
+    core: hysteron_core::Inverse<'m, f64, Vec<f64>>,
+}
+
+impl Inverse<'_> {
+    /// Finds the input for `target` and moves `state` there. `O(log K)`.
+    ///
+    /// Status and heading speak of the target as given: with a negative sign, [`Status::Low`] needs an
+    /// input above the plane.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for a target that is not finite or a state of another model; the state is then as it was.
+    pub fn step(
+        &self,
+        state: &mut State,
+        target: f64,
+        policy: Policy<f64>,
+    ) -> Result<Solution<f64>> {
+        let raw = self.model.sign.factor() * (target - self.model.offset);
+        let flipped = self.model.sign == Sign::Negative;
+        let policy = match policy {
+            Policy::Anticipate { heading, tolerance } if flipped => Policy::Anticipate {
+                heading: match heading {
+                    Direction::Rising => Direction::Falling,
+                    Direction::Falling => Direction::Rising,
+                },
+                tolerance,
+            },
+            other => other,
+        };
+        let solution = self.core.step(state, raw, policy)?;
+        let status = match solution.status {
+            Status::Low if flipped => Status::High,
+            Status::High if flipped => Status::Low,
+            other => other,
+        };
+        Ok(Solution { status, ..solution })
     }
 }

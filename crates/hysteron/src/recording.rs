@@ -1,4 +1,10 @@
-//! Recordings.
+//! Recordings: an input and the output it caused.
+
+use crate::table::TableReader;
+use crate::{Error, Result};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::path::{Path, PathBuf};
 
 /// A physical quantity: its name and, where known, its unit.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -7,6 +13,48 @@ pub struct Quantity {
     pub name: String,
     /// Unit, for example `degC`; `None` where the source does not say.
     pub unit: Option<String>,
+}
+
+impl Quantity {
+    /// A quantity without a unit.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: None,
+        }
+    }
+
+    /// A quantity with its unit.
+    #[must_use]
+    pub fn with_unit(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: Some(unit.to_owned()),
+        }
+    }
+
+    /// Reads `temperature [degC]` and `temperature (degC)` as a name and its unit.
+    ///
+    /// ```
+    /// use hysteron::Quantity;
+    /// let column = Quantity::from_column("lift [mm]");
+    /// assert_eq!((column.name.as_str(), column.unit.as_deref()), ("lift", Some("mm")));
+    /// assert_eq!(Quantity::from_column("voltage_V"), Quantity::named("voltage_V"));
+    /// ```
+    #[must_use]
+    pub fn from_column(column: &str) -> Self {
+        let column = column.trim();
+        for (open, close) in [('[', ']'), ('(', ')')] {
+            if let Some((name, unit)) = column.strip_suffix(close).and_then(|c| c.split_once(open))
+            {
+                if !name.trim().is_empty() && !unit.trim().is_empty() {
+                    return Self::with_unit(name.trim(), unit.trim());
+                }
+            }
+        }
+        Self::named(column)
+    }
 }
 
 /// Where a recording comes from.
@@ -18,10 +66,54 @@ pub enum Origin {
     Simulated,
 }
 
+/// The file that a recording was read from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Its path as given.
+    pub path: PathBuf,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl Source {
+    /// A file and its digest; `None` for standard input, which cannot be read twice.
+    fn of(path: &Path) -> Result<Option<Self>> {
+        if path == Path::new("-") {
+            return Ok(None);
+        }
+        let mut digest = HashWriter(Sha256::new());
+        let copied = File::open(path).and_then(|mut file| std::io::copy(&mut file, &mut digest));
+        copied.map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        let bytes = digest.0.finalize();
+        Ok(Some(Self {
+            path: path.to_owned(),
+            sha256: bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
+        }))
+    }
+}
+
+struct HashWriter(Sha256);
+
+impl std::io::Write for HashWriter {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 /// An input and the output it caused, sample by sample.
+///
+/// All samples are finite and both have the same length, at least one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Time of each sample in seconds, where the source has one.
+    /// Time of each sample in seconds, not decreasing, where the source has one.
     pub time: Option<Vec<f64>>,
     /// Input samples.
     pub input: Vec<f64>,
@@ -33,4 +125,136 @@ pub struct Recording {
     pub output_quantity: Quantity,
     /// Measured or simulated.
     pub origin: Origin,
+    /// The file it was read from.
+    pub source: Option<Source>,
+}
+
+/// Names of the columns to read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Columns<'a> {
+    /// The input.
+    pub input: &'a str,
+    /// The output.
+    pub output: &'a str,
+    /// Time in seconds, if wanted.
+    pub time: Option<&'a str>,
+}
+
+impl Recording {
+    /// A recording of two series of the same length.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] where the lengths differ, there is no sample, or one is not finite.
+    pub fn new(input: Vec<f64>, output: Vec<f64>) -> Result<Self> {
+        let recording = Self {
+            time: None,
+            input,
+            output,
+            input_quantity: Quantity::named("input"),
+            output_quantity: Quantity::named("output"),
+            origin: Origin::Measured,
+            source: None,
+        };
+        recording.check()?;
+        Ok(recording)
+    }
+
+    /// Reads a CSV file with a header row.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] with line and column where a column is missing, a
+    /// row is ragged, a cell is no finite number, time goes back, or there are no rows.
+    pub fn read_csv(path: &Path, columns: Columns<'_>) -> Result<Self> {
+        let mut reader = TableReader::open(path)?;
+        let input_at = reader.column(columns.input)?;
+        let output_at = reader.column(columns.output)?;
+        let time_at = columns.time.map(|name| reader.column(name)).transpose()?;
+        let (mut input, mut output) = (Vec::new(), Vec::new());
+        let mut time: Option<Vec<f64>> = time_at.map(|_| Vec::new());
+        while reader.advance()? {
+            input.push(reader.number(input_at)?);
+            output.push(reader.number(output_at)?);
+            if let (Some(time), Some(at)) = (&mut time, time_at) {
+                let now = reader.number(at)?;
+                if let Some(&last) = time.last() {
+                    if now < last {
+                        return Err(reader.fault(Some(at), format!(
+                            "time goes back from {last} to {now}: sort the rows, or leave the time column out"
+                        )));
+                    }
+                }
+                time.push(now);
+            }
+        }
+        if input.is_empty() {
+            return Err(reader.fault(None, "there are no rows below the header".into()));
+        }
+        Ok(Self {
+            time,
+            input,
+            output,
+            input_quantity: Quantity::from_column(columns.input),
+            output_quantity: Quantity::from_column(columns.output),
+            origin: Origin::Measured,
+            source: Source::of(path)?,
+        })
+    }
+
+    /// How many samples there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.input.len()
+    }
+
+    /// Never true for a recording made by this crate; here because `len` is.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.input.is_empty()
+    }
+
+    /// Smallest and largest input, and smallest and largest output.
+    #[must_use]
+    pub fn ranges(&self) -> ((f64, f64), (f64, f64)) {
+        (range(&self.input), range(&self.output))
+    }
+
+    /// That the samples can be worked with, as every function of this crate that takes a recording demands.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] as for [`Recording::new`].
+    pub fn check(&self) -> Result<()> {
+        let fault = |row: Option<usize>, column: &str, problem: String| Error::Recording {
+            path: self.source.as_ref().map(|source| source.path.clone()),
+            row: row.map(|row| row as u64 + 2), // below the header, counted from 1
+            column: Some(column.to_owned()),
+            problem,
+        };
+        let (inputs, outputs) = (self.input.len(), self.output.len());
+        if inputs != outputs {
+            let problem = format!("{inputs} inputs but {outputs} outputs");
+            return Err(fault(None, &self.output_quantity.name, problem));
+        }
+        if inputs == 0 {
+            return Err(fault(None, &self.input_quantity.name, "no samples".into()));
+        }
+        let series = [
+            (&self.input, &self.input_quantity),
+            (&self.output, &self.output_quantity),
+        ];
+        for (values, quantity) in series {
+            if let Some(row) = values.iter().position(|v| !v.is_finite()) {
+                let problem = format!("{} is not a finite number", values[row]);
+                return Err(fault(Some(row), &quantity.name, problem));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Smallest and largest of finite values.
+pub(crate) fn range(values: &[f64]) -> (f64, f64) {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    values
+        .iter()
+        .fold(start, |(low, high), &v| (low.min(v), high.max(v)))
 }

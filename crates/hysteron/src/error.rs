@@ -1,0 +1,77 @@
+//! Everything that can go wrong, with a stable code for each kind.
+
+use std::path::PathBuf;
+
+/// A result of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why a call was refused. Nothing is changed or half-written when an error is returned.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A refusal of the core: a plane, weights, an input.
+    #[error(transparent)]
+    Core(#[from] hysteron_core::Error),
+    /// A file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A model file says something that cannot be.
+    #[error("model file{}: field `{field}`: {problem}", place(.path))]
+    ModelFile {
+        /// The file, where there is one.
+        path: Option<PathBuf>,
+        /// The field, as a path into the JSON; `.` for the whole.
+        field: String,
+        /// What is wrong with it, and what is expected.
+        problem: String,
+    },
+    /// A recording cannot be used as it is.
+    #[error("recording{}{}: {problem}", place(.path), at(*.row, .column))]
+    Recording {
+        /// The file, where there is one.
+        path: Option<PathBuf>,
+        /// Line of the file, the header being line 1, where the fault is in one line.
+        row: Option<u64>,
+        /// Name of the column, where the fault is in one column.
+        column: Option<String>,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// The options of a fit contradict each other or the data.
+    #[error("fit: {0}")]
+    Fit(String),
+    /// A filter cannot be built.
+    #[error("filter: {0}")]
+    Filter(String),
+}
+
+impl Error {
+    /// A number for each kind of error that never changes; those of the core are below 20.
+    #[must_use]
+    pub fn code(&self) -> i32 {
+        match self {
+            Error::Core(error) => error.code(),
+            Error::File { .. } => 20,
+            Error::ModelFile { .. } => 21,
+            Error::Recording { .. } => 22,
+            Error::Fit(_) => 23,
+            Error::Filter(_) => 24,
+        }
+    }
+}
+
+fn place(path: &Option<PathBuf>) -> String {
+    path.as_ref()
+        .map_or(String::new(), |path| format!(" {}", path.display()))
+}
+
+fn at(row: Option<u64>, column: &Option<String>) -> String {
+    let row = row.map(|row| format!(", line {row}"));
+    let column = column.as_ref().map(|column| format!(", column `{column}`"));
+    row.unwrap_or_default() + &column.unwrap_or_default()
+}

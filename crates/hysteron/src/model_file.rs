@@ -1,0 +1,231 @@
+//! The model file: JSON, versioned, every fault named by its field.
+
+use crate::identify::FitSummary;
+use crate::output::AtomicFile;
+use crate::recording::Quantity;
+use crate::{Error, Model, Operator, Plane, Result, Sign};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+const FORMAT: &str = "hysteron-model";
+const VERSION: u64 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    format: String,
+    version: u64,
+    operator: OperatorName,
+    plane: PlaneEntry,
+    #[serde(default)]
+    input: InputEntry,
+    #[serde(default)]
+    output: OutputEntry,
+    weights: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fit: Option<serde_json::Value>,
+}
+
+/// Only what tells whether the rest can be read at all.
+#[derive(Deserialize)]
+struct Head {
+    format: Option<String>,
+    version: Option<serde_json::Value>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum OperatorName {
+    Mkp,
+    Kp,
+    Relay,
+}
+
+#[derive(Serialize, Deserialize)]
+struct PlaneEntry {
+    min: f64,
+    max: f64,
+    levels: usize,
+}
+
+#[derive(Serialize, Deserialize, Default)]
+#[serde(default)]
+struct InputEntry {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(default)]
+struct OutputEntry {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    offset: f64,
+    sign: i64,
+}
+
+impl Default for OutputEntry {
+    fn default() -> Self {
+        Self {
+            name: None,
+            unit: None,
+            offset: 0.0,
+            sign: 1,
+        }
+    }
+}
+
+impl Model {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::ModelFile`] naming the field that is missing, of another type, out
+    /// of range, or of an unknown version.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::from_json(&text).map_err(|error| match error {
+            Error::ModelFile { field, problem, .. } => Error::ModelFile {
+                path: Some(path.to_owned()),
+                field,
+                problem,
+            },
+            other => other,
+        })
+    }
+
+    /// Reads the text of a model file.
+    ///
+    /// ```
+    /// let text = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
+    ///     "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2]}"#;
+    /// let error = hysteron::Model::from_json(text).unwrap_err();
+    /// assert!(error.to_string().contains("field `weights`: 2 weights where K(K+1)/2 = 3 are needed"));
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Model::read`].
+    pub fn from_json(text: &str) -> Result<Self> {
+        let head: Head = parse(text)?;
+        if head.format.as_deref() != Some(FORMAT) {
+            let found = head
+                .format
+                .map_or("is missing".into(), |f| format!("is `{f}`"));
+            let problem = format!("{found}, where a model file has `{FORMAT}`");
+            return Err(fault("format", problem));
+        }
+        match head.version {
+            Some(version) if version == VERSION => {}
+            found => {
+                let found = found.map_or("none".into(), |v| v.to_string());
+                let problem = format!(
+                    "version {found} is not known, only {VERSION}: a newer hysteron may read this file"
+                );
+                return Err(fault("version", problem));
+            }
+        }
+        let file: File = parse(text)?;
+        let in_field = |field: &'static str| {
+            move |error: hysteron_core::Error| fault(field, error.to_string())
+        };
+        let PlaneEntry { min, max, levels } = file.plane;
+        let plane = Plane::new(min, max, levels).map_err(in_field("plane"))?;
+        let sign = match file.output.sign {
+            1 => Sign::Positive,
+            -1 => Sign::Negative,
+            other => return Err(fault("output.sign", format!("{other} is neither 1 nor -1"))),
+        };
+        let operator = match file.operator {
+            OperatorName::Mkp => Operator::Mkp,
+            OperatorName::Kp => Operator::Kp,
+            OperatorName::Relay => Operator::Relay,
+        };
+        let model = Model::new(operator, plane, file.weights, file.output.offset, sign);
+        let mut model = model.map_err(|error| match error {
+            Error::Core(error) => fault("weights", error.to_string()),
+            other => other,
+        })?;
+        model.input.unit = file.input.unit;
+        model.output.unit = file.output.unit;
+        if let Some(name) = file.input.name {
+            model.input.name = name;
+        }
+        if let Some(name) = file.output.name {
+            model.output.name = name;
+        }
+        // What a fit says of itself is for people; a later version may say it otherwise.
+        model.fit = file
+            .fit
+            .and_then(|fit| serde_json::from_value::<FitSummary>(fit).ok());
+        Ok(model)
+    }
+
+    /// The text of this model's file.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let entry = |quantity: &Quantity| (Some(quantity.name.clone()), quantity.unit.clone());
+        let (input_name, input_unit) = entry(&self.input);
+        let (output_name, output_unit) = entry(&self.output);
+        let plane = self.plane();
+        let file = File {
+            format: FORMAT.into(),
+            version: VERSION,
+            operator: match self.operator() {
+                Operator::Mkp => OperatorName::Mkp,
+                Operator::Kp => OperatorName::Kp,
+                Operator::Relay => OperatorName::Relay,
+            },
+            plane: PlaneEntry {
+                min: plane.min(),
+                max: plane.max(),
+                levels: plane.levels(),
+            },
+            input: InputEntry {
+                name: input_name,
+                unit: input_unit,
+            },
+            output: OutputEntry {
+                name: output_name,
+                unit: output_unit,
+                offset: self.offset(),
+                sign: self.sign().factor() as i64,
+            },
+            weights: self.weights().to_vec(),
+            fit: self
+                .fit
+                .as_ref()
+                .and_then(|fit| serde_json::to_value(fit).ok()),
+        };
+        // Numbers and strings only: there is nothing that JSON cannot hold.
+        serde_json::to_string(&file).unwrap_or_default() + "\n"
+    }
+
+    /// Writes this model's file, beside its place first.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        AtomicFile::write_all(path, self.to_json().as_bytes())
+    }
+}
+
+fn parse<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| fault(&error.path().to_string(), error.inner().to_string()))?;
+    json.end().map_err(|error| fault(".", error.to_string()))?;
+    Ok(value)
+}
+
+fn fault(field: &str, problem: String) -> Error {
+    Error::ModelFile {
+        path: None,
+        field: field.into(),
+        problem,
+    }
+}

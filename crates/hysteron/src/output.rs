@@ -1,0 +1,164 @@
+//! Files written whole or not at all, and tables written row by row.
+
+use crate::table::TableReader;
+use crate::{Error, Result};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file that is written beside its place and takes its name when it is whole; dropped before, it leaves nothing.
+pub struct AtomicFile {
+    path: PathBuf,
+    beside: tempfile::NamedTempFile,
+}
+
+impl AtomicFile {
+    /// Starts a file that will be at `path`.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn create(path: &Path) -> Result<Self> {
+        let folder = match path.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        // As a plain new file would have, not the private mode of temporary ones.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let beside = builder.prefix(".hysteron-").tempfile_in(folder);
+        Ok(Self {
+            path: path.to_owned(),
+            beside: beside.map_err(|source| Error::File {
+                path: path.to_owned(),
+                source,
+            })?,
+        })
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn commit(self) -> Result<()> {
+        let path = self.path;
+        match self.beside.persist(&path) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(Error::File {
+                path,
+                source: error.error,
+            }),
+        }
+    }
+
+    /// Writes a whole file at once.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write_all(path: &Path, bytes: &[u8]) -> Result<()> {
+        let mut file = Self::create(path)?;
+        file.write(bytes).map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        file.commit()
+    }
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.beside.write_all(bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.beside.flush()
+    }
+}
+
+/// Writes a CSV table, to standard output or to a file that appears only when it is whole.
+pub struct TableWriter {
+    path: PathBuf,
+    csv: csv::Writer<Sink>,
+}
+
+enum Sink {
+    Stdout(BufWriter<std::io::Stdout>),
+    Beside(BufWriter<AtomicFile>),
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Sink::Stdout(out) => out.write(bytes),
+            Sink::Beside(out) => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Sink::Stdout(out) => out.flush(),
+            Sink::Beside(out) => out.flush(),
+        }
+    }
+}
+
+impl TableWriter {
+    /// A table to `path`, or to standard output without one.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn create(path: Option<&Path>) -> Result<Self> {
+        let sink = match path {
+            None => Sink::Stdout(BufWriter::new(std::io::stdout())),
+            Some(path) => Sink::Beside(BufWriter::new(AtomicFile::create(path)?)),
+        };
+        Ok(Self {
+            path: path.unwrap_or(Path::new("standard output")).to_owned(),
+            csv: csv::WriterBuilder::new().flexible(true).from_writer(sink),
+        })
+    }
+
+    /// Writes the present row of `table` and further cells.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn extend_row(&mut self, table: &TableReader, cells: &[&str]) -> Result<()> {
+        let cells = cells.iter().map(|cell| cell.as_bytes());
+        self.write(table.cells().chain(cells))
+    }
+
+    /// Writes a row of cells.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) -> Result<()> {
+        self.write(cells.into_iter())
+    }
+
+    fn write<C: AsRef<[u8]>>(&mut self, cells: impl Iterator<Item = C>) -> Result<()> {
+        let written = self.csv.write_record(cells);
+        written.map_err(|error| Error::File {
+            path: self.path.clone(),
+            source: error.into(),
+        })
+    }
+
+    /// Ends the table; a file takes its name now.
+    ///
+    /// # Errors
+    /// [`Error::File`], the system's.
+    pub fn finish(self) -> Result<()> {
+        let path = self.path;
+        let written = |source| Error::File {
+            path: path.clone(),
+            source,
+        };
+        match self.csv.into_inner().map_err(|e| written(e.into_error()))? {
+            Sink::Stdout(mut out) => out.flush().map_err(written),
+            Sink::Beside(out) => match out.into_inner() {
+                Ok(file) => file.commit(),
+                Err(error) => Err(written(error.into_error())),
+            },
+        }
+    }
+}

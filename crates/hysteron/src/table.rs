@@ -1,0 +1,185 @@
+//! Tables in CSV files, read row by row so that memory does not grow with the file.
+
+use crate::{Error, Result};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Reads a CSV file with a header row, one row at a time.
+pub struct TableReader {
+    path: PathBuf,
+    header: Vec<String>,
+    csv: csv::Reader<Box<dyn Read>>,
+    record: csv::ByteRecord,
+    line: u64,
+}
+
+/// A column found by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column(usize);
+
+impl TableReader {
+    /// Opens a file and reads its header; `-` is standard input.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for an empty file or a header that cannot be.
+    pub fn open(path: &Path) -> Result<Self> {
+        let file: Box<dyn Read> = if path == Path::new("-") {
+            Box::new(std::io::stdin())
+        } else {
+            let file = File::open(path).and_then(|file| match file.metadata()?.is_dir() {
+                true => Err(std::io::Error::other(
+                    "this is a folder: name a CSV file in it",
+                )),
+                false => Ok(file),
+            });
+            Box::new(file.map_err(|source| Error::File {
+                path: path.to_owned(),
+                source,
+            })?)
+        };
+        let csv = csv::ReaderBuilder::new()
+            .flexible(true) // ragged rows are reported here, with their line and what to do
+            .buffer_capacity(1 << 16)
+            .from_reader(file);
+        let mut reader = Self {
+            path: path.to_owned(),
+            header: Vec::new(),
+            csv,
+            record: csv::ByteRecord::new(),
+            line: 1,
+        };
+        let header = match reader.csv.headers() {
+            Ok(header) => header.clone(),
+            Err(error) => return Err(reader.csv_fault(error)),
+        };
+        // A byte order mark would hide the first column's name.
+        let clean = |name: &str| name.trim_start_matches('\u{feff}').trim().to_owned();
+        reader.header = header.iter().map(clean).collect();
+        if reader.header.iter().all(String::is_empty) {
+            return Err(reader.fault(
+                None,
+                "the file is empty: a header row with the columns' names is needed".into(),
+            ));
+        }
+        if reader.header.iter().all(|name| name.parse::<f64>().is_ok()) {
+            return Err(reader.fault(
+                None,
+                "the first row holds numbers: put a header row with the columns' names above it"
+                    .into(),
+            ));
+        }
+        Ok(reader)
+    }
+
+    /// The columns' names.
+    #[must_use]
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// Finds a column.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] where there is none of that name, naming those that there are, or two.
+    pub fn column(&self, name: &str) -> Result<Column> {
+        let mut places = (0..self.header.len()).filter(|&n| self.header[n] == name);
+        match (places.next(), places.next()) {
+            (Some(place), None) => Ok(Column(place)),
+            (Some(_), Some(_)) => Err(self.fault(None, format!("two columns are called `{name}`"))),
+            (None, _) => {
+                let names: Vec<String> = self.header.iter().map(|n| format!("`{n}`")).collect();
+                let problem = format!("no column `{name}`: there are {}", names.join(", "));
+                Err(self.fault(None, problem))
+            }
+        }
+    }
+
+    /// Reads the next row; false at the end.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for a row with more or fewer cells than the header.
+    pub fn advance(&mut self) -> Result<bool> {
+        match self.csv.read_byte_record(&mut self.record) {
+            Ok(false) => return Ok(false),
+            Ok(true) => {}
+            Err(error) => return Err(self.csv_fault(error)),
+        }
+        self.line = self
+            .record
+            .position()
+            .map_or(self.line + 1, csv::Position::line);
+        let (found, expected) = (self.record.len(), self.header.len());
+        if found != expected {
+            let problem = format!("{found} cells where the header has {expected}");
+            return Err(self.fault(None, problem));
+        }
+        Ok(true)
+    }
+
+    /// The present row's number in a column.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] with line and column where it is empty or no finite number.
+    pub fn number(&self, column: Column) -> Result<f64> {
+        let cell = self.record.get(column.0).unwrap_or_default().trim_ascii();
+        let text = std::str::from_utf8(cell).unwrap_or("\u{fffd}");
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => {
+                let what = if text.is_empty() {
+                    "an empty cell".to_owned()
+                } else {
+                    format!("`{text}`")
+                };
+                let problem =
+                    format!("{what} where a finite number is needed: mend or remove the row");
+                Err(self.fault(Some(column), problem))
+            }
+        }
+    }
+
+    /// Bytes read so far.
+    #[must_use]
+    pub fn bytes_read(&self) -> u64 {
+        self.csv.position().byte()
+    }
+
+    /// The cells of the present row.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = &[u8]> {
+        self.record.iter()
+    }
+
+    /// An error at the present row.
+    #[must_use]
+    pub fn fault(&self, column: Option<Column>, problem: String) -> Error {
+        Error::Recording {
+            path: Some(self.path.clone()),
+            row: Some(self.line),
+            column: column.map(|column| self.header[column.0].clone()),
+            problem,
+        }
+    }
+
+    fn csv_fault(&self, error: csv::Error) -> Error {
+        let row = error.position().map(csv::Position::line);
+        match error.into_kind() {
+            csv::ErrorKind::Io(source) => Error::File {
+                path: self.path.clone(),
+                source,
+            },
+            csv::ErrorKind::Utf8 { err, .. } => Error::Recording {
+                path: Some(self.path.clone()),
+                row,
+                column: self.header.get(err.field()).cloned(),
+                problem: "the text is not UTF-8: save the file as UTF-8 CSV".into(),
+            },
+            other => Error::Recording {
+                path: Some(self.path.clone()),
+                row,
+                column: None,
+                problem: format!("{other:?}"),
+            },
+        }
+    }
+}
