@@ -1,1 +1,56 @@
-fn main() {}
+//! The `hysteron` command: a thin surface over the library, which does the work.
+
+mod args;
+mod demo;
+mod evaluate;
+mod fit;
+mod inspect;
+mod progress;
+mod table;
+mod text;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::error::Error;
+use std::io::Write;
+use std::process::ExitCode;
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Fit(args) => fit::run(&args),
+        Command::Simulate(args) => table::simulate(&args),
+        Command::Invert(args) => table::invert(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Demo(args) => demo::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("hysteron: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whoever read our output, such as `head`, has had enough: that is no fault.
+fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if let Some(io) = error.downcast_ref::<std::io::Error>() {
+            return io.kind() == std::io::ErrorKind::BrokenPipe;
+        }
+        cause = error.source();
+    }
+    false
+}
+
+/// Prints to standard output; an error there is returned, not a panic.
+fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{text}")?;
+    Ok(out.flush()?)
+}

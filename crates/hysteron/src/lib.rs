@@ -10,11 +10,13 @@
 mod error;
 mod evaluate;
 mod identify;
+mod inspect;
 mod metrics;
 mod model;
 mod model_file;
 mod output;
 mod recording;
+mod stream;
 mod table;
 mod turning;
 
@@ -23,13 +25,15 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate};
 pub use hysteron_core::{
     Clipped, ClippedCount, Direction, Operator, Output, Policy, Region, Solution, Status,
 };
-pub use identify::{FitOptions, FitSummary, Solver, fit};
+pub use identify::{FitOptions, FitSummary, Solver, fit, plane_of};
+pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
 pub use output::{AtomicFile, TableWriter};
 pub use recording::{Columns, Origin, Quantity, Recording, Source};
-pub use table::{Column, TableReader};
-pub use turning::{Turning, headings};
+pub use stream::{Counts, Invert, invert_table, simulate_table};
+pub use table::{Column, Row, TableReader};
+pub use turning::{Headings, Turning, headings};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;

@@ -1,6 +1,6 @@
 //! Files written whole or not at all, and tables written row by row.
 
-use crate::table::TableReader;
+use crate::table::Row;
 use crate::{Error, Result};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -118,13 +118,13 @@ impl TableWriter {
         })
     }
 
-    /// Writes the present row of `table` and further cells.
+    /// Writes a row as it was read, and further cells after it.
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn extend_row(&mut self, table: &TableReader, cells: &[&str]) -> Result<()> {
+    pub fn extend_row(&mut self, row: &Row, cells: &[&str]) -> Result<()> {
         let cells = cells.iter().map(|cell| cell.as_bytes());
-        self.write(table.cells().chain(cells))
+        self.write(row.cells().chain(cells))
     }
 
     /// Writes a row of cells.

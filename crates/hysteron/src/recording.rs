@@ -47,10 +47,10 @@ impl Quantity {
         let column = column.trim();
         for (open, close) in [('[', ']'), ('(', ')')] {
             if let Some((name, unit)) = column.strip_suffix(close).and_then(|c| c.split_once(open))
+                && !name.trim().is_empty()
+                && !unit.trim().is_empty()
             {
-                if !name.trim().is_empty() && !unit.trim().is_empty() {
-                    return Self::with_unit(name.trim(), unit.trim());
-                }
+                return Self::with_unit(name.trim(), unit.trim());
             }
         }
         Self::named(column)
@@ -176,12 +176,12 @@ impl Recording {
             output.push(reader.number(output_at)?);
             if let (Some(time), Some(at)) = (&mut time, time_at) {
                 let now = reader.number(at)?;
-                if let Some(&last) = time.last() {
-                    if now < last {
-                        return Err(reader.fault(Some(at), format!(
+                if let Some(&last) = time.last()
+                    && now < last
+                {
+                    return Err(reader.fault(Some(at), format!(
                             "time goes back from {last} to {now}: sort the rows, or leave the time column out"
                         )));
-                    }
                 }
                 time.push(now);
             }

@@ -18,6 +18,17 @@ pub struct TableReader {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column(usize);
 
+/// A row of a table as it was read.
+#[derive(Debug, Clone)]
+pub struct Row(csv::ByteRecord);
+
+impl Row {
+    /// Its cells.
+    pub fn cells(&self) -> impl Iterator<Item = &[u8]> {
+        self.0.iter()
+    }
+}
+
 impl TableReader {
     /// Opens a file and reads its header; `-` is standard input.
     ///
@@ -145,9 +156,10 @@ impl TableReader {
         self.csv.position().byte()
     }
 
-    /// The cells of the present row.
-    pub(crate) fn cells(&self) -> impl Iterator<Item = &[u8]> {
-        self.record.iter()
+    /// The present row, to be written out again.
+    #[must_use]
+    pub fn row(&self) -> Row {
+        Row(self.record.clone())
     }
 
     /// An error at the present row.

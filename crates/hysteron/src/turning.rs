@@ -45,39 +45,137 @@ impl Turning {
         if y > self.high.1 {
             self.high = (n, y);
         }
-        if self.heading != Some(Direction::Falling) && self.high.1 - y > self.band {
-            let turn = self.high.0;
-            let first = self.heading.is_none();
-            self.heading = Some(Direction::Falling);
-            self.low = (n, y);
-            return Some((if first { 0 } else { turn }, Direction::Falling));
+        let (turn, heading) = if self.high.1 - y > self.band {
+            (self.high.0, Direction::Falling)
+        } else if y - self.low.1 > self.band {
+            (self.low.0, Direction::Rising)
+        } else {
+            return None;
+        };
+        if self.heading == Some(heading) {
+            return None;
         }
-        if self.heading != Some(Direction::Rising) && y - self.low.1 > self.band {
-            let turn = self.low.0;
-            let first = self.heading.is_none();
-            self.heading = Some(Direction::Rising);
-            self.high = (n, y);
-            return Some((if first { 0 } else { turn }, Direction::Rising));
-        }
-        None
+        let first = self.heading.replace(heading).is_none();
+        // The extremes of the new branch are looked for from here on.
+        (self.low, self.high) = ((n, y), (n, y));
+        Some((if first { 0 } else { turn }, heading))
+    }
+
+    /// The direction of the branch that the series is on, once it is known, and the index of its
+    /// extreme so far: up to there the series is on this branch for certain.
+    #[must_use]
+    pub fn branch(&self) -> Option<(Direction, usize)> {
+        self.heading.map(|heading| match heading {
+            Direction::Rising => (heading, self.high.0),
+            Direction::Falling => (heading, self.low.0),
+        })
     }
 }
 
-/// The direction that each sample's series takes next: from an extreme on, but not at it, that of the branch after it.
+/// For each sample of a series, the direction that the series takes next: up to an extreme and at it,
+/// that of the branch before it, and beyond it that of the branch after it.
 ///
-/// `None` throughout where the series never moves by more than `band`.
+/// A sample's direction is known only once the series has moved on, so it comes out some samples
+/// later; of those that wait, at most `capacity`, the oldest comes out without a direction.
+#[derive(Debug, Clone)]
+pub struct Headings {
+    turning: Turning,
+    capacity: usize,
+    released: usize,
+}
+
+impl Headings {
+    /// A look ahead of at most `capacity` samples that ignores reversals of up to `band`.
+    #[must_use]
+    pub fn new(band: f64, capacity: usize) -> Self {
+        Self {
+            turning: Turning::new(band),
+            capacity,
+            released: 0,
+        }
+    }
+
+    /// Takes the next sample and returns directions of earlier ones, as many as are now known: in
+    /// order, `count` samples for each.
+    #[must_use]
+    pub fn push(&mut self, y: f64) -> [(Option<Direction>, usize); 2] {
+        let before = self.turning.branch().map(|(heading, _)| heading);
+        let turn = self.turning.push(y);
+        let mut result = [(None, 0); 2];
+        if let Some((index, _)) = turn {
+            result[0] = (before, self.release(if index == 0 { 0 } else { index + 1 }));
+        }
+        result[1] = match self.turning.branch() {
+            Some((heading, extreme)) => (Some(heading), self.release(extreme + 1)),
+            None => (None, 0),
+        };
+        // Only while the series keeps away from its extreme, so that nothing came out just above.
+        let waiting = self.turning.count - self.released;
+        if waiting > self.capacity {
+            result[1] = (None, self.release(self.released + waiting - self.capacity));
+        }
+        result
+    }
+
+    /// The directions of the samples still waiting at the end of the series.
+    #[must_use]
+    pub fn finish(mut self) -> (Option<Direction>, usize) {
+        let count = self.release(self.turning.count);
+        (self.turning.heading, count)
+    }
+
+    fn release(&mut self, up_to: usize) -> usize {
+        let count = up_to.saturating_sub(self.released);
+        self.released += count;
+        count
+    }
+}
+
+/// [`Headings`] of a whole series.
 #[must_use]
 pub fn headings(series: &[f64], band: f64) -> Vec<Option<Direction>> {
-    let mut turning = Turning::new(band);
-    let mut result: Vec<Option<Direction>> = vec![None; series.len()];
-    let mut turns: Vec<(usize, Direction)> =
-        series.iter().filter_map(|&y| turning.push(y)).collect();
-    turns.push((series.len(), Direction::Rising)); // the end; its direction is not used
-    for pair in turns.windows(2) {
-        let (start, heading) = pair[0];
-        let first = if start == 0 { 0 } else { start + 1 };
-        let last = (pair[1].0 + 1).min(series.len());
-        result[first..last].fill(Some(heading));
+    let mut look = Headings::new(band, series.len());
+    let mut result = Vec::with_capacity(series.len());
+    for &y in series {
+        for (heading, count) in look.push(y) {
+            result.extend(std::iter::repeat_n(heading, count));
+        }
     }
+    let (heading, count) = look.finish();
+    result.extend(std::iter::repeat_n(heading, count));
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Direction::{Falling, Rising};
+
+    #[test]
+    fn an_extreme_belongs_to_the_branch_before_it() {
+        let series = [0.0, 1.0, 2.0, 3.0, 3.0, 2.9, 1.0, 0.5, 2.0];
+        let expected = [
+            Rising, Rising, Rising, Rising, Falling, Falling, Falling, Falling, Rising,
+        ];
+        assert_eq!(headings(&series, 0.5), expected.map(Some));
+        assert_eq!(headings(&[1.0, 1.1, 0.9], 0.5), [None; 3]);
+        assert_eq!(headings(&[], 0.5), []);
+    }
+
+    #[test]
+    fn waiting_is_bounded() {
+        let mut look = Headings::new(0.5, 3);
+        let mut out = Vec::new();
+        for y in [0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 1.0] {
+            for (heading, count) in look.push(y) {
+                out.extend(std::iter::repeat_n(heading, count));
+            }
+        }
+        // Three plateau samples wait when the turn is known; the two before them had to go without.
+        let known = [Some(Rising); 3]
+            .into_iter()
+            .chain([None; 2])
+            .chain([Some(Falling); 4]);
+        assert_eq!(out, known.collect::<Vec<_>>());
+    }
 }

@@ -211,8 +211,19 @@ fn choose_plane(recording: &Recording, options: &FitOptions) -> Result<Plane> {
             problem: format!("the input is {low} throughout: nothing can be identified from it"),
         });
     }
-    // The lowest ridge starts one step below the lowest level, so that [low, high] is the active range.
-    let step = (high - low) / options.levels.max(1) as f64;
-    let (min, max) = options.range.unwrap_or((low + step, high));
-    Ok(Plane::new(min, max, options.levels)?)
+    match options.range {
+        Some((min, max)) => Ok(Plane::new(min, max, options.levels)?),
+        None => plane_of(recording, options.levels),
+    }
+}
+
+/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is that of the recording's
+/// input: the lowest ridge starts one step below the lowest level.
+///
+/// # Errors
+/// [`Error::Core`] for a number of levels that cannot be, or an input that never changes.
+pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
+    let (low, high) = range(&recording.input);
+    let step = (high - low) / levels.max(1) as f64;
+    Ok(Plane::new(low + step, high, levels)?)
 }

@@ -1,0 +1,246 @@
+//! The command line: its forms, defaults and help.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Hysteresis models of actuators: from a recording to a model and its exact inverse.
+#[derive(Parser)]
+#[command(
+    name = "hysteron",
+    version,
+    arg_required_else_help = true,
+    after_help = "Recordings are CSV files with a header row; `-` reads one from standard input.\n\
+                  Exit codes: 0 done, 1 the work failed, 2 wrong usage."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Identify a model from a recording
+    #[command(
+        after_help = "Example:\n  hysteron fit run1.csv --input temperature --output displacement -o spring.json"
+    )]
+    Fit(Fit),
+    /// Run a model over an input: adds the column `output_model`
+    #[command(
+        after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
+    )]
+    Simulate(Simulate),
+    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low, high)
+    #[command(
+        after_help = "Example:\n  hysteron invert spring.json wanted.csv --target displacement -o inputs.csv"
+    )]
+    Invert(Invert),
+    /// Judge a model on a recording: forward and inverse errors, and a report
+    #[command(
+        after_help = "Example:\n  hysteron evaluate spring.json run2.csv --input temperature --output displacement --report report"
+    )]
+    Evaluate(Evaluate),
+    /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
+    #[command(
+        after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"
+    )]
+    Inspect(Inspect),
+    /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
+    #[command(after_help = "Example:\n  hysteron demo -o demo")]
+    Demo(Demo),
+}
+
+#[derive(Args)]
+pub(crate) struct Json {
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Operator {
+    /// Continuous, from 0 to 1
+    Mkp,
+    /// Continuous, from -1 to +1
+    Kp,
+    /// The classical Preisach relay, -1 or +1
+    Relay,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Solver {
+    /// Weights of zero and above: a monotone model, which has an inverse
+    Nnls,
+    /// Plain least squares: any weights, as a rule without an inverse
+    Ols,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Policy {
+    /// The input rests while the target rests
+    Hold,
+    /// The input crosses the dead band as soon as the target is known to reverse
+    Anticipate,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Sign {
+    /// The better one
+    Auto,
+    /// The output rises with the input
+    Positive,
+    /// The output falls as the input rises, as a strain recovered on heating does
+    Negative,
+}
+
+#[derive(Args)]
+pub(crate) struct Fit {
+    /// The recording
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Number of levels K of the plane; it has K(K+1)/2 operators
+    #[arg(long, default_value_t = 20)]
+    pub(crate) levels: usize,
+    /// Lowest and highest level [default: so that the active range is that of the input]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: Option<(f64, f64)>,
+    /// Elementary operator
+    #[arg(long, value_enum, default_value = "mkp")]
+    pub(crate) operator: Operator,
+    /// How the weights are found
+    #[arg(long, value_enum, default_value = "nnls")]
+    pub(crate) solver: Solver,
+    /// Direction of the output
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) sign: Sign,
+    /// Output with every operator off [default: identified]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    pub(crate) offset: Option<f64>,
+    /// Unit of the input [default: from a header like `temperature [degC]`]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) input_unit: Option<String>,
+    /// Unit of the output
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) output_unit: Option<String>,
+    /// Where the model goes
+    #[arg(short, value_name = "MODEL")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// A table with the input
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Where the table goes [default: standard output; with --json nowhere]
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Invert {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// A table with the wanted output
+    pub(crate) data: PathBuf,
+    /// Column of the wanted output
+    #[arg(long, value_name = "COL")]
+    pub(crate) target: String,
+    /// What the input does while the target stands still
+    #[arg(long, value_enum, default_value = "hold")]
+    pub(crate) policy: Policy,
+    /// With `anticipate`: movements of the target up to this size count as standing still, in its unit
+    /// [default: 1 % of the model's range]
+    #[arg(long, value_name = "Y")]
+    pub(crate) band: Option<f64>,
+    /// With `anticipate`: rows to look ahead for the next reversal
+    #[arg(long, value_name = "N", default_value_t = 65_536)]
+    pub(crate) look_ahead: usize,
+    /// Where the table goes [default: standard output; with --json nowhere]
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Evaluate {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// The recording
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time in seconds, for the report's figures
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// Write a page and its figures (SVG, PNG) into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Inspect {
+    /// A recording, or a model (*.json)
+    pub(crate) file: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL", requires = "output")]
+    pub(crate) input: Option<String>,
+    /// Column of the output
+    #[arg(long, value_name = "COL", requires = "input")]
+    pub(crate) output: Option<String>,
+    /// Column of time in seconds
+    #[arg(long, value_name = "COL", requires = "input")]
+    pub(crate) time: Option<String>,
+    /// Levels of the plane on which excited operators are counted
+    #[arg(long, default_value_t = 20)]
+    pub(crate) levels: usize,
+    /// Its lowest and highest level [default: so that the active range is that of the input]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: Option<(f64, f64)>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Demo {
+    /// Folder for the recordings, the model and the report
+    #[arg(short, value_name = "DIR", default_value = "hysteron-demo")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+fn parse_range(text: &str) -> Result<(f64, f64), String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| {
+            part.trim()
+                .parse()
+                .map_err(|_| format!("`{part}` is not a number"))
+        })
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [min, max] if min < max => Ok((min, max)),
+        [_, _] => Err("the first number must be below the second".into()),
+        _ => Err("two numbers with a comma between are needed, such as 20,80".into()),
+    }
+}

@@ -1,0 +1,5 @@
+//! `hysteron demo`
+use crate::{Result, args};
+pub(crate) fn run(_args: &args::Demo) -> Result<()> {
+    Err("not yet".into())
+}

@@ -1,0 +1,85 @@
+//! `hysteron evaluate`
+
+use crate::{Result, args, print, text};
+use hysteron::{Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
+use hysteron_report::Report;
+use serde_json::{Value, json};
+
+pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
+    let model = Model::read(&args.model)?;
+    let columns = Columns {
+        input: &args.input,
+        output: &args.output,
+        time: args.time.as_deref(),
+    };
+    let recording = Recording::read_csv(&args.data, columns)?;
+    let evaluation = hysteron::evaluate(&model, &recording)?;
+    if let Some(folder) = &args.report {
+        let title = format!("{} on {}", args.model.display(), args.data.display());
+        let report = Report {
+            title: &title,
+            model: &model,
+            recording: &recording,
+            evaluation: &evaluation,
+        };
+        report.write(folder)?;
+        eprintln!(
+            "hysteron: the report is {}",
+            folder.join("index.html").display()
+        );
+    }
+    if args.json.json {
+        return print(&to_json(&evaluation).to_string());
+    }
+    print(&to_text(&evaluation, &recording))
+}
+
+/// The JSON of an evaluation: `forward` and `inverse` with the same four measures each.
+pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
+    let mut object = json!({"forward": evaluation.forward, "clipped": evaluation.clipped});
+    match &evaluation.inverse {
+        Ok(inverse) => {
+            let parts = |run: &InverseRun| json!({"all": run.all, "moving": run.moving, "dead_band": run.dead_band, "out_of_reach": run.out_of_reach});
+            object["inverse"] = json!(inverse.hold.all);
+            object["inverse_hold"] = parts(&inverse.hold);
+            object["inverse_anticipate"] = parts(&inverse.anticipate);
+        }
+        Err(reason) => {
+            object["inverse"] = Value::Null;
+            object["inverse_refused"] = json!(reason);
+        }
+    }
+    object
+}
+
+fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
+    let (input, output) = (&recording.input_quantity, &recording.output_quantity);
+    let mut rows = vec![text::row(["", "RMSE", "largest", "% of range", "samples"])];
+    let mut line = |name: &str, errors: Option<&Errors>, quantity: &Quantity| {
+        if let Some(errors) = errors {
+            rows.push(vec![
+                name.to_owned(),
+                text::with_unit(errors.rmse, quantity),
+                text::with_unit(errors.max_abs, quantity),
+                format!("{:.2}", errors.nrmse_percent),
+                errors.samples.to_string(),
+            ]);
+        }
+    };
+    line("forward", Some(&evaluation.forward), output);
+    if let Ok(inverse) = &evaluation.inverse {
+        for (name, run) in [("hold", &inverse.hold), ("anticipate", &inverse.anticipate)] {
+            line(&format!("inverse, {name}"), Some(&run.all), input);
+            line("  while the output moves", run.moving.as_ref(), input);
+            line("  in the dead band", run.dead_band.as_ref(), input);
+        }
+    }
+    let mut result = text::table(&rows);
+    if let Err(reason) = &evaluation.inverse {
+        result += &format!("\nno inverse: {reason}");
+    }
+    if evaluation.clipped > 0 {
+        result += &format!("\n{} inputs outside the plane", evaluation.clipped);
+    }
+    result
+}

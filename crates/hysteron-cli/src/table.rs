@@ -1,0 +1,81 @@
+//! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
+
+use crate::{Result, args, print, progress};
+use hysteron::{Counts, Model, TableReader, TableWriter};
+use serde_json::json;
+use std::path::Path;
+
+pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
+    let model = Model::read(&args.model)?;
+    let what = ["inputs above the plane", "inputs below its active range"];
+    through(
+        &args.data,
+        args.out.as_deref(),
+        args.json.json,
+        what,
+        |table, out, progress| hysteron::simulate_table(&model, table, &args.input, out, progress),
+    )
+}
+
+pub(crate) fn invert(args: &args::Invert) -> Result<()> {
+    let model = Model::read(&args.model)?;
+    let how = match args.policy {
+        args::Policy::Hold => hysteron::Invert::Hold,
+        args::Policy::Anticipate => {
+            let (off, on) = model.output_range();
+            let band = args.band.unwrap_or(0.01 * (on - off).abs());
+            if band.is_nan() || band < 0.0 {
+                return Err(format!("--band {band}: it must not be negative").into());
+            }
+            let rows = args.look_ahead;
+            hysteron::Invert::Anticipate { band, rows }
+        }
+    };
+    let what = ["targets above the model's range", "targets below it"];
+    through(
+        &args.data,
+        args.out.as_deref(),
+        args.json.json,
+        what,
+        |table, out, progress| {
+            hysteron::invert_table(&model, table, &args.target, how, out, progress)
+        },
+    )
+}
+
+/// Opens both ends, runs `work` between them and says what came of it.
+fn through(
+    data: &Path,
+    out: Option<&Path>,
+    json: bool,
+    what: [&str; 2],
+    work: impl FnOnce(
+        &mut TableReader,
+        Option<&mut TableWriter>,
+        &dyn Fn(u64),
+    ) -> hysteron::Result<Counts>,
+) -> Result<()> {
+    let mut table = TableReader::open(data)?;
+    // With --json, standard output is for the JSON alone.
+    let mut writer = match (out, json) {
+        (None, true) => None,
+        (path, _) => Some(TableWriter::create(path)?),
+    };
+    let bar = progress::bytes_of(data);
+    let counts = work(&mut table, writer.as_mut(), &|bytes| {
+        bar.set_position(bytes)
+    })?;
+    bar.finish_and_clear();
+    if let Some(writer) = writer {
+        writer.finish()?;
+    }
+    for (count, what) in [counts.high, counts.low].into_iter().zip(what) {
+        if count > 0 {
+            eprintln!("hysteron: {count} of {} {what}", counts.samples);
+        }
+    }
+    if json {
+        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "table": out}).to_string())?;
+    }
+    Ok(())
+}

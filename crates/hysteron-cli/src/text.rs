@@ -1,0 +1,46 @@
+//! Numbers and tables as text.
+
+use hysteron::Quantity;
+
+/// A number with four significant digits.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    match digits {
+        -2..=8 => format!("{value:.*}", digits.max(0) as usize),
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// A number with its quantity's unit.
+pub(crate) fn with_unit(value: f64, quantity: &Quantity) -> String {
+    match &quantity.unit {
+        Some(unit) => format!("{} {unit}", number(value)),
+        None => number(value),
+    }
+}
+
+/// Columns side by side, the first aligned left, the others right.
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().enumerate().map(|(n, cell)| match n {
+            0 => format!("{cell:<width$}", width = widths[n]),
+            _ => format!("{cell:>width$}", width = widths[n]),
+        });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Cells of a table row.
+pub(crate) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.iter().map(|cell| (*cell).to_owned()).collect()
+}

@@ -1,0 +1,187 @@
+//! What is in a recording or a model.
+
+use crate::recording::range;
+use crate::{Model, Plane, Recording, Result, Turning};
+use hysteron_core::ridge;
+use serde::Serialize;
+
+/// One series of a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Turning points, reversals of up to 1 % of its range apart.
+    pub reversals: usize,
+    /// Turning points of any size: many more than `reversals` speak of noise.
+    pub reversals_of_any_size: usize,
+}
+
+/// What is in a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordingSummary {
+    /// Number of samples.
+    pub samples: usize,
+    /// The input.
+    pub input: Series,
+    /// The output.
+    pub output: Series,
+    /// The sampling, where there is a time column.
+    pub time: Option<Sampling>,
+    /// Levels of the plane that `excited` is counted on.
+    pub levels: usize,
+    /// Its lowest and highest level.
+    pub plane: (f64, f64),
+    /// Operators of that plane.
+    pub operators: usize,
+    /// Those of them that the input moves: nothing can be learned of the others.
+    pub excited: usize,
+}
+
+/// How a recording was sampled.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sampling {
+    /// Time of the first sample, in seconds.
+    pub start: f64,
+    /// Time of the last sample.
+    pub end: f64,
+    /// Median time between samples.
+    pub median_step: f64,
+    /// Longest time between samples.
+    pub longest_step: f64,
+    /// Line in the file (the header being 1) before which it passed.
+    pub longest_step_at_line: usize,
+    /// Gaps: steps of more than three times the median.
+    pub gaps: usize,
+    /// Samples at the time of the one before.
+    pub repeated: usize,
+}
+
+/// Summarises `recording`, counting the operators that it excites on `plane`.
+///
+/// # Errors
+/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<RecordingSummary> {
+    recording.check()?;
+    let series = |values: &[f64], quantity: &crate::Quantity| {
+        let (min, max) = range(values);
+        let count = |band: f64| {
+            let mut turning = Turning::new(band);
+            let turns = values.iter().filter_map(|&v| turning.push(v)).count();
+            turns.saturating_sub(1) // the start is no reversal
+        };
+        Series {
+            name: quantity.name.clone(),
+            unit: quantity.unit.clone(),
+            min,
+            max,
+            reversals: count(0.01 * (max - min)),
+            reversals_of_any_size: count(0.0),
+        }
+    };
+    Ok(RecordingSummary {
+        samples: recording.len(),
+        input: series(&recording.input, &recording.input_quantity),
+        output: series(&recording.output, &recording.output_quantity),
+        time: recording.time.as_deref().and_then(sampling),
+        levels: plane.levels(),
+        plane: (plane.min(), plane.max()),
+        operators: plane.operators(),
+        excited: excited(&recording.input, plane),
+    })
+}
+
+/// How many MKP operators have different states at different samples.
+///
+/// After the first sample, from off, `γ = r_j(x)`; it changes once some `r_j` lies above or some `r_i` below.
+fn excited(input: &[f64], plane: Plane) -> usize {
+    let (low, high) = range(input);
+    let [first, low, high] = [input[0], low, high].map(|t| plane.normalise(t));
+    let moves = |i: usize, j: usize| {
+        let gamma = ridge(first, j);
+        ridge(high, j) > gamma || ridge(low, i) < gamma
+    };
+    (1..=plane.levels())
+        .map(|j| (1..=j).filter(|&i| moves(i, j)).count())
+        .sum()
+}
+
+fn sampling(time: &[f64]) -> Option<Sampling> {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (at, longest) = steps
+        .iter()
+        .copied()
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let repeated = steps.iter().filter(|step| **step == 0.0).count();
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    Some(Sampling {
+        start: time[0],
+        end: time[time.len() - 1],
+        median_step: median,
+        longest_step: longest,
+        longest_step_at_line: at + 3, // the second of the two, below the header, counted from 1
+        gaps: steps.iter().filter(|step| **step > 3.0 * median).count(),
+        repeated,
+    })
+}
+
+/// What is in a model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelSummary {
+    /// Levels of the plane.
+    pub levels: usize,
+    /// Lowest and highest level.
+    pub plane: (f64, f64),
+    /// Distance between levels.
+    pub step: f64,
+    /// Number of operators.
+    pub operators: usize,
+    /// Weights that are not zero.
+    pub weights_not_zero: usize,
+    /// Weights below zero: with any, there is no inverse.
+    pub weights_below_zero: usize,
+    /// Output with every operator off, and with every operator on.
+    pub output: (f64, f64),
+    /// Widest loop: the largest difference between the falling and the rising major branch, in the output's unit.
+    pub widest_loop: f64,
+    /// The input at which it is.
+    pub widest_loop_at: f64,
+}
+
+/// Summarises `model`.
+///
+/// # Errors
+/// None on a model made by this crate.
+pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
+    let plane = model.plane();
+    let levels = plane.levels();
+    // The major branches bend only at the levels.
+    let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
+    let rising = model.simulate(&ladder)?;
+    let mut falling = vec![0.0; ladder.len()];
+    let down: Vec<f64> = ladder.iter().rev().copied().collect();
+    model.run(&mut model.saturated(), &down, &mut falling)?;
+    falling.reverse();
+    let gap = |k: &usize| (falling[*k] - rising[*k]).abs();
+    let widest = (0..=levels)
+        .max_by(|a, b| gap(a).total_cmp(&gap(b)))
+        .unwrap_or(0);
+    Ok(ModelSummary {
+        levels,
+        plane: (plane.min(), plane.max()),
+        step: plane.step(),
+        operators: plane.operators(),
+        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        weights_below_zero: model.weights().iter().filter(|mu| **mu < 0.0).count(),
+        output: model.output_range(),
+        widest_loop: gap(&widest),
+        widest_loop_at: ladder[widest],
+    })
+}
