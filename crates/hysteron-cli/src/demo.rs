@@ -1,5 +1,101 @@
 //! `hysteron demo`
-use crate::{Result, args};
-pub(crate) fn run(_args: &args::Demo) -> Result<()> {
-    Err("not yet".into())
+
+use crate::{Result, args, evaluate, print, text};
+use hysteron::rig::{Experiment, Reproduction};
+use hysteron::{Errors, InverseRun};
+use hysteron_report::Report;
+use serde_json::json;
+
+/// Of the two recordings; any others do as well.
+const SEEDS: [u64; 2] = [1, 2];
+
+pub(crate) fn run(args: &args::Demo) -> Result<()> {
+    let folder = &args.out;
+    eprintln!("hysteron: recording a simulated NiTi spring twice, fitting, testing …");
+    let demo = Reproduction::run(&Experiment::default(), SEEDS)?;
+    std::fs::create_dir_all(folder).map_err(|source| hysteron::Error::File {
+        path: folder.clone(),
+        source,
+    })?;
+    for n in 0..2 {
+        demo.raw[n].write_csv(&folder.join(format!("recording-{}-raw.csv", n + 1)))?;
+        demo.prepared[n].write_csv(&folder.join(format!("recording-{}.csv", n + 1)))?;
+    }
+    demo.model.write(&folder.join("model.json"))?;
+    let report = Report {
+        title: "MKP model of a simulated NiTi tension spring",
+        model: &demo.model,
+        recording: &demo.prepared[1],
+        evaluation: &demo.evaluation,
+    };
+    report.write(&folder.join("report"))?;
+    if args.json.json {
+        let mut object = evaluate::to_json(&demo.evaluation);
+        object["simulated"] = json!(true);
+        object["fit"] = json!(demo.model.fit);
+        object["folder"] = json!(folder);
+        return print(&object.to_string());
+    }
+    print(&summary(&demo)?)?;
+    print(&format!(
+        "\nThe report is {}",
+        folder.join("report").join("index.html").display()
+    ))
+}
+
+fn summary(demo: &Reproduction) -> Result<String> {
+    let evaluation = &demo.evaluation;
+    let inverse = evaluation.inverse.as_ref().map_err(Clone::clone)?;
+    let fit = demo.model.fit.as_ref().ok_or("a fit says how it went")?;
+    let forward = &evaluation.forward;
+    let mm = |value: f64| text::with_unit(value, &demo.model.output);
+    let both = |part: fn(&InverseRun) -> Option<&Errors>, measure: fn(&Errors) -> f64| {
+        [&inverse.hold, &inverse.anticipate].map(|run| {
+            let value = part(run).map(measure);
+            value.map_or("none".into(), |v| text::with_unit(v, &demo.model.input))
+        })
+    };
+    let mut rows = vec![
+        text::row([
+            "simulated NiTi spring, 6 N",
+            "hold",
+            "anticipate",
+            "the chapter's",
+        ]),
+        vec![
+            "samples fitted, tested".into(),
+            format!("{}, {}", fit.samples, forward.samples),
+        ],
+        vec![
+            "weights not zero".into(),
+            format!("{} of {}", fit.weights_not_zero, demo.model.weights().len()),
+        ],
+        vec!["forward RMSE".into(), mm(forward.rmse)],
+        vec![
+            "forward, largest error".into(),
+            mm(forward.max_abs),
+            String::new(),
+            "0.5 mm".into(),
+        ],
+    ];
+    let lines: [(&str, fn(&InverseRun) -> Option<&Errors>, &str); 2] = [
+        (
+            "while the output moves",
+            |run| run.moving.as_ref(),
+            "2 degC",
+        ),
+        ("in the dead band", |run| run.dead_band.as_ref(), "26 degC"),
+    ];
+    for (name, part, chapter) in lines {
+        let [hold, anticipate] = both(part, |errors| errors.rmse);
+        rows.push(vec![format!("inverse RMSE {name}"), hold, anticipate]);
+        let [hold, anticipate] = both(part, |errors| errors.max_abs);
+        rows.push(vec![
+            format!("inverse, largest error {name}"),
+            hold,
+            anticipate,
+            chapter.into(),
+        ]);
+    }
+    Ok(text::table(&rows))
 }

@@ -45,9 +45,12 @@ pub enum Error {
     /// The options of a fit contradict each other or the data.
     #[error("fit: {0}")]
     Fit(String),
-    /// A filter cannot be built.
-    #[error("filter: {0}")]
-    Filter(String),
+    /// A filter's arguments do not fit the data.
+    #[error(transparent)]
+    Filter(#[from] crate::filter::FilterError),
+    /// The virtual rig was asked for something outside its physics.
+    #[error(transparent)]
+    Rig(#[from] crate::rig::RigError),
 }
 
 impl Error {
@@ -61,6 +64,7 @@ impl Error {
             Error::Recording { .. } => 22,
             Error::Fit(_) => 23,
             Error::Filter(_) => 24,
+            Error::Rig(_) => 25,
         }
     }
 }

@@ -9,6 +9,7 @@
 
 mod error;
 mod evaluate;
+pub mod filter;
 mod identify;
 mod inspect;
 mod metrics;
@@ -16,6 +17,7 @@ mod model;
 mod model_file;
 mod output;
 mod recording;
+pub mod rig;
 mod stream;
 mod table;
 mod turning;

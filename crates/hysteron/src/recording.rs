@@ -1,5 +1,6 @@
 //! Recordings: an input and the output it caused.
 
+use crate::output::TableWriter;
 use crate::table::TableReader;
 use crate::{Error, Result};
 use sha2::{Digest, Sha256};
@@ -31,6 +32,15 @@ impl Quantity {
         Self {
             name: name.to_owned(),
             unit: Some(unit.to_owned()),
+        }
+    }
+
+    /// The column name that [`Quantity::from_column`] reads as this quantity.
+    #[must_use]
+    pub fn to_column(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} [{unit}]", self.name),
+            None => self.name.clone(),
         }
     }
 
@@ -198,6 +208,33 @@ impl Recording {
             origin: Origin::Measured,
             source: Source::of(path)?,
         })
+    }
+
+    /// Writes a CSV file with a header row; units stand in brackets behind the names. A simulated
+    /// recording has a last column that says so.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write_csv(&self, path: &Path) -> Result<()> {
+        let mut table = TableWriter::create(Some(path))?;
+        let simulated = self.origin == Origin::Simulated;
+        let names = [
+            self.time.as_ref().map(|_| "time [s]".to_owned()),
+            Some(self.input_quantity.to_column()),
+            Some(self.output_quantity.to_column()),
+            simulated.then(|| "simulated".to_owned()),
+        ];
+        table.row(names.iter().flatten())?;
+        for (n, (input, output)) in self.input.iter().zip(&self.output).enumerate() {
+            let cells = [
+                self.time.as_ref().map(|time| time[n].to_string()),
+                Some(input.to_string()),
+                Some(output.to_string()),
+                simulated.then(|| "1".to_owned()),
+            ];
+            table.row(cells.iter().flatten())?;
+        }
+        table.finish()
     }
 
     /// How many samples there are.

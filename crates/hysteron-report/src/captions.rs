@@ -1,0 +1,140 @@
+//! Titles and captions: what each figure shows, with its numbers.
+
+use crate::figure::Figure;
+use crate::figures::dead_band_shown;
+use crate::number::{count, significant};
+use crate::quantity::Labelled;
+use crate::view::View;
+use hysteron::Errors;
+
+/// The short title at the head of a figure.
+pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
+    let (input, output) = (&view.input.name, &view.output.name);
+    let title = match figure {
+        Figure::PlaneEvolution => "Evolution of the plane".into(),
+        Figure::WeightsPlane => "Weights on the plane".into(),
+        Figure::WeightsMap => "Size of the weights".into(),
+        Figure::OutputTime => format!("{output} over {}", view.time_label.name),
+        Figure::Loops => format!("{output} over {input}"),
+        Figure::OutputDiscrepancy => format!("discrepancy of the modelled {output}"),
+        Figure::InputTime => format!("{input} from the inverse model"),
+        Figure::InputDiscrepancy => format!("discrepancy of the modelled {input}"),
+        Figure::DeadBand => "Largest dead-band discrepancy, close up".into(),
+    };
+    capitalised(&title)
+}
+
+/// What a figure shows, in a sentence or two.
+pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
+    let (input, output, recorded) = (&view.input.name, &view.output.name, view.recorded());
+    let caption = match figure {
+        Figure::PlaneEvolution => format!(
+            "Operator states on the plane at telling moments of the {input}. The dashed line is the present {input}: rising, it \
+             switches operators on below it; falling, it switches them off to its right."
+        ),
+        Figure::WeightsPlane => format!(
+            "{} of {} weights are not zero. Each stands at the thresholds of its operator: α, where the falling {input} \
+             switches it off, and β, where the rising {input} switches it on.",
+            count(view.source.weights_not_zero()),
+            count(view.source.weights().len()),
+        ),
+        Figure::WeightsMap => "The weights μ over the plane; the darker, the larger.".into(),
+        Figure::OutputTime => format!(
+            "Modelled {output} and {recorded} {output}: {} over {} samples.",
+            rmse_and_max(&view.evaluation.forward, &view.output),
+            count(view.evaluation.forward.samples),
+        ),
+        Figure::Loops => format!(
+            "Modelled and {recorded} {output} over {recorded} {input}: major and minor loops."
+        ),
+        Figure::OutputDiscrepancy => {
+            format!(
+                "Modelled minus {recorded} {output}: {}.",
+                rmse_and_max(&view.evaluation.forward, &view.output)
+            )
+        }
+        Figure::InputTime => format!(
+            "The {input} that the inverse model finds for the {recorded} {output}, beside the {recorded} {input}. While the \
+             {output} rests, hold keeps its {input}; anticipate crosses the dead band as soon as the {output} is known to reverse."
+        ),
+        Figure::InputDiscrepancy => {
+            format!(
+                "Modelled minus {recorded} {input}. {}",
+                inverse_errors(view).unwrap_or_default()
+            )
+        }
+        Figure::DeadBand => dead_band(view),
+    };
+    let caption = capitalised(&caption);
+    if view.simulated() {
+        format!("Simulated recording. {caption}")
+    } else {
+        caption
+    }
+}
+
+/// `RMSE 0.12 mm, max 0.45 mm`.
+pub(crate) fn rmse_and_max(errors: &Errors, quantity: &Labelled) -> String {
+    format!(
+        "RMSE {}, max {}",
+        quantity.value(errors.rmse),
+        quantity.value(errors.max_abs)
+    )
+}
+
+/// A percentage with two significant digits.
+pub(crate) fn percent(value: f64) -> String {
+    format!("{}\u{a0}%", significant(value, 2))
+}
+
+fn inverse_errors(view: &View<'_>) -> Option<String> {
+    let inverse = view.inverse()?;
+    let policy = |name: &str, run: &hysteron::InverseRun| {
+        let part = |errors: &Option<Errors>, place: String| {
+            let errors = errors.as_ref()?;
+            Some(format!("{} {place}", rmse_and_max(errors, &view.input)))
+        };
+        let moving = part(&run.moving, format!("where the {} moves", view.output.name));
+        let resting = part(&run.dead_band, "in the dead band".to_owned());
+        let parts: Vec<String> = moving.into_iter().chain(resting).collect();
+        format!("{name}: {}.", parts.join(", "))
+    };
+    Some(format!(
+        "{} {}",
+        policy("Hold", &inverse.hold),
+        policy("Anticipate", &inverse.anticipate)
+    ))
+}
+
+fn dead_band(view: &View<'_>) -> String {
+    let (Some(inverse), Some(worst)) = (view.inverse(), dead_band_shown(view)) else {
+        return String::new();
+    };
+    let at = |series: &[f64]| series.get(worst.sample).copied().unwrap_or(f64::NAN);
+    let measured = at(&view.recording.input);
+    let [begin, end] = [worst.stretch.start, worst.stretch.end - 1]
+        .map(|k| view.time_label.value(at_index(&view.time, k)));
+    format!(
+        "The {} rests from {begin} to {end} while the {} travels. At {} the held {} is off by {}, the anticipated one by {}.",
+        view.output.name,
+        view.input.name,
+        view.time_label.value(at(&view.time)),
+        view.input.name,
+        view.input
+            .value((at(&inverse.hold.input_model) - measured).abs()),
+        view.input
+            .value((at(&inverse.anticipate.input_model) - measured).abs()),
+    )
+}
+
+fn at_index(series: &[f64], k: usize) -> f64 {
+    series.get(k).copied().unwrap_or(f64::NAN)
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters
+        .next()
+        .map(|first| first.to_uppercase().chain(characters).collect())
+        .unwrap_or_default()
+}

@@ -1,0 +1,213 @@
+//! SVG elements, written as text.
+
+use super::style::{INK, Stroke};
+use super::text::FAMILIES;
+use std::fmt::Write;
+
+/// A rectangle in pixels, y downwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rect {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl Rect {
+    pub(crate) fn right(&self) -> f64 {
+        self.x + self.width
+    }
+
+    pub(crate) fn bottom(&self) -> f64 {
+        self.y + self.height
+    }
+}
+
+/// Where a text stands relative to its point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// An SVG document under construction. Its ids begin with `stem`, so that figures can share one HTML page.
+#[derive(Debug)]
+pub(crate) struct Canvas {
+    stem: &'static str,
+    clips: usize,
+    body: String,
+}
+
+// Writing to a string cannot fail, hence the results that go unread.
+impl Canvas {
+    pub(crate) fn new(stem: &'static str) -> Self {
+        Self {
+            stem,
+            clips: 0,
+            body: String::new(),
+        }
+    }
+
+    pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: &Stroke) {
+        self.polyline(&[from, to], stroke);
+    }
+
+    /// An open line through `points`; a single point becomes a dot.
+    pub(crate) fn polyline(&mut self, points: &[[f64; 2]], stroke: &Stroke) {
+        let &[first, ref rest @ ..] = points else {
+            return;
+        };
+        let mut d = format!("M{} {}", Short(first[0]), Short(first[1]));
+        for point in rest {
+            let _ = write!(d, "L{} {}", Short(point[0]), Short(point[1]));
+        }
+        if rest.is_empty() {
+            d.push_str("h0.01");
+        }
+        self.path(&d, None, Some(stroke));
+    }
+
+    /// A path by its SVG path data.
+    pub(crate) fn path(&mut self, d: &str, fill: Option<&str>, stroke: Option<&Stroke>) {
+        let _ = write!(
+            self.body,
+            r#"<path d="{d}" fill="{}""#,
+            fill.unwrap_or("none")
+        );
+        if let Some(stroke) = stroke {
+            let _ = write!(
+                self.body,
+                r#" stroke="{}" stroke-width="{}""#,
+                stroke.colour,
+                Short(stroke.width)
+            );
+            if !stroke.dash.is_empty() {
+                let _ = write!(self.body, r#" stroke-dasharray="{}""#, stroke.dash);
+            }
+        }
+        self.body.push_str("/>\n");
+    }
+
+    pub(crate) fn rect(&mut self, rect: Rect, fill: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<path d="{}" fill="{fill}" stroke="none"/>"#,
+            rect_data(rect)
+        );
+    }
+
+    pub(crate) fn text(&mut self, at: [f64; 2], anchor: Anchor, size: f64, text: &str) {
+        self.text_in(at, anchor, size, INK, text);
+    }
+
+    pub(crate) fn text_in(
+        &mut self,
+        at: [f64; 2],
+        anchor: Anchor,
+        size: f64,
+        colour: &str,
+        text: &str,
+    ) {
+        let place = format!(r#"x="{}" y="{}""#, Short(at[0]), Short(at[1]));
+        self.text_element(&place, anchor, size, colour, text);
+    }
+
+    /// Text that reads upwards.
+    pub(crate) fn text_upwards(&mut self, at: [f64; 2], anchor: Anchor, size: f64, text: &str) {
+        let place = format!(
+            r#"transform="translate({} {}) rotate(-90)""#,
+            Short(at[0]),
+            Short(at[1])
+        );
+        self.text_element(&place, anchor, size, INK, text);
+    }
+
+    fn text_element(&mut self, place: &str, anchor: Anchor, size: f64, colour: &str, text: &str) {
+        if text.is_empty() {
+            return;
+        }
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let text = escape(text);
+        let _ = writeln!(
+            self.body,
+            r#"<text {place} text-anchor="{anchor}" font-size="{}" fill="{colour}">{text}</text>"#,
+            Short(size)
+        );
+    }
+
+    /// Draws what `draw` draws, cut off outside `rect`.
+    pub(crate) fn clipped(&mut self, rect: Rect, draw: impl FnOnce(&mut Self)) {
+        let id = format!("{}-clip{}", self.stem, self.clips);
+        self.clips += 1;
+        let _ = writeln!(
+            self.body,
+            r#"<clipPath id="{id}"><path d="{}"/></clipPath>"#,
+            rect_data(rect)
+        );
+        let _ = writeln!(self.body, r#"<g clip-path="url(#{id})">"#);
+        draw(self);
+        self.body.push_str("</g>\n");
+    }
+
+    /// The whole document; `label` is what a screen reader says.
+    pub(crate) fn finish(self, width: f64, height: f64, title: &str, label: &str) -> String {
+        let (title, label) = (escape(title), escape(label));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+             role=\"img\" aria-label=\"{label}\" font-family=\"{FAMILIES}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
+             <title>{title}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+}
+
+/// Path data of a rectangle.
+pub(crate) fn rect_data(rect: Rect) -> String {
+    format!(
+        "M{} {}h{}v{}h{}z",
+        Short(rect.x),
+        Short(rect.y),
+        Short(rect.width),
+        Short(rect.height),
+        Short(-rect.width)
+    )
+}
+
+/// A coordinate with at most two decimals, which is finer than any screen or printer shows.
+pub(crate) struct Short(pub(crate) f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let hundredths = (self.0 * 100.0).round();
+        write!(
+            f,
+            "{}",
+            if hundredths == 0.0 {
+                0.0
+            } else {
+                hundredths / 100.0
+            }
+        )
+    }
+}
+
+/// Text for an XML document: markup escaped, characters that XML does not allow replaced.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '&' => escaped.push_str("&amp;"),
+            '"' => escaped.push_str("&quot;"),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push(' '),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

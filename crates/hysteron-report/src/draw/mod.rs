@@ -1,0 +1,10 @@
+//! A small drawing layer: text that knows its width, an SVG canvas, axes, panels and the sheet around them.
+
+pub(crate) mod axis;
+pub(crate) mod canvas;
+pub(crate) mod colour;
+pub(crate) mod marker;
+pub(crate) mod panel;
+pub(crate) mod sheet;
+pub(crate) mod style;
+pub(crate) mod text;

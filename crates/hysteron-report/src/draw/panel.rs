@@ -1,0 +1,201 @@
+//! A pair of axes and what is drawn between them.
+
+use super::axis::Axis;
+use super::canvas::{Anchor, Canvas, Rect};
+use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
+use super::text;
+use crate::decimate;
+use crate::quantity::Labelled;
+
+/// Space below a panel for tick labels and the axis label.
+pub(crate) const BELOW: f64 = 46.0;
+const TICK_LENGTH: f64 = 4.0;
+
+/// Which of its two axes a panel names and numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Labels {
+    pub(crate) x: bool,
+    pub(crate) y: bool,
+}
+
+/// A plot area with its axes.
+#[derive(Debug)]
+pub(crate) struct Panel {
+    pub(crate) area: Rect,
+    x: Axis,
+    y: Axis,
+}
+
+/// Space to the left of a panel `height` pixels high for the tick labels and label of its `y` axis.
+pub(crate) fn left_of(y: &Axis, height: f64) -> f64 {
+    y.ticks_up(height)
+        .iter()
+        .map(|tick| text::width(&tick.label, TICK))
+        .fold(0.0, f64::max)
+        + LABEL
+        + 28.0
+}
+
+impl Panel {
+    /// Draws grid and axes over `area`, which excludes the space for labels.
+    pub(crate) fn draw(canvas: &mut Canvas, area: Rect, x: Axis, y: Axis, labels: Labels) -> Self {
+        let panel = Self { area, x, y };
+        panel.grid(canvas);
+        panel.x_axis(canvas, labels.x);
+        panel.y_axis(canvas, labels.y);
+        panel
+    }
+
+    /// Pixel of an x value.
+    pub(crate) fn px(&self, value: f64) -> f64 {
+        self.area.x
+            + (value - self.x.span.low) / (self.x.span.high - self.x.span.low) * self.area.width
+    }
+
+    /// Pixel of a y value.
+    pub(crate) fn py(&self, value: f64) -> f64 {
+        self.area.bottom()
+            - (value - self.y.span.low) / (self.y.span.high - self.y.span.low) * self.area.height
+    }
+
+    /// Pixels of a pair of values.
+    pub(crate) fn point(&self, x: f64, y: f64) -> [f64; 2] {
+        [self.px(x), self.py(y)]
+    }
+
+    /// A curve over time.
+    pub(crate) fn curve(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
+        self.strokes(canvas, &decimate::columns(self.points(xs, ys)), stroke);
+    }
+
+    /// A curve that returns on itself.
+    pub(crate) fn loops(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
+        self.strokes(canvas, &decimate::loops(self.points(xs, ys)), stroke);
+    }
+
+    /// Bands from x to x over the full height; bands less than a pixel apart become one.
+    pub(crate) fn shade(&self, canvas: &mut Canvas, bands: impl IntoIterator<Item = [f64; 2]>) {
+        let mut merged: Vec<[f64; 2]> = Vec::new();
+        for [from, to] in bands
+            .into_iter()
+            .map(|band| band.map(|x| self.px(x).clamp(self.area.x, self.area.right())))
+        {
+            match merged.last_mut() {
+                Some(last) if from - last[1] < 1.0 => last[1] = last[1].max(to),
+                _ => merged.push([from, to]),
+            }
+        }
+        for [from, to] in merged {
+            canvas.rect(
+                Rect {
+                    x: from,
+                    width: (to - from).max(0.5),
+                    ..self.area
+                },
+                SHADE,
+            );
+        }
+        // The shade covers the grid and the axis line's inner half: draw them again.
+        self.grid(canvas);
+        self.frame(canvas);
+    }
+
+    /// A horizontal line across the panel.
+    pub(crate) fn level(&self, canvas: &mut Canvas, y: f64, stroke: &Stroke) {
+        canvas.line(
+            [self.area.x, self.py(y)],
+            [self.area.right(), self.py(y)],
+            stroke,
+        );
+    }
+
+    fn points<'a>(&'a self, xs: &'a [f64], ys: &'a [f64]) -> impl Iterator<Item = [f64; 2]> + 'a {
+        xs.iter().zip(ys).map(|(&x, &y)| self.point(x, y))
+    }
+
+    fn strokes(&self, canvas: &mut Canvas, pieces: &[Vec<[f64; 2]>], stroke: &Stroke) {
+        canvas.clipped(self.area, |canvas| {
+            pieces
+                .iter()
+                .for_each(|piece| canvas.polyline(piece, stroke))
+        });
+    }
+
+    fn grid(&self, canvas: &mut Canvas) {
+        let Rect { x, y, .. } = self.area;
+        for tick in self.x.ticks_across(self.area.width) {
+            let at = self.px(tick.value);
+            canvas.line([at, y], [at, self.area.bottom()], &GRID);
+        }
+        for tick in self.y.ticks_up(self.area.height) {
+            let at = self.py(tick.value);
+            canvas.line([x, at], [self.area.right(), at], &GRID);
+        }
+    }
+
+    fn frame(&self, canvas: &mut Canvas) {
+        let Rect { x, y, .. } = self.area;
+        canvas.polyline(
+            &[
+                [x, y],
+                [x, self.area.bottom()],
+                [self.area.right(), self.area.bottom()],
+            ],
+            &AXIS,
+        );
+    }
+
+    fn x_axis(&self, canvas: &mut Canvas, labelled: bool) {
+        self.frame(canvas);
+        let bottom = self.area.bottom();
+        for tick in self.x.ticks_across(self.area.width) {
+            let at = self.px(tick.value);
+            canvas.line([at, bottom], [at, bottom + TICK_LENGTH], &AXIS);
+            if labelled {
+                canvas.text(
+                    [at, bottom + TICK_LENGTH + TICK + 1.0],
+                    Anchor::Middle,
+                    TICK,
+                    &tick.label,
+                );
+            }
+        }
+        if labelled {
+            let middle = self.area.x + self.area.width / 2.0;
+            let label = text::fit(&self.x.label(), LABEL, self.area.width);
+            canvas.text(
+                [middle, bottom + BELOW - 6.0],
+                Anchor::Middle,
+                LABEL,
+                &label,
+            );
+        }
+    }
+
+    fn y_axis(&self, canvas: &mut Canvas, labelled: bool) {
+        let left = self.area.x;
+        for tick in self.y.ticks_up(self.area.height) {
+            let at = self.py(tick.value);
+            canvas.line([left - TICK_LENGTH, at], [left, at], &AXIS);
+            if labelled {
+                canvas.text(
+                    [left - TICK_LENGTH - 4.0, at + 0.36 * TICK],
+                    Anchor::End,
+                    TICK,
+                    &tick.label,
+                );
+            }
+        }
+        if labelled {
+            let middle = self.area.y + self.area.height / 2.0;
+            let label = text::fit(&self.y.label(), LABEL, self.area.height + 30.0);
+            let at = left - left_of(&self.y, self.area.height) + LABEL + 2.0;
+            canvas.text_upwards([at, middle], Anchor::Middle, LABEL, &label);
+        }
+    }
+}
+
+/// The α or β axis of the plane: both are inputs.
+pub(crate) fn threshold(symbol: &str, input: &Labelled) -> Labelled {
+    input.renamed(&format!("{symbol}, {}", input.name))
+}

@@ -1,0 +1,121 @@
+//! The sheet that carries panels: title, note and legend above, so that they never hide data.
+
+use super::canvas::{Anchor, Canvas, Rect};
+use super::marker::Marker;
+use super::style::{AXIS, FAINT, LABEL, Stroke, TITLE};
+use super::text;
+use crate::figure::Figure;
+
+/// Space around everything.
+pub(crate) const MARGIN: f64 = 14.0;
+/// Height of a row of the legend.
+const ROW: f64 = 21.0;
+/// Length of the piece of line in a legend.
+const SAMPLE: f64 = 34.0;
+/// Size of a subscript.
+const SUBSCRIPT: f64 = 10.0;
+
+/// One entry of a legend.
+pub(crate) enum Key {
+    /// A line and what it is.
+    Line(Stroke, String),
+    /// A filled area and what it is.
+    Area(&'static str, String),
+    /// A marker, what it is, and a subscript to that.
+    Marker(Marker, String, &'static str),
+    /// A remark.
+    Text(String),
+}
+
+/// A figure under construction.
+pub(crate) struct Sheet {
+    pub(crate) canvas: Canvas,
+    width: f64,
+    title: String,
+    /// Below title and legend.
+    pub(crate) top: f64,
+}
+
+impl Sheet {
+    /// A sheet `width` pixels wide with its title and, at the right, a note.
+    pub(crate) fn new(figure: Figure, width: f64, title: &str, note: Option<&str>) -> Self {
+        let mut canvas = Canvas::new(figure.stem());
+        let baseline = MARGIN + 0.8 * TITLE;
+        let mut room = width - 2.0 * MARGIN;
+        if let Some(note) = note {
+            let taken = text::width(note, LABEL);
+            canvas.text_in([width - MARGIN, baseline], Anchor::End, LABEL, FAINT, note);
+            room -= taken + 16.0;
+        }
+        canvas.text(
+            [MARGIN, baseline],
+            Anchor::Start,
+            TITLE,
+            &text::fit(title, TITLE, room),
+        );
+        Self {
+            canvas,
+            width,
+            title: title.to_owned(),
+            top: baseline + 12.0,
+        }
+    }
+
+    /// Adds a legend, in as many rows as it takes.
+    pub(crate) fn legend(&mut self, keys: &[Key]) {
+        let (mut x, mut y) = (MARGIN, self.top + 0.5 * ROW);
+        for key in keys {
+            let (sample, words, subscript) = match key {
+                Key::Line(_, words) => (SAMPLE + 7.0, words, ""),
+                Key::Area(_, words) => (24.0 + 7.0, words, ""),
+                Key::Marker(_, words, subscript) => (12.0 + 5.0, words, *subscript),
+                Key::Text(words) => (0.0, words, ""),
+            };
+            let words = text::fit(words, LABEL, self.width - 2.0 * MARGIN - sample);
+            let end = sample + text::width(&words, LABEL);
+            let taken = end + text::width(subscript, SUBSCRIPT);
+            if x > MARGIN && x + taken > self.width - MARGIN {
+                (x, y) = (MARGIN, y + ROW);
+            }
+            self.sample(key, [x, y]);
+            self.canvas
+                .text([x + sample, y + 0.36 * LABEL], Anchor::Start, LABEL, &words);
+            self.canvas.text(
+                [x + end, y + 0.36 * LABEL + 3.0],
+                Anchor::Start,
+                SUBSCRIPT,
+                subscript,
+            );
+            x += taken + 22.0;
+        }
+        self.top = y + 0.5 * ROW + 8.0;
+    }
+
+    fn sample(&mut self, key: &Key, [x, y]: [f64; 2]) {
+        match key {
+            Key::Line(stroke, _) => self.canvas.line([x, y], [x + SAMPLE, y], stroke),
+            Key::Area(fill, _) => {
+                let area = Rect {
+                    x,
+                    y: y - 7.0,
+                    width: 24.0,
+                    height: 14.0,
+                };
+                self.canvas.rect(area, fill);
+                self.canvas.path(
+                    &super::canvas::rect_data(area),
+                    None,
+                    Some(&Stroke { width: 0.5, ..AXIS }),
+                );
+            }
+            Key::Marker(marker, ..) => marker.draw(&mut self.canvas, [[x + 6.0, y]], 4.5),
+            Key::Text(_) => {}
+        }
+    }
+
+    /// The finished figure, `height` pixels high; `label` is what a screen reader says.
+    pub(crate) fn finish(self, height: f64, label: &str) -> String {
+        self.canvas
+            .finish(self.width, height.ceil(), &self.title, label)
+    }
+}

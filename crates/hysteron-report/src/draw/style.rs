@@ -1,0 +1,66 @@
+//! One look for all figures. Lines differ in lightness, width and dash, so that they stay apart in grey.
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stroke {
+    pub(crate) colour: &'static str,
+    pub(crate) width: f64,
+    /// SVG dash array; empty for a solid line.
+    pub(crate) dash: &'static str,
+}
+
+impl Stroke {
+    pub(crate) const fn solid(colour: &'static str, width: f64) -> Self {
+        Self {
+            colour,
+            width,
+            dash: "",
+        }
+    }
+}
+
+/// What was measured: dark, solid, wide enough to show on both sides of a curve that lies on it.
+pub(crate) const MEASURED: Stroke = Stroke::solid("#1d2b3a", 2.8);
+/// What the model says; for the inverse, the policy that holds.
+pub(crate) const MODELLED: Stroke = Stroke {
+    colour: "#f0701f",
+    width: 1.7,
+    dash: "8 4",
+};
+/// The inverse that anticipates.
+pub(crate) const ANTICIPATE: Stroke = Stroke {
+    colour: "#1496b8",
+    width: 2.0,
+    dash: "0.1 3.6",
+};
+/// A discrepancy where it stands alone.
+pub(crate) const DISCREPANCY: Stroke = Stroke::solid("#1d2b3a", 1.3);
+
+/// Axis lines and ticks.
+pub(crate) const AXIS: Stroke = Stroke::solid("#444b54", 1.0);
+/// Grid lines, behind the data.
+pub(crate) const GRID: Stroke = Stroke::solid("#e6e9ed", 0.8);
+/// The line of no discrepancy.
+pub(crate) const ZERO: Stroke = Stroke::solid("#8a929c", 1.0);
+/// Outlines and pointers.
+pub(crate) const THIN: Stroke = Stroke::solid("#444b54", 1.0);
+/// A level that a picture refers to.
+pub(crate) const GUIDE: Stroke = Stroke {
+    colour: "#444b54",
+    width: 1.1,
+    dash: "4 3",
+};
+
+/// Samples in the dead band.
+pub(crate) const SHADE: &str = "#e4e7ec";
+/// Text.
+pub(crate) const INK: &str = "#1b2128";
+/// Text of less weight.
+pub(crate) const FAINT: &str = "#4c5661";
+
+/// Size of a title.
+pub(crate) const TITLE: f64 = 15.5;
+/// Size of axis labels and legends.
+pub(crate) const LABEL: f64 = 13.5;
+/// Size of tick labels.
+pub(crate) const TICK: f64 = 12.5;

@@ -1,0 +1,86 @@
+//! The figures that a report can hold.
+
+use std::fmt;
+
+/// A figure of a report, named after what it shows and numbered after the chapter's figure that it stands beside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Figure {
+    /// Fig. 6: operator states on the plane at a few instants of the recording.
+    PlaneEvolution,
+    /// Fig. 8(a): which weights are not zero.
+    WeightsPlane,
+    /// Fig. 8(b): how large the weights are.
+    WeightsMap,
+    /// Fig. 10: modelled and measured output over time.
+    OutputTime,
+    /// Fig. 11: modelled and measured output over input.
+    Loops,
+    /// Fig. 12: modelled minus measured output over time.
+    OutputDiscrepancy,
+    /// Fig. 13: input from the inverse model, and measured input, over time.
+    InputTime,
+    /// Fig. 14: modelled minus measured input over time.
+    InputDiscrepancy,
+    /// Fig. 15: close-up of the dead band with the largest input discrepancy.
+    DeadBand,
+}
+
+impl Figure {
+    /// Every figure, in the order of the page: the fitted weights, both tests, then the memory behind them.
+    pub const ALL: [Self; 9] = [
+        Self::WeightsPlane,
+        Self::WeightsMap,
+        Self::OutputTime,
+        Self::Loops,
+        Self::OutputDiscrepancy,
+        Self::InputTime,
+        Self::InputDiscrepancy,
+        Self::DeadBand,
+        Self::PlaneEvolution,
+    ];
+
+    /// File name without extension, for example `fig10-output-time`.
+    pub fn stem(self) -> &'static str {
+        match self {
+            Self::PlaneEvolution => "fig06-plane-evolution",
+            Self::WeightsPlane => "fig08a-weights-plane",
+            Self::WeightsMap => "fig08b-weights-map",
+            Self::OutputTime => "fig10-output-time",
+            Self::Loops => "fig11-loops",
+            Self::OutputDiscrepancy => "fig12-output-discrepancy",
+            Self::InputTime => "fig13-input-time",
+            Self::InputDiscrepancy => "fig14-input-discrepancy",
+            Self::DeadBand => "fig15-dead-band",
+        }
+    }
+
+    /// Number of the chapter's figure, for example `8(a)`.
+    pub fn chapter_number(self) -> &'static str {
+        match self {
+            Self::PlaneEvolution => "6",
+            Self::WeightsPlane => "8(a)",
+            Self::WeightsMap => "8(b)",
+            Self::OutputTime => "10",
+            Self::Loops => "11",
+            Self::OutputDiscrepancy => "12",
+            Self::InputTime => "13",
+            Self::InputDiscrepancy => "14",
+            Self::DeadBand => "15",
+        }
+    }
+
+    /// Whether the figure shows the inverse model, and so is absent where there is none.
+    pub(crate) fn needs_inverse(self) -> bool {
+        matches!(
+            self,
+            Self::InputTime | Self::InputDiscrepancy | Self::DeadBand
+        )
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.stem())
+    }
+}

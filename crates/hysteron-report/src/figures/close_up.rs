@@ -1,0 +1,112 @@
+//! Fig. 15: the dead band with the largest input discrepancy, close up.
+
+use super::over_time::{WIDTH, policies, time_axis};
+use super::{finish, sheet};
+use crate::dead_band::{Worst, stretches, worst};
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::style::{ANTICIPATE, GUIDE, MEASURED, MODELLED};
+use crate::figure::Figure;
+use crate::view::View;
+use std::ops::Range;
+
+const OUTPUT_HEIGHT: f64 = 150.0;
+const INPUT_HEIGHT: f64 = 250.0;
+const GAP: f64 = 16.0;
+
+pub(super) fn svg(view: &View<'_>) -> Option<String> {
+    let inverse = view.inverse()?;
+    let found = find(view)?;
+    let window = around(&found.stretch, view.recording.input.len());
+    let [output, input] =
+        [&view.recording.output, &view.recording.input].map(|series| part(series, &window));
+    let [hold, anticipate] =
+        [&inverse.hold, &inverse.anticipate].map(|run| part(&run.input_model, &window));
+    let time = part(&view.time, &window);
+
+    let mut sheet = sheet(Figure::DeadBand, view, WIDTH);
+    let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];
+    keys.extend(policies(&inverse.moving));
+    keys.push(Key::Line(GUIDE, "largest discrepancy of hold".into()));
+    sheet.legend(&keys);
+
+    let x = time_axis(&view.time_label, Span::of(time));
+    let upper_y = Axis::new(&view.output, Span::of(output).padded(0.08));
+    let lower_y = Axis::new(
+        &view.input,
+        Span::of([input, hold, anticipate].concat().iter()).padded(0.06),
+    );
+    let left = MARGIN + left_of(&upper_y, OUTPUT_HEIGHT).max(left_of(&lower_y, INPUT_HEIGHT));
+    let upper = Rect {
+        x: left,
+        y: sheet.top,
+        width: WIDTH - MARGIN - left,
+        height: OUTPUT_HEIGHT,
+    };
+    let lower = Rect {
+        y: upper.bottom() + GAP,
+        height: INPUT_HEIGHT,
+        ..upper
+    };
+
+    let bands: Vec<[f64; 2]> = stretches(&inverse.moving)
+        .iter()
+        .filter(|stretch| stretch.start < window.end && stretch.end > window.start)
+        .map(|stretch| view.extent(stretch))
+        .collect();
+    let canvas = &mut sheet.canvas;
+    let above = Panel::draw(
+        canvas,
+        upper,
+        x.clone(),
+        upper_y,
+        Labels { x: false, y: true },
+    );
+    let below = Panel::draw(canvas, lower, x, lower_y, Labels { x: true, y: true });
+    for panel in [&above, &below] {
+        panel.shade(canvas, bands.iter().copied());
+        if let Some(at) = view
+            .time
+            .get(found.sample)
+            .map(|&t| panel.px(t))
+            .filter(|at| at.is_finite())
+        {
+            canvas.line([at, panel.area.y], [at, panel.area.bottom()], &GUIDE);
+        }
+    }
+    above.curve(canvas, time, output, &MEASURED);
+    below.curve(canvas, time, input, &MEASURED);
+    below.curve(canvas, time, hold, &MODELLED);
+    below.curve(canvas, time, anticipate, &ANTICIPATE);
+    Some(finish(
+        Figure::DeadBand,
+        view,
+        sheet,
+        lower.bottom() + BELOW + 4.0,
+    ))
+}
+
+/// The dead band that the figure shows.
+pub(crate) fn find(view: &View<'_>) -> Option<Worst> {
+    let inverse = view.inverse()?;
+    worst(
+        &inverse.moving,
+        &inverse.hold.input_model,
+        &view.recording.input,
+    )
+}
+
+/// Some samples before, and more after, where the model catches up.
+fn around(stretch: &Range<usize>, samples: usize) -> Range<usize> {
+    let length = stretch.len();
+    stretch.start.saturating_sub((length * 3 / 4).max(6))
+        ..(stretch.end + (length * 5 / 4).max(10)).min(samples)
+}
+
+fn part<'a>(series: &'a [f64], window: &Range<usize>) -> &'a [f64] {
+    series
+        .get(window.start..window.end.min(series.len()))
+        .unwrap_or(&[])
+}

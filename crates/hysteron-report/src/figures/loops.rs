@@ -1,0 +1,42 @@
+//! Fig. 11: output over input, modelled and measured.
+
+use super::{finish, sheet};
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::style::{MEASURED, MODELLED};
+use crate::figure::Figure;
+use crate::view::View;
+
+const WIDTH: f64 = 620.0;
+const PLOT_HEIGHT: f64 = 420.0;
+
+pub(super) fn svg(view: &View<'_>) -> String {
+    let mut sheet = sheet(Figure::Loops, view, WIDTH);
+    sheet.legend(&[
+        Key::Line(MEASURED, view.recorded().into()),
+        Key::Line(MODELLED, "modelled".into()),
+    ]);
+    let (input, output, modelled) = (
+        &view.recording.input,
+        &view.recording.output,
+        &view.evaluation.output_model,
+    );
+    let x = Axis::new(&view.input, Span::of(input).padded(0.03));
+    let y = Axis::new(
+        &view.output,
+        Span::of(output.iter().chain(modelled)).padded(0.04),
+    );
+    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
+    let area = Rect {
+        x: left,
+        y: sheet.top,
+        width: WIDTH - MARGIN - left,
+        height: PLOT_HEIGHT,
+    };
+    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    panel.loops(&mut sheet.canvas, input, output, &MEASURED);
+    panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
+    finish(Figure::Loops, view, sheet, area.bottom() + BELOW + 4.0)
+}

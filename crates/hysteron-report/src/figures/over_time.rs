@@ -1,0 +1,129 @@
+//! Figs. 10 and 13: modelled and measured series over time.
+
+use super::{finish, sheet};
+use crate::dead_band::stretches;
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::style::{ANTICIPATE, MEASURED, MODELLED, SHADE, Stroke};
+use crate::figure::Figure;
+use crate::quantity::Labelled;
+use crate::view::View;
+
+/// Width of a figure over time.
+pub(super) const WIDTH: f64 = 760.0;
+const PLOT_HEIGHT: f64 = 290.0;
+
+/// A series and how it is drawn.
+pub(super) struct Curve<'a> {
+    pub(super) values: &'a [f64],
+    pub(super) stroke: Stroke,
+}
+
+pub(super) fn output(view: &View<'_>) -> String {
+    let mut sheet = sheet(Figure::OutputTime, view, WIDTH);
+    sheet.legend(&[
+        Key::Line(MEASURED, view.recorded().into()),
+        Key::Line(MODELLED, "modelled".into()),
+    ]);
+    let curves = [
+        Curve {
+            values: &view.recording.output,
+            stroke: MEASURED,
+        },
+        Curve {
+            values: &view.evaluation.output_model,
+            stroke: MODELLED,
+        },
+    ];
+    let span = Span::of(curves.iter().flat_map(|curve| curve.values)).padded(0.04);
+    let height = plot(
+        &mut sheet,
+        view,
+        Axis::new(&view.output, span),
+        &curves,
+        &[],
+        PLOT_HEIGHT,
+    )
+    .1;
+    finish(Figure::OutputTime, view, sheet, height)
+}
+
+pub(super) fn input(view: &View<'_>) -> Option<String> {
+    let inverse = view.inverse()?;
+    let mut sheet = sheet(Figure::InputTime, view, WIDTH);
+    let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];
+    keys.extend(policies(&inverse.moving));
+    sheet.legend(&keys);
+    let curves = [
+        Curve {
+            values: &view.recording.input,
+            stroke: MEASURED,
+        },
+        Curve {
+            values: &inverse.hold.input_model,
+            stroke: MODELLED,
+        },
+        Curve {
+            values: &inverse.anticipate.input_model,
+            stroke: ANTICIPATE,
+        },
+    ];
+    let span = Span::of(curves.iter().flat_map(|curve| curve.values)).padded(0.04);
+    let height = plot(
+        &mut sheet,
+        view,
+        Axis::new(&view.input, span),
+        &curves,
+        &inverse.moving,
+        PLOT_HEIGHT,
+    )
+    .1;
+    Some(finish(Figure::InputTime, view, sheet, height))
+}
+
+/// Legend of the inverse's policies, and of the dead band where there is one.
+pub(super) fn policies(moving: &[bool]) -> Vec<Key> {
+    let mut keys = vec![
+        Key::Line(MODELLED, "modelled, hold".into()),
+        Key::Line(ANTICIPATE, "modelled, anticipate".into()),
+    ];
+    if moving.contains(&false) {
+        keys.push(Key::Area(SHADE, "output at rest (dead band)".into()));
+    }
+    keys
+}
+
+/// Draws `curves` over all of the recording's time; returns the panel and the height of the figure.
+pub(super) fn plot(
+    sheet: &mut Sheet,
+    view: &View<'_>,
+    y: Axis,
+    curves: &[Curve<'_>],
+    moving: &[bool],
+    height: f64,
+) -> (Panel, f64) {
+    let left = MARGIN + left_of(&y, height);
+    let area = Rect {
+        x: left,
+        y: sheet.top,
+        width: WIDTH - MARGIN - left,
+        height,
+    };
+    let x = time_axis(&view.time_label, Span::of(view.time.iter()));
+    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    panel.shade(
+        &mut sheet.canvas,
+        stretches(moving).iter().map(|stretch| view.extent(stretch)),
+    );
+    for curve in curves {
+        panel.curve(&mut sheet.canvas, &view.time, curve.values, &curve.stroke);
+    }
+    (panel, area.bottom() + BELOW + 4.0)
+}
+
+/// Time runs from edge to edge.
+pub(super) fn time_axis(label: &Labelled, span: Span) -> Axis {
+    Axis::new(label, span.padded(0.005))
+}

@@ -1,0 +1,172 @@
+//! The page: one HTML file with everything in it.
+
+use crate::captions::{caption, percent, title};
+use crate::figure::Figure;
+use crate::number::{count, significant};
+use crate::view::View;
+use hysteron::Errors;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("page.css");
+
+/// The sections of the page and their figures; figures in one group stand side by side where there is room.
+const SECTIONS: [(&str, &[&[Figure]]); 4] = [
+    ("The model", &[&[Figure::WeightsPlane, Figure::WeightsMap]]),
+    (
+        "Forward: output from input",
+        &[
+            &[Figure::OutputTime],
+            &[Figure::Loops],
+            &[Figure::OutputDiscrepancy],
+        ],
+    ),
+    (
+        "Inverse: input from output",
+        &[
+            &[Figure::InputTime],
+            &[Figure::InputDiscrepancy],
+            &[Figure::DeadBand],
+        ],
+    ),
+    ("Memory: the plane", &[&[Figure::PlaneEvolution]]),
+];
+
+/// The page around the figures in `drawn`.
+pub(crate) fn html(heading: &str, view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+    let heading = if heading.trim().is_empty() {
+        "Report"
+    } else {
+        heading
+    };
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (heading) @if view.simulated() { " (simulated)" } }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    h1 { (heading) }
+                    p.lead { "A hysteresis model of " (view.output.name) " over " (view.input.name) ", tested on a recording of both." }
+                    @if view.simulated() {
+                        p.simulated { "Simulated: this recording comes from a simulated plant, not from a measurement." }
+                    }
+                    (facts(view))
+                    (errors(view))
+                    @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
+                    footer {
+                        "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of SMA actuators”, which \
+                         introduces the MKP model; its figure numbers are given with each caption."
+                    }
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn facts(view: &View<'_>) -> Markup {
+    let source = view.source;
+    let weights = source.weights().len();
+    html! {
+        div.wide { table.facts {
+            tr { th scope="row" { "Recording" } td { (count(view.recording.input.len())) " samples, " (view.recorded()) } }
+            tr {
+                th scope="row" { "Plane" }
+                td {
+                    (significant(source.min(), 3)) " to " (view.input.value(source.max())) ", "
+                    (count(source.levels())) " levels " (view.input.value(source.step())) " apart"
+                }
+            }
+            tr { th scope="row" { "Weights not zero" } td { (count(source.weights_not_zero())) " of " (count(weights)) } }
+        } }
+    }
+}
+
+/// Forward and inverse errors, a row each.
+fn errors(view: &View<'_>) -> Markup {
+    let row = |name: &str, errors: &Errors, unit: &Option<String>| {
+        html! {
+            tr {
+                th scope="row" { (name) }
+                td { (significant(errors.rmse, 3)) }
+                td { (significant(errors.max_abs, 3)) }
+                td { @if let Some(unit) = unit { (unit) } }
+                td { (percent(errors.nrmse_percent)) }
+                td { (count(errors.samples)) }
+            }
+        }
+    };
+    let (input, output) = (&view.input, &view.output);
+    html! {
+        div.wide { table {
+            thead { tr {
+                th scope="col" { "Discrepancy" @if view.simulated() { " (simulated)" } }
+                th scope="col" { "RMSE" } th scope="col" { "max" } th scope="col" { "unit" }
+                th scope="col" { "RMSE of range" } th scope="col" { "samples" }
+            } }
+            tbody {
+                (row(&format!("forward: {}", output.name), &view.evaluation.forward, &output.unit))
+                @if let Some(inverse) = view.inverse() {
+                    @for (policy, run) in [("hold", &inverse.hold), ("anticipate", &inverse.anticipate)] {
+                        @for (part, errors) in [("moving", &run.moving), ("dead band", &run.dead_band)] {
+                            @if let Some(errors) = errors {
+                                (row(&format!("inverse, {policy}: {}, {part}", input.name), errors, &input.unit))
+                            }
+                        }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+fn section(
+    name: &str,
+    groups: &[&[Figure]],
+    view: &View<'_>,
+    drawn: &[(Figure, String)],
+) -> Markup {
+    let inverse = groups
+        .iter()
+        .copied()
+        .flatten()
+        .any(|figure| figure.needs_inverse());
+    let no_dead_band = view
+        .inverse()
+        .is_some_and(|inverse| !inverse.moving.contains(&false));
+    html! {
+        section {
+            h2 { (name) }
+            @if inverse {
+                @if let Err(reason) = &view.evaluation.inverse { p { "No inverse test: " (reason) } }
+            }
+            @for group in groups {
+                @if let &&[figure] = group {
+                    (picture(figure, view, drawn))
+                } @else {
+                    div.pair { @for &figure in *group { (picture(figure, view, drawn)) } }
+                }
+            }
+            @if inverse && no_dead_band { p { "The output never rests while the input travels: there is no dead band to show." } }
+        }
+    }
+}
+
+fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
+    let Some(number) = drawn.iter().position(|(candidate, _)| *candidate == figure) else {
+        return html! {};
+    };
+    html! {
+        figure id=(figure.stem()) {
+            div.wide { @if let Some((_, svg)) = drawn.get(number) { (PreEscaped(svg)) } }
+            figcaption {
+                b { "Figure " (number + 1) ". " (title(figure, view)) "." } " " (caption(figure, view)) " "
+                span.beside { "Beside Fig. " (figure.chapter_number()) " of the chapter." }
+            }
+        }
+    }
+}

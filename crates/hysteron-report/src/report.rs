@@ -1,0 +1,104 @@
+//! The report itself.
+
+use crate::error::ReportError;
+use crate::figure::Figure;
+use crate::view::View;
+use crate::{figures, files, page, png};
+use hysteron::Evaluation;
+use hysteron::Model;
+use hysteron::Recording;
+use std::path::{Path, PathBuf};
+
+/// An evaluation of a model on a recording, to be shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// Heading of the page.
+    pub title: &'a str,
+    /// The model that was evaluated.
+    pub model: &'a Model,
+    /// What it was evaluated on.
+    pub recording: &'a Recording,
+    /// How it did.
+    pub evaluation: &'a Evaluation,
+}
+
+impl Report<'_> {
+    /// Writes `index.html` and, for each figure, `figNN-name.svg` and `figNN-name.png` into `dir`, which is made if absent.
+    ///
+    /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page says why, and files of
+    /// theirs that an earlier report left in `dir` are removed. Each file appears complete or not at all.
+    ///
+    /// Returns the paths written, the page first.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything is written;
+    /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
+    pub fn write(&self, dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+        let view = self.view()?;
+        files::make_directory(dir)?;
+        let mut drawn = Vec::new();
+        let mut written = vec![dir.join("index.html")];
+        for figure in Figure::ALL {
+            let [svg_path, png_path] =
+                ["svg", "png"].map(|extension| dir.join(format!("{figure}.{extension}")));
+            let Some(svg) = figures::svg(figure, &view) else {
+                files::remove_stale(&svg_path)?;
+                files::remove_stale(&png_path)?;
+                continue;
+            };
+            files::write(&svg_path, svg.as_bytes())?;
+            files::write(
+                &png_path,
+                &png::of_svg(&svg).map_err(|reason| ReportError::Raster {
+                    path: png_path.clone(),
+                    reason,
+                })?,
+            )?;
+            written.extend([svg_path, png_path]);
+            drawn.push((figure, svg));
+        }
+        // The page comes last, so that a page in the directory means a complete report.
+        files::write(
+            &dir.join("index.html"),
+            page::html(self.title, &view, &drawn).as_bytes(),
+        )?;
+        Ok(written)
+    }
+
+    /// A single figure as an SVG document; `None` where the evaluation has nothing to show in it.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Length`] where the evaluation belongs to another recording.
+    pub fn svg(&self, figure: Figure) -> Result<Option<String>, ReportError> {
+        Ok(figures::svg(figure, &self.view()?))
+    }
+
+    /// The parts of the report, once they fit together.
+    fn view(&self) -> Result<View<'_>, ReportError> {
+        let expected = self.recording.input.len();
+        let mut lengths = vec![
+            ("recording.output", self.recording.output.len()),
+            ("output_model", self.evaluation.output_model.len()),
+        ];
+        if let Ok(inverse) = &self.evaluation.inverse {
+            lengths.extend([
+                ("inverse.moving", inverse.moving.len()),
+                ("inverse.hold.input_model", inverse.hold.input_model.len()),
+                (
+                    "inverse.anticipate.input_model",
+                    inverse.anticipate.input_model.len(),
+                ),
+            ]);
+        }
+        match lengths.into_iter().find(|&(_, found)| found != expected) {
+            Some((series, found)) => Err(ReportError::Length {
+                series,
+                expected,
+                found,
+            }),
+            None => Ok(View::new(self)),
+        }
+    }
+}

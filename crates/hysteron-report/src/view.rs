@@ -1,0 +1,105 @@
+//! What every figure and caption reads: the report's parts in the words and units that are shown.
+
+use crate::quantity::Labelled;
+use crate::report::Report;
+use crate::source::Source;
+use hysteron::{Evaluation, InverseEvaluation};
+use hysteron::{Origin, Recording};
+use std::borrow::Cow;
+
+/// A report, ready to be drawn.
+pub(crate) struct View<'a> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) evaluation: &'a Evaluation,
+    pub(crate) source: Source<'a>,
+    pub(crate) input: Labelled,
+    pub(crate) output: Labelled,
+    /// Seconds, or sample numbers where the recording has no time.
+    pub(crate) time: Cow<'a, [f64]>,
+    pub(crate) time_label: Labelled,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn new(report: &Report<'a>) -> Self {
+        let &Report {
+            model,
+            recording,
+            evaluation,
+            ..
+        } = report;
+        let source = Source::new(model);
+        let samples = recording.input.len();
+        let (time, name, unit) = match recording.time.as_deref() {
+            Some(time) if time.len() == samples => {
+                (Cow::Borrowed(time), "time", Some("s".to_owned()))
+            }
+            _ => (
+                Cow::Owned((0..samples).map(|k| k as f64).collect()),
+                "sample number",
+                None,
+            ),
+        };
+        Self {
+            recording,
+            evaluation,
+            source,
+            input: Labelled::first([&recording.input_quantity, source.input()], "input"),
+            output: Labelled::first([&recording.output_quantity, source.output()], "output"),
+            time,
+            time_label: Labelled {
+                name: name.to_owned(),
+                unit,
+            },
+        }
+    }
+
+    pub(crate) fn inverse(&self) -> Option<&'a InverseEvaluation> {
+        self.evaluation.inverse.as_ref().ok()
+    }
+
+    pub(crate) fn simulated(&self) -> bool {
+        self.recording.origin == Origin::Simulated
+    }
+
+    /// What the recorded curves are called.
+    pub(crate) fn recorded(&self) -> &'static str {
+        if self.simulated() {
+            "simulated plant"
+        } else {
+            "measured"
+        }
+    }
+
+    /// What stands at the corner of every figure.
+    pub(crate) fn note(&self) -> Option<&'static str> {
+        self.simulated().then_some("simulated, not measured")
+    }
+
+    /// Modelled minus recorded.
+    pub(crate) fn discrepancy(modelled: &[f64], recorded: &[f64]) -> Vec<f64> {
+        modelled
+            .iter()
+            .zip(recorded)
+            .map(|(modelled, recorded)| modelled - recorded)
+            .collect()
+    }
+
+    /// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one sample has a width.
+    pub(crate) fn extent(&self, stretch: &std::ops::Range<usize>) -> [f64; 2] {
+        let between = |before: Option<usize>, after: usize| {
+            let after = self
+                .time
+                .get(after)
+                .or(self.time.last())
+                .copied()
+                .unwrap_or(0.0);
+            before
+                .and_then(|k| self.time.get(k))
+                .map_or(after, |before| 0.5 * (before + after))
+        };
+        [
+            between(stretch.start.checked_sub(1), stretch.start),
+            between(stretch.end.checked_sub(1), stretch.end),
+        ]
+    }
+}

@@ -1,0 +1,96 @@
+//! Low-pass filtering without phase shift, for recordings that are at hand as a whole.
+//!
+//! A Butterworth filter of order 2 runs over the samples forward and then backward (Gustafsson 1996; SciPy's `filtfilt`): the
+//! delays cancel and the attenuation doubles, so the gain is 1 at rest and ½ at the cut-off. At both ends the
+//! samples are continued by reflection through the end point, which continues a ramp as a ramp, and each pass sets out
+//! settled on its first value.
+
+use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, Type};
+
+/// Reflected samples at each end, in periods of the cut-off; the settling has died down to 10⁻¹⁰ of itself over them.
+const PADDING_PERIODS: f64 = 6.0;
+
+/// Why the low-pass filter refused its arguments.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilterError {
+    /// The sampling rate is not a positive number.
+    #[error("the sampling rate is {0} Hz, but must be positive and finite")]
+    SampleRate(f64),
+    /// The cut-off is not between 0 and half the sampling rate.
+    #[error(
+        "the cut-off is {cutoff} Hz, but must lie above 0 and below half the sampling rate, {nyquist} Hz"
+    )]
+    Cutoff {
+        /// What was given, Hz.
+        cutoff: f64,
+        /// Half the sampling rate, Hz.
+        nyquist: f64,
+    },
+    /// There are fewer than two samples.
+    #[error("{0} sample(s): a filter needs at least 2")]
+    TooShort(usize),
+    /// A sample is NaN or infinite.
+    #[error("sample number {0} (from 0) is not a finite number")]
+    NotFinite(usize),
+}
+
+/// `samples`, taken at `sample_rate` (Hz), without what moves faster than `cutoff` (Hz, below half the sampling rate).
+///
+/// The result has as many samples. A constant and a straight line come through unchanged.
+///
+/// # Errors
+/// [`FilterError`] tells which argument does not fit.
+///
+/// ```
+/// let noisy = [1.0, 1.2, 0.8, 1.1, 0.9, 1.0, 1.2, 0.8];
+/// let smooth = hysteron::filter::low_pass(&noisy, 10.0, 0.5)?;
+/// assert!(smooth.iter().all(|y| (y - 1.0).abs() < 0.1));
+/// # Ok::<(), hysteron::filter::FilterError>(())
+/// ```
+pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f64>, FilterError> {
+    if !(sample_rate.is_finite() && sample_rate > 0.0) {
+        return Err(FilterError::SampleRate(sample_rate));
+    }
+    let nyquist = sample_rate / 2.0;
+    let refused = FilterError::Cutoff { cutoff, nyquist };
+    if !(cutoff > 0.0 && cutoff < nyquist) {
+        return Err(refused);
+    }
+    let (&[first, ..], &[.., last]) = (samples, samples) else {
+        return Err(FilterError::TooShort(0));
+    };
+    if samples.len() < 2 {
+        return Err(FilterError::TooShort(samples.len()));
+    }
+    if let Some(index) = samples.iter().position(|x| !x.is_finite()) {
+        return Err(FilterError::NotFinite(index));
+    }
+    let section =
+        Coefficients::from_normalized_params(Type::LowPass, cutoff / nyquist, Q_BUTTERWORTH_F64)
+            .map_err(|_| refused)?;
+
+    let padding = (PADDING_PERIODS * sample_rate / cutoff).ceil() as usize;
+    let padding = padding.min(samples.len() - 1);
+    let before = samples[1..=padding].iter().rev().map(|x| 2.0 * first - x);
+    let after = samples[samples.len() - 1 - padding..samples.len() - 1]
+        .iter()
+        .rev()
+        .map(|x| 2.0 * last - x);
+    let mut work: Vec<f64> = before.chain(samples.iter().copied()).chain(after).collect();
+
+    run(section, work.iter_mut());
+    run(section, work.iter_mut().rev());
+    Ok(work[padding..padding + samples.len()].to_vec())
+}
+
+/// One pass of the filter, in place. Its gain at rest is 1, so filtering the distance from the first sample from an empty
+/// state is the same as setting out settled on that sample.
+fn run<'a>(section: Coefficients<f64>, samples: impl Iterator<Item = &'a mut f64>) {
+    let mut state = DirectForm2Transposed::<f64>::new(section);
+    let mut origin = None;
+    for x in samples {
+        let origin = *origin.get_or_insert(*x);
+        *x = origin + state.run(*x - origin);
+    }
+}
