@@ -163,18 +163,17 @@ fn main() {
         "{:<58} {:>10} {:>10} {:>22} {:>10} {:>10}",
         "ratio A / B, medians of 9 pairs", "A / B", "aim", "smallest – largest", "A ns", "B ns"
     );
-    for (levels, aim, samples) in [
+    let sizes = [
         (20, "≥ 40", 50_000),
         (100, "≥ 900", 2_000),
         (1000, "≥ 60000", 20),
-    ] {
-        let name = format!("definition / fast, random walk, K = {levels}");
-        ratio(
-            &name,
-            aim,
-            definition(levels, &walk[..samples]),
-            stepping(levels, &walk),
-        );
+    ];
+    for (kind, input) in [("smooth", &smooth), ("random walk", &walk)] {
+        for (levels, aim, samples) in sizes {
+            let name = format!("definition / fast, {kind}, K = {levels}");
+            let plain = definition(levels, &input[..samples]);
+            ratio(&name, aim, plain, forward(levels, input));
+        }
     }
     for (kind, input) in [("smooth", &smooth), ("random walk", &walk)] {
         let name = format!("fast K = 1000 / fast K = 20, {kind}");

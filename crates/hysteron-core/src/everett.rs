@@ -97,34 +97,41 @@ pub(crate) struct Triangle<T> {
 }
 
 impl<T: Real> Triangle<T> {
-    /// The triangle between `a` and `b`; `up` is +1 where `b` is the maximum and −1 where `a` is.
-    ///
-    /// All choices are arithmetic: which way they go cannot be predicted, and a branch would cost
-    /// more than the rest. Where `a = b` the terms cancel to exactly zero.
+    /// The triangle that `(M, m)` lies in. Where `M = m` the terms cancel to exactly zero.
     #[inline(always)]
-    pub(crate) fn between(a: Split<T>, b: Split<T>, up: T) -> Self {
-        let (p, q) = (a.cell.max(b.cell), a.cell.min(b.cell));
-        let near = table_index(p, q);
-        let below = usize::from(up * (b.part - a.part) > T::ZERO); // C[p+1][q], not C[p][q+1]
+    pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
+        let near = table_index(max.cell, min.cell);
+        // On to C[p+1][q] or C[p][q+1].
+        let step = if max.part > min.part { max.cell + 1 } else { 1 };
         Self {
             near,
-            mid: near + 1 + p * below,
-            far: near + p + 2,
-            larger: a.part.larger(b.part),
-            smaller: a.part.smaller(b.part),
+            mid: near + step,
+            far: near + max.cell + 2,
+            larger: max.part.larger(min.part),
+            smaller: max.part.smaller(min.part),
         }
-    }
-
-    /// The Everett function from the table.
-    #[inline(always)]
-    pub(crate) fn evaluate(self, table: &[T]) -> T {
-        let (near, mid, far) = (table[self.near], table[self.mid], table[self.far]);
-        near + self.larger * (mid - near) + self.smaller * (far - mid)
     }
 }
 
-/// `e(M, m)` for `m ≤ M`.
-pub(crate) fn everett<T: Real>(table: &[T], levels: usize, max: T, min: T) -> T {
-    let (min, max) = (Split::of(min, levels), Split::of(max, levels));
-    Triangle::between(min, max, T::ONE).evaluate(table)
+/// The Everett function of a model: its table, and the grid that this stands on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grid<'a, T> {
+    pub(crate) table: &'a [T],
+    pub(crate) levels: usize,
+}
+
+impl<T: Real> Grid<'_, T> {
+    /// `e(M, m)` for `m ≤ M`.
+    #[inline(always)]
+    pub(crate) fn everett(self, max: Split<T>, min: Split<T>) -> T {
+        let Triangle {
+            near,
+            mid,
+            far,
+            larger,
+            smaller,
+        } = Triangle::of(max, min);
+        let [near, mid, far] = [near, mid, far].map(|index| self.table[index]);
+        near + larger * (mid - near) + smaller * (far - mid)
+    }
 }

@@ -9,6 +9,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod branch;
 mod definition;
 mod error;
 mod everett;

@@ -139,7 +139,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.reset_off(state)?;
-        state.advance(&self.plane, self.table(), &[self.plane.max()], |_| {});
+        self.step(state, self.plane.max())?;
         Ok(())
     }
 
@@ -172,7 +172,8 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         state.reset_off(&self.plane);
         state.travel(self.table(), T::ZERO, input);
         for &x in turning_points {
-            state.travel(self.table(), x, input);
+            // Never −0, which has no place in the order of positions.
+            state.travel(self.table(), x.larger(T::ZERO), input);
         }
         Ok(())
     }
@@ -190,9 +191,9 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        state.advance(&self.plane, self.table(), &[input], |_| {});
+        let sum = state.step(&self.plane, self.table(), input);
         Ok(Output {
-            output: self.outward(state.place().y),
+            output: self.outward(sum),
             clipped: self.plane.clipped(input),
         })
     }
@@ -212,12 +213,11 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.check(state)?;
-        if output.len() < input.len() {
-            return Err(Error::MemoryTooSmall {
-                needed: input.len(),
-                found: output.len(),
-            });
-        }
+        let found = output.len();
+        let Some(output) = output.get_mut(..input.len()) else {
+            let needed = input.len();
+            return Err(Error::MemoryTooSmall { needed, found });
+        };
         // One pass without an early exit, so that checking costs next to nothing.
         let mut count = ClippedCount::default();
         let mut finite = true;
@@ -230,13 +230,10 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             let index = input.iter().position(|t| !t.is_finite()).unwrap_or(0);
             return Err(Error::InputNotFinite { index });
         }
-        // What the operators put out is linear in their states, so it can follow in the same loop.
+        // What the operators put out is linear in their states: one gain and offset for all.
         let (gain, offset) = self.outward_line();
-        let mut places = output.iter_mut();
-        state.advance(&self.plane, self.table(), input, |y| {
-            if let Some(place) = places.next() {
-                *place = gain * y + offset;
-            }
+        state.run(&self.plane, self.table(), input, output, |y| {
+            gain * y + offset
         });
         Ok(count)
     }

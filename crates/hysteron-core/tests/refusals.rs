@@ -160,4 +160,7 @@ fn states_of_other_models_and_broken_saves() {
     assert_eq!(state.gamma(2, 1), Err(Error::Levels(2)));
     assert_eq!(state.gamma(1, 4), Err(Error::Levels(4)));
     assert_eq!(state.gamma(0, 1), Err(Error::Levels(0)));
+    // −0 is 0: the bottom of the plane, from where 1 is reached again.
+    assert_eq!(model.restore(&mut state, &[2.0, -0.0, 1.0], 0.0), Ok(()));
+    assert!(state.turning_points().eq([1.0]));
 }
