@@ -161,9 +161,9 @@ pub(crate) struct Invert {
     /// What the input does while the target stands still
     #[arg(long, value_enum, default_value = "hold")]
     pub(crate) policy: Policy,
-    /// With `anticipate`: movements of the target up to this size count as standing still, in its unit
-    /// [default: 1 % of the model's range]
-    #[arg(long, value_name = "Y")]
+    /// Reversals of the target up to this size are noise and not followed, in its unit
+    /// [default: 0 with `hold`, 1 % of the model's range with `anticipate`]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     pub(crate) band: Option<f64>,
     /// With `anticipate`: rows to look ahead for the next reversal
     #[arg(long, value_name = "N", default_value_t = 65_536)]

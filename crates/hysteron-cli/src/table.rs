@@ -19,16 +19,19 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     let model = Model::read(&args.model)?;
+    if let Some(band) = args.band.filter(|band| !(band.is_finite() && *band >= 0.0)) {
+        return Err(format!("--band {band}: it must be a number, and not below zero").into());
+    }
     let how = match args.policy {
-        args::Policy::Hold => hysteron::Invert::Hold,
+        args::Policy::Hold => hysteron::Invert::Hold {
+            band: args.band.unwrap_or(0.0),
+        },
         args::Policy::Anticipate => {
             let (off, on) = model.output_range();
-            let band = args.band.unwrap_or(0.01 * (on - off).abs());
-            if band.is_nan() || band < 0.0 {
-                return Err(format!("--band {band}: it must not be negative").into());
+            hysteron::Invert::Anticipate {
+                band: args.band.unwrap_or(0.01 * (on - off).abs()),
+                rows: args.look_ahead,
             }
-            let rows = args.look_ahead;
-            hysteron::Invert::Anticipate { band, rows }
         }
     };
     let what = ["targets above the model's range", "targets below it"];

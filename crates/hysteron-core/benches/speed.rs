@@ -130,7 +130,7 @@ fn inverse(levels: usize, targets: &[f64]) -> impl FnMut() -> f64 {
             for &y in targets {
                 black_box(
                     inverse
-                        .step(&mut state, black_box(y), Policy::Hold)
+                        .step(&mut state, black_box(y), Policy::HOLD)
                         .unwrap(),
                 );
             }

@@ -27,18 +27,29 @@ pub enum Direction {
 }
 
 /// What the input does while the target stands still.
+///
+/// With a `tolerance` above zero, a target that goes back by up to as much stands still too: without
+/// one, the input crosses the whole dead band and back for each reversal that noise makes. It is in
+/// the output's unit and never below zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Policy<T> {
     /// It stands still as well (equation 14).
-    Hold,
+    Hold {
+        /// How far the target may go back.
+        tolerance: T,
+    },
     /// It crosses the dead band at once, to the edge where the output starts to move that way.
     Anticipate {
         /// Where the target goes next.
         heading: Direction,
-        /// Outputs within this distance of the one at the turning point count as standing still; 0
-        /// for the exact dead band. Never below zero.
+        /// How far the target may go back, or away from the turning point that it rests at.
         tolerance: T,
     },
+}
+
+impl<T: Real> Policy<T> {
+    /// The chapter's policy: the input stands still for equal targets only.
+    pub const HOLD: Self = Policy::Hold { tolerance: T::ZERO };
 }
 
 /// Whether a target can be reached.
@@ -93,9 +104,9 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// let model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
     /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
     /// let inverse = model.inverse()?;
-    /// let solution = inverse.step(&mut state, 4.0, Policy::Hold)?;
+    /// let solution = inverse.step(&mut state, 4.0, Policy::HOLD)?;
     /// assert_eq!((solution.input, solution.status), (0.5, Status::Ok));
-    /// assert_eq!(inverse.step(&mut state, 9.0, Policy::Hold)?.status, Status::High);
+    /// assert_eq!(inverse.step(&mut state, 9.0, Policy::HOLD)?.status, Status::High);
     /// # Ok::<(), hysteron_core::Error>(())
     /// ```
     pub fn step<S>(
@@ -148,22 +159,21 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             });
         }
         let now = state.place().y;
-        let input = match policy {
-            Policy::Anticipate { heading, tolerance }
-                if within(
-                    wanted,
-                    self.rest(state, heading),
-                    tolerance.larger(self.slack),
-                ) =>
-            {
-                let rest = self.rest(state, heading);
-                let tolerance = tolerance.larger(T::ZERO); // NaN too
+        let (heading, tolerance) = match policy {
+            Policy::Hold { tolerance } => (None, tolerance),
+            Policy::Anticipate { heading, tolerance } => (Some(heading), tolerance),
+        };
+        let tolerance = tolerance.larger(T::ZERO); // NaN too
+        let rest = heading.map(|heading| (heading, self.rest(state, heading)));
+        let goes_back = (wanted > now) != state.is_rising();
+        let input = match rest {
+            Some((heading, rest)) if within(wanted, rest, tolerance.larger(self.slack)) => {
                 match heading {
                     Direction::Rising => self.rising(state, Goal::Leave(rest + tolerance)),
                     Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
                 }
             }
-            _ if within(wanted, now, self.slack) => {
+            _ if within(wanted, now, self.slack) || goes_back && within(wanted, now, tolerance) => {
                 state.input().limited(plane.bottom(), plane.max())
             }
             _ if wanted > now => self.rising(state, Goal::Reach(wanted, self.slack)),

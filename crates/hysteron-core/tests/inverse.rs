@@ -29,7 +29,7 @@ fn worst_return(plane: Plane<f64>, operator: Operator, weights: &[f64], rng: &mu
             3 => low,
             _ => (y + (high - low) * rng.random_range(-0.2..0.2)).clamp(low, high),
         };
-        let solution = inverse.step(&mut state, y, Policy::Hold).unwrap();
+        let solution = inverse.step(&mut state, y, Policy::HOLD).unwrap();
         assert_eq!(solution.status, Status::Ok);
         let reached = model.step(&mut forward, solution.input).unwrap().output;
         worst = worst.max((reached - y).abs() / (high - low));
@@ -148,7 +148,7 @@ fn equals_the_candidate_formulas_of_the_chapter() {
                 falls += 1;
                 falling_candidates(&plane, &mu, plain.states(), target)
             };
-            let found = inverse.solve(&state, target, Policy::Hold).unwrap().input;
+            let found = inverse.solve(&state, target, Policy::HOLD).unwrap().input;
             worst = worst.max((found - expected).abs() / plane.step());
         }
     }
@@ -171,18 +171,18 @@ fn out_of_reach_and_equal_targets() {
         let (model, mut state) = build(plane, operator, &weights);
         let inverse = model.inverse().unwrap();
         let (low, high) = model.output_range();
-        let above = inverse.step(&mut state, high + 1.0, Policy::Hold).unwrap();
+        let above = inverse.step(&mut state, high + 1.0, Policy::HOLD).unwrap();
         assert_eq!((above.input, above.status), (80.0, Status::High));
-        let below = inverse.step(&mut state, low - 1.0, Policy::Hold).unwrap();
+        let below = inverse.step(&mut state, low - 1.0, Policy::HOLD).unwrap();
         assert_eq!((below.input, below.status), (plane.bottom(), Status::Low));
         model.step(&mut state, 51.3).unwrap();
         let same = inverse
-            .solve(&state, model.output(&state), Policy::Hold)
+            .solve(&state, model.output(&state), Policy::HOLD)
             .unwrap();
         assert_eq!((same.input, same.status), (51.3, Status::Ok));
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let before = state.clone();
-            let refused = inverse.step(&mut state, bad, Policy::Hold);
+            let refused = inverse.step(&mut state, bad, Policy::HOLD);
             assert_eq!(refused, Err(Error::InputNotFinite { index: 0 }));
             assert_eq!(state, before);
         }
@@ -201,10 +201,10 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     let (plane, weights) = dead_band();
     let (model, mut state) = build(plane, Operator::Mkp, &weights);
     let inverse = model.inverse().unwrap();
-    let up = inverse.step(&mut state, 2.0, Policy::Hold).unwrap();
+    let up = inverse.step(&mut state, 2.0, Policy::HOLD).unwrap();
     let y = model.output(&state);
     assert_eq!(
-        inverse.solve(&state, y, Policy::Hold).unwrap().input,
+        inverse.solve(&state, y, Policy::HOLD).unwrap().input,
         up.input
     );
     let falling = Policy::Anticipate {
@@ -233,7 +233,26 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     };
     assert!((inverse.solve(&state, y, loose).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
     let moved = inverse.solve(&state, y + 0.5, loose).unwrap();
-    assert_eq!(moved, inverse.solve(&state, y + 0.5, Policy::Hold).unwrap());
+    assert_eq!(moved, inverse.solve(&state, y + 0.5, Policy::HOLD).unwrap());
+}
+
+#[test]
+fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
+    let (plane, weights) = dead_band();
+    let (model, mut state) = build(plane, Operator::Mkp, &weights);
+    let inverse = model.inverse().unwrap();
+    let hold = Policy::Hold { tolerance: 0.3 };
+    let up = inverse.step(&mut state, 2.0, hold).unwrap();
+    // Back by less: the input stays. On by as little: it follows. Back by more: it crosses.
+    assert_eq!(inverse.step(&mut state, 1.8, hold).unwrap().input, up.input);
+    assert!(inverse.step(&mut state, 2.1, hold).unwrap().input > up.input);
+    let down = inverse.step(&mut state, 1.7, hold).unwrap();
+    assert!(down.input < up.input - 30.0, "{down:?}");
+    assert!((model.output(&state) - 1.7).abs() < 1e-12);
+    assert_eq!(
+        inverse.step(&mut state, 1.9, hold).unwrap().input,
+        down.input
+    );
 }
 
 #[test]
@@ -242,10 +261,10 @@ fn on_a_flat_stretch_the_first_input_is_returned() {
     let (model, mut state) = build(plane, Operator::Mkp, &weights);
     let inverse = model.inverse().unwrap();
     // Full output is reached at β_6 = 70, although it lasts to 80.
-    assert!((inverse.step(&mut state, 3.0, Policy::Hold).unwrap().input - 70.0).abs() < 1e-9);
+    assert!((inverse.step(&mut state, 3.0, Policy::HOLD).unwrap().input - 70.0).abs() < 1e-9);
     model.step(&mut state, 80.0).unwrap();
     // Zero is reached at α_1 = 20.
-    assert!((inverse.step(&mut state, 0.0, Policy::Hold).unwrap().input - 20.0).abs() < 1e-9);
+    assert!((inverse.step(&mut state, 0.0, Policy::HOLD).unwrap().input - 20.0).abs() < 1e-9);
 }
 
 #[test]
@@ -263,7 +282,7 @@ fn relays_jump_to_or_past_the_target() {
             let before = state.clone();
             let target = rng.random_range(low..=high);
             let input = inverse
-                .step(&mut state, target, Policy::Hold)
+                .step(&mut state, target, Policy::HOLD)
                 .unwrap()
                 .input;
             let (start, reached) = (model.output(&before), model.output(&state));

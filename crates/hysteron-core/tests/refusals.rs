@@ -144,7 +144,7 @@ fn states_of_other_models_and_broken_saves() {
     assert_eq!(model.reset_on(&mut larger), Err(Error::StateMismatch));
     let inverse = model.inverse().unwrap();
     assert_eq!(
-        inverse.step(&mut larger, 0.5, Policy::Hold),
+        inverse.step(&mut larger, 0.5, Policy::HOLD),
         Err(Error::StateMismatch)
     );
     let before = state.clone();

@@ -4,8 +4,12 @@ use crate::recording::range;
 use crate::turning::{Turning, headings};
 use crate::{Errors, Model, Policy, Recording, Result, Status};
 
-/// Output movements up to this part of the measured range count as standing still.
-const STILL: f64 = 0.01;
+/// Reversals of the output up to this part of its measured range are noise: the inverse does not follow them.
+const NOISE: f64 = 0.01;
+
+/// Around a turning point the output stands still as far as it is within this part of its range. Twice
+/// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
+const STILL: f64 = 2.0 * NOISE;
 
 /// Forward and inverse tests of a model on one recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,8 +73,8 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 
 fn evaluate_inverse(model: &Model, recording: &Recording) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
-    let tolerance = STILL * (high - low);
-    let moving = moving(&recording.output, tolerance);
+    let tolerance = NOISE * (high - low);
+    let moving = moving(&recording.output, tolerance, STILL * (high - low));
     let headings = headings(&recording.output, tolerance);
     let run = |policy: &dyn Fn(usize) -> Policy<f64>| -> Result<InverseRun> {
         let inverse = model.inverse()?;
@@ -90,10 +94,10 @@ fn evaluate_inverse(model: &Model, recording: &Recording) -> Result<InverseEvalu
             out_of_reach,
         })
     };
-    let hold = run(&|_| Policy::Hold)?;
+    let hold = run(&|_| Policy::Hold { tolerance })?;
     let anticipate = run(&|n| match headings[n] {
         Some(heading) => Policy::Anticipate { heading, tolerance },
-        None => Policy::Hold,
+        None => Policy::Hold { tolerance },
     })?;
     Ok(InverseEvaluation {
         moving,
@@ -103,9 +107,9 @@ fn evaluate_inverse(model: &Model, recording: &Recording) -> Result<InverseEvalu
 }
 
 /// Whether the output moves at each sample: it does not around a turning point, as far as it stays
-/// within `tolerance` of it.
-fn moving(output: &[f64], tolerance: f64) -> Vec<bool> {
-    let mut turning = Turning::new(tolerance);
+/// within `still` of it.
+fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
+    let mut turning = Turning::new(noise);
     let mut moving = vec![true; output.len()];
     let turns: Vec<usize> = output
         .iter()
@@ -116,7 +120,7 @@ fn moving(output: &[f64], tolerance: f64) -> Vec<bool> {
         moving.fill(false);
     }
     for turn in turns.into_iter().chain([output.len() - 1]) {
-        let still = |n: &usize| (output[*n] - output[turn]).abs() <= tolerance;
+        let still = |n: &usize| (output[*n] - output[turn]).abs() <= still;
         let first = (0..=turn).rev().take_while(still).last().unwrap_or(turn);
         let last = (turn..output.len())
             .take_while(still)

@@ -40,7 +40,7 @@ impl Sign {
 ///
 /// let inverse = model.inverse()?;
 /// let mut state = model.start();
-/// let solution = inverse.step(&mut state, 12.5, Policy::Hold)?;
+/// let solution = inverse.step(&mut state, 12.5, Policy::HOLD)?;
 /// assert!((model.simulate(&[solution.input])?[0] - 12.5).abs() < 1e-12);
 /// # Ok::<(), hysteron::Error>(())
 /// ```

@@ -46,14 +46,16 @@ pub fn simulate_table(
 }
 
 /// How a table of targets is inverted.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Invert {
     /// The input rests while the target rests.
-    #[default]
-    Hold,
+    Hold {
+        /// Reversals of the target up to this size are not followed, in its unit.
+        band: f64,
+    },
     /// The dead band is crossed as soon as the target is known to reverse.
     Anticipate {
-        /// Movements of the target up to this size are no reversals, in its unit.
+        /// Reversals of the target up to this size are not followed, in its unit.
         band: f64,
         /// How many rows to look ahead at most; further on the input rests.
         rows: usize,
@@ -80,9 +82,10 @@ pub fn invert_table(
         sink: Sink::start(table, out, &["input_model", "status"])?,
     };
     match how {
-        Invert::Hold => {
+        Invert::Hold { band } => {
+            let policy = Policy::Hold { tolerance: band };
             while table.advance()? {
-                inverting.row(&table.row(), table.number(column)?, Policy::Hold)?;
+                inverting.row(&table.row(), table.number(column)?, policy)?;
                 progress(table.bytes_read());
             }
         }
@@ -92,10 +95,10 @@ pub fn invert_table(
             let mut release =
                 |waiting: &mut VecDeque<(Row, f64)>, heading: Option<Direction>, count: usize| {
                     let tolerance = band;
-                    let policy = heading.map_or(Policy::Hold, |heading| Policy::Anticipate {
-                        heading,
-                        tolerance,
-                    });
+                    let policy = match heading {
+                        Some(heading) => Policy::Anticipate { heading, tolerance },
+                        None => Policy::Hold { tolerance },
+                    };
                     for (row, target) in waiting.drain(..count) {
                         inverting.row(&row, target, policy)?;
                     }

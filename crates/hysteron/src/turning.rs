@@ -45,16 +45,14 @@ impl Turning {
         if y > self.high.1 {
             self.high = (n, y);
         }
-        let (turn, heading) = if self.high.1 - y > self.band {
-            (self.high.0, Direction::Falling)
-        } else if y - self.low.1 > self.band {
-            (self.low.0, Direction::Rising)
+        use Direction::{Falling, Rising};
+        let (turn, heading) = if self.heading != Some(Falling) && self.high.1 - y > self.band {
+            (self.high.0, Falling)
+        } else if self.heading != Some(Rising) && y - self.low.1 > self.band {
+            (self.low.0, Rising)
         } else {
             return None;
         };
-        if self.heading == Some(heading) {
-            return None;
-        }
         let first = self.heading.replace(heading).is_none();
         // The extremes of the new branch are looked for from here on.
         (self.low, self.high) = ((n, y), (n, y));
@@ -160,6 +158,29 @@ mod tests {
         assert_eq!(headings(&series, 0.5), expected.map(Some));
         assert_eq!(headings(&[1.0, 1.1, 0.9], 0.5), [None; 3]);
         assert_eq!(headings(&[], 0.5), []);
+    }
+
+    /// The definition: from an extreme on, look for the next one in the whole series.
+    #[test]
+    fn turning_points_of_a_long_series() {
+        let legs = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0, 4.0, 3.5, 9.0];
+        let mut series = vec![legs[0]];
+        for pair in legs.windows(2) {
+            let wiggle = |n: i32| if n % 2 == 0 { 0.1 } else { 0.0 };
+            series.extend((1..=50).map(|n| {
+                pair[0] + (pair[1] - pair[0]) * f64::from(n) / 50.0
+                    - wiggle(n) * f64::from(50 - n) / 50.0
+            }));
+        }
+        let mut turning = Turning::new(0.75);
+        let found: Vec<_> = series.iter().filter_map(|&y| turning.push(y)).collect();
+        let values: Vec<f64> = found.iter().map(|(n, _)| series[*n]).collect();
+        // The wiggle from 4.0 to 3.5 and back is within the band.
+        let expected = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0];
+        assert_eq!(values.len(), expected.len(), "{values:?}");
+        for (value, expected) in values.iter().zip(expected) {
+            assert!((value - expected).abs() <= 0.1, "{values:?}");
+        }
     }
 
     #[test]

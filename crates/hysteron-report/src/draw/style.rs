@@ -43,7 +43,6 @@ pub(crate) const GRID: Stroke = Stroke::solid("#e6e9ed", 0.8);
 /// The line of no discrepancy.
 pub(crate) const ZERO: Stroke = Stroke::solid("#8a929c", 1.0);
 /// Outlines and pointers.
-pub(crate) const THIN: Stroke = Stroke::solid("#444b54", 1.0);
 /// A level that a picture refers to.
 pub(crate) const GUIDE: Stroke = Stroke {
     colour: "#444b54",

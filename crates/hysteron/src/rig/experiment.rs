@@ -13,7 +13,10 @@ use rand_chacha::rand_core::SeedableRng;
 /// The thermocouple's noise has a standard deviation of ⅓ °C, which on the steep part of a branch counts as much as that of the
 /// LVDT. The signals themselves are slow (tens of seconds a branch) except for the corners, where
 /// the current is switched; a lower cut-off would round them by more than the noise that it takes away.
-pub const CUTOFF_HZ: f64 = 0.15;
+pub const CUTOFF_HZ: f64 = 0.3;
+
+/// Samples that [`prepared`] keeps in a period of the cut-off frequency.
+const KEPT_PER_PERIOD: f64 = 6.0;
 
 /// Stretch in which a switching time is searched, s. The time found does not depend on it.
 const SEARCH_STEP_S: f64 = 1.0;
@@ -56,7 +59,7 @@ impl Default for Experiment {
                 62.0, 42.0, 58.0, 46.0, 66.0, 38.0, 56.0, 25.0, // loops within loops
             ],
             rest_s: 5.0,
-            sample_interval_s: 0.5,
+            sample_interval_s: 0.05,
             thermocouple: Sensor::THERMOCOUPLE,
             lvdt: Sensor::LVDT,
         }
@@ -174,10 +177,14 @@ pub fn prepared(recording: &Recording) -> Result<Recording, RigError> {
     let Some([first, .., last]) = recording.time.as_deref() else {
         return Err(RigError::NoTime);
     };
-    let rate = (recording.input.len() as f64 - 1.0) / (last - first);
+    let rate = (recording.len() as f64 - 1.0) / (last - first);
+    // What is left varies over several samples: fewer of them say the same.
+    let every = ((rate / (KEPT_PER_PERIOD * CUTOFF_HZ)).round() as usize).max(1);
+    let thin = |values: &[f64]| values.iter().copied().step_by(every).collect::<Vec<f64>>();
     Ok(Recording {
-        input: low_pass(&recording.input, rate, CUTOFF_HZ)?,
-        output: low_pass(&recording.output, rate, CUTOFF_HZ)?,
+        time: recording.time.as_deref().map(thin),
+        input: thin(&low_pass(&recording.input, rate, CUTOFF_HZ)?),
+        output: thin(&low_pass(&recording.output, rate, CUTOFF_HZ)?),
         ..recording.clone()
     })
 }
