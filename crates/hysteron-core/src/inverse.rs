@@ -29,8 +29,9 @@ pub enum Direction {
 /// What the input does while the target stands still.
 ///
 /// With a `tolerance` above zero, a target that goes back by up to as much stands still too: without
-/// one, the input crosses the whole dead band and back for each reversal that noise makes. It is in
-/// the output's unit and never below zero.
+/// one, the input crosses the whole dead band and back for each reversal that noise makes. A target
+/// out of reach by up to as much is taken as the nearest end. It is in the output's unit and never
+/// below zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Policy<T> {
     /// It stands still as well (equation 14).
@@ -146,33 +147,33 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             Operator::Mkp => target,
             Operator::Kp | Operator::Relay => T::HALF * target + T::HALF * total,
         };
-        if wanted > total + self.slack {
-            return Ok(Solution {
-                input: plane.max(),
-                status: Status::High,
-            });
-        }
-        if wanted < -self.slack {
-            return Ok(Solution {
-                input: plane.bottom(),
-                status: Status::Low,
-            });
-        }
-        let now = state.place().y;
         let (heading, tolerance) = match policy {
             Policy::Hold { tolerance } => (None, tolerance),
             Policy::Anticipate { heading, tolerance } => (Some(heading), tolerance),
         };
         let tolerance = tolerance.larger(T::ZERO); // NaN too
+        let reach = tolerance.larger(self.slack);
+        if wanted > total + reach {
+            return Ok(Solution {
+                input: plane.max(),
+                status: Status::High,
+            });
+        }
+        if wanted < -reach {
+            return Ok(Solution {
+                input: plane.bottom(),
+                status: Status::Low,
+            });
+        }
+        let wanted = wanted.limited(T::ZERO, total);
+        let now = state.place().y;
         let rest = heading.map(|heading| (heading, self.rest(state, heading)));
         let goes_back = (wanted > now) != state.is_rising();
         let input = match rest {
-            Some((heading, rest)) if within(wanted, rest, tolerance.larger(self.slack)) => {
-                match heading {
-                    Direction::Rising => self.rising(state, Goal::Leave(rest + tolerance)),
-                    Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
-                }
-            }
+            Some((heading, rest)) if within(wanted, rest, reach) => match heading {
+                Direction::Rising => self.rising(state, Goal::Leave(rest + tolerance)),
+                Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
+            },
             _ if within(wanted, now, self.slack) || goes_back && within(wanted, now, tolerance) => {
                 state.input().limited(plane.bottom(), plane.max())
             }

@@ -150,8 +150,8 @@ mod tests {
 
     #[test]
     fn loops_keep_their_extremes() {
-        let circle = (0..10_000)
-            .map(|k| (k as f64 * 0.01).sin_cos())
+        let circle = (0..100_000)
+            .map(|k| (k as f64 * 0.001).sin_cos())
             .map(|(s, c)| [300.0 + 200.0 * c, 200.0 + 150.0 * s]);
         let all: Vec<Point> = circle.collect();
         let drawn = loops(all.iter().copied()).concat();

@@ -19,13 +19,8 @@ pub enum ReportError {
         found: usize,
     },
     /// A file or the directory could not be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file or directory.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] hysteron::Error),
     /// A figure could not be turned into pixels.
     #[error("cannot draw {}: {reason}", path.display())]
     Raster {

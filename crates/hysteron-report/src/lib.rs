@@ -29,3 +29,5 @@ pub use report::Report;
 
 #[cfg(test)]
 mod fixture;
+#[cfg(test)]
+mod tests;

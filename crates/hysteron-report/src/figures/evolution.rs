@@ -8,7 +8,7 @@ use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::{GUIDE, LABEL, TICK};
 use crate::draw::text;
 use crate::figure::Figure;
-use crate::instants::{candidates, remembered};
+use crate::instants::candidates;
 use crate::plane::{Half, axes};
 use crate::view::View;
 
@@ -69,7 +69,7 @@ fn instants(view: &View<'_>) -> Vec<Instant> {
     let all: Vec<Instant> = looked_at
         .map(|sample| Instant {
             sample,
-            half: Half::of_states(view.source, &remembered(&input[..=sample])),
+            half: Half::of_states(view.source, &input[..=sample]),
         })
         .collect();
     let (telling, uniform): (Vec<_>, Vec<_>) = all
