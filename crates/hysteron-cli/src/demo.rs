@@ -43,13 +43,16 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
     ))
 }
 
+/// The errors of one part of the samples.
+type Part = fn(&InverseRun) -> Option<&Errors>;
+
 fn summary(demo: &Reproduction) -> Result<String> {
     let evaluation = &demo.evaluation;
     let inverse = evaluation.inverse.as_ref().map_err(Clone::clone)?;
     let fit = demo.model.fit.as_ref().ok_or("a fit says how it went")?;
     let forward = &evaluation.forward;
     let mm = |value: f64| text::with_unit(value, &demo.model.output);
-    let both = |part: fn(&InverseRun) -> Option<&Errors>, measure: fn(&Errors) -> f64| {
+    let both = |part: Part, measure: fn(&Errors) -> f64| {
         [&inverse.hold, &inverse.anticipate].map(|run| {
             let value = part(run).map(measure);
             value.map_or("none".into(), |v| text::with_unit(v, &demo.model.input))
@@ -78,7 +81,7 @@ fn summary(demo: &Reproduction) -> Result<String> {
             "0.5 mm".into(),
         ],
     ];
-    let lines: [(&str, fn(&InverseRun) -> Option<&Errors>, &str); 2] = [
+    let lines: [(&str, Part, &str); 2] = [
         (
             "while the output moves",
             |run| run.moving.as_ref(),

@@ -165,7 +165,9 @@ mod tests {
                     .map(|p| p[axis])
                     .fold(f64::NEG_INFINITY, f64::max)
             };
-            assert_eq!((low(&drawn), high(&drawn)), (low(&all), high(&all)));
+            // What lies on a pixel drawn already may go: half a pixel cannot be seen.
+            assert!((low(&drawn) - low(&all)).abs() < 0.5);
+            assert!((high(&drawn) - high(&all)).abs() < 0.5);
         }
     }
 

@@ -39,3 +39,8 @@ pub use turning::{Headings, Turning, headings};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;
+
+/// The README's code, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;
