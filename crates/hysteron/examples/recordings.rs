@@ -1,4 +1,4 @@
-//! Fits every recording of a folder with a `MANIFEST.csv` and prints a Markdown table:
+//! Fits every recording of a folder and prints `docs/recordings.md`:
 //! `cargo run --release -p hysteron --example recordings -- ../shared/data`
 
 use hysteron::{
@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .nth(1)
         .ok_or("name the folder of the recordings")?;
     let folder = Path::new(&folder);
+    print!("{}", include_str!("recordings.md"));
     println!(
         "| recording | input → output | samples | sign | MKP | weights not zero | KP | relay | MKP, least squares |"
     );
