@@ -73,16 +73,23 @@ pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f6
 
     let padding = (PADDING_PERIODS * sample_rate / cutoff).ceil() as usize;
     let padding = padding.min(samples.len() - 1);
-    let before = samples[1..=padding].iter().rev().map(|x| 2.0 * first - x);
-    let after = samples[samples.len() - 1 - padding..samples.len() - 1]
+    // Only the distance from the line through the end points is filtered: in a recording too short for the settling to die
+    // down, a ramp would be bent otherwise.
+    let rise = (last - first) / (samples.len() - 1) as f64;
+    let line = |n: usize| first + rise * n as f64;
+    let level: Vec<f64> = (0..).zip(samples).map(|(n, x)| x - line(n)).collect();
+    // Both end points lie on the line: reflection through them changes the sign.
+    let before = level[1..=padding].iter().rev().map(|x| -x);
+    let after = level[level.len() - 1 - padding..level.len() - 1]
         .iter()
         .rev()
-        .map(|x| 2.0 * last - x);
-    let mut work: Vec<f64> = before.chain(samples.iter().copied()).chain(after).collect();
+        .map(|x| -x);
+    let mut work: Vec<f64> = before.chain(level.iter().copied()).chain(after).collect();
 
     run(section, work.iter_mut());
     run(section, work.iter_mut().rev());
-    Ok(work[padding..padding + samples.len()].to_vec())
+    let filtered = &work[padding..padding + samples.len()];
+    Ok((0..).zip(filtered).map(|(n, x)| line(n) + x).collect())
 }
 
 /// One pass of the filter, in place. Its gain at rest is 1, so filtering the distance from the first sample from an empty

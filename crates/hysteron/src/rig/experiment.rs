@@ -3,7 +3,7 @@
 use super::error::{RigError, check};
 use super::plant::{Plant, Rig};
 use super::sensors::Sensor;
-use crate::filter::low_pass;
+use crate::filter::{FilterError, low_pass};
 use crate::{Origin, Quantity, Recording};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -174,8 +174,9 @@ impl Experiment {
 /// [`RigError::NoTime`] without time, [`RigError::Filter`] where the filter refuses, for example fewer than two samples or
 /// samples too far apart.
 pub fn prepared(recording: &Recording) -> Result<Recording, RigError> {
-    let Some([first, .., last]) = recording.time.as_deref() else {
-        return Err(RigError::NoTime);
+    let time = recording.time.as_deref().ok_or(RigError::NoTime)?;
+    let [first, .., last] = time else {
+        return Err(FilterError::TooShort(time.len()).into());
     };
     let rate = (recording.len() as f64 - 1.0) / (last - first);
     // What is left varies over several samples: fewer of them say the same.
