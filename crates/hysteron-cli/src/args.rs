@@ -103,7 +103,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
     /// Number of levels K of the plane; it has K(K+1)/2 operators
-    #[arg(long, default_value_t = 20)]
+    #[arg(long, default_value_t = 20, value_parser = parse_levels)]
     pub(crate) levels: usize,
     /// Lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
@@ -118,7 +118,7 @@ pub(crate) struct Fit {
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) sign: Sign,
     /// Output with every operator off [default: identified]
-    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) offset: Option<f64>,
     /// Unit of the input [default: from a header like `temperature [degC]`]
     #[arg(long, value_name = "UNIT")]
@@ -163,7 +163,7 @@ pub(crate) struct Invert {
     pub(crate) policy: Policy,
     /// Reversals of the target up to this size are noise and not followed, in its unit
     /// [default: 0 with `hold`, 1 % of the model's range with `anticipate`]
-    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_band)]
     pub(crate) band: Option<f64>,
     /// With `anticipate`: rows to look ahead for the next reversal
     #[arg(long, value_name = "N", default_value_t = 65_536)]
@@ -211,7 +211,7 @@ pub(crate) struct Inspect {
     #[arg(long, value_name = "COL", requires = "input")]
     pub(crate) time: Option<String>,
     /// Levels of the plane on which excited operators are counted
-    #[arg(long, default_value_t = 20)]
+    #[arg(long, default_value_t = 20, value_parser = parse_levels)]
     pub(crate) levels: usize,
     /// Its lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
@@ -229,14 +229,33 @@ pub(crate) struct Demo {
     pub(crate) json: Json,
 }
 
+fn parse_finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{text}` is not a finite number")),
+    }
+}
+
+fn parse_band(text: &str) -> Result<f64, String> {
+    let band = parse_finite(text)?;
+    if band < 0.0 {
+        return Err("it must not be below zero".into());
+    }
+    Ok(band)
+}
+
+fn parse_levels(text: &str) -> Result<usize, String> {
+    let most = hysteron::MAX_LEVELS;
+    match text.parse() {
+        Ok(levels) if (2..=most).contains(&levels) => Ok(levels),
+        _ => Err(format!("a plane has from 2 to {most} levels")),
+    }
+}
+
 fn parse_range(text: &str) -> Result<(f64, f64), String> {
     let numbers: Vec<f64> = text
         .split(',')
-        .map(|part| {
-            part.trim()
-                .parse()
-                .map_err(|_| format!("`{part}` is not a number"))
-        })
+        .map(parse_finite)
         .collect::<Result<_, _>>()?;
     match numbers[..] {
         [min, max] if min < max => Ok((min, max)),

@@ -61,7 +61,9 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
                 name.to_owned(),
                 text::with_unit(errors.rmse, quantity),
                 text::with_unit(errors.max_abs, quantity),
-                format!("{:.2}", errors.nrmse_percent),
+                errors
+                    .nrmse_percent
+                    .map_or("–".into(), |percent| format!("{percent:.2}")),
                 errors.samples.to_string(),
             ]);
         }

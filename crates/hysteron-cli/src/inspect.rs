@@ -18,10 +18,7 @@ pub(crate) fn run(args: &args::Inspect) -> Result<()> {
 fn columns(args: &args::Inspect) -> Result<()> {
     let mut table = TableReader::open(&args.file)?;
     let names = table.header().to_vec();
-    let columns: Vec<_> = names
-        .iter()
-        .map(|name| table.column(name))
-        .collect::<hysteron::Result<_>>()?;
+    let columns: Vec<_> = table.columns().collect();
     let empty = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
     let mut ranges = vec![empty; columns.len()];
     let mut rows = 0_u64;
@@ -103,12 +100,12 @@ fn recording_text(summary: &RecordingSummary) -> String {
     }
     let time = summary.time.as_ref().map_or(String::new(), |time| {
         format!(
-            "time {} to {} s, median step {} s, longest {} s (line {}), {} gaps, {} repeated\n",
+            "time {} to {} s, median step {} s, longest {} s (before sample {}), {} gaps, {} repeated\n",
             text::number(time.start),
             text::number(time.end),
             text::number(time.median_step),
             text::number(time.longest_step),
-            time.longest_step_at_line,
+            time.longest_step_before_sample,
             time.gaps,
             time.repeated
         )

@@ -19,9 +19,6 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     let model = Model::read(&args.model)?;
-    if let Some(band) = args.band.filter(|band| !(band.is_finite() && *band >= 0.0)) {
-        return Err(format!("--band {band}: it must be a number, and not below zero").into());
-    }
     let how = match args.policy {
         args::Policy::Hold => hysteron::Invert::Hold {
             band: args.band.unwrap_or(0.0),
@@ -29,7 +26,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         args::Policy::Anticipate => {
             let (off, on) = model.output_range();
             hysteron::Invert::Anticipate {
-                band: args.band.unwrap_or(0.01 * (on - off).abs()),
+                band: args.band.unwrap_or(hysteron::NOISE * (on - off).abs()),
                 rows: args.look_ahead,
             }
         }

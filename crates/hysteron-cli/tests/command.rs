@@ -261,6 +261,11 @@ fn wrong_usage_is_code_two() {
         "fit run.csv --input x --output y -o m.json --range 1",
         "fit run.csv --input x --output y -o m.json --operator preisach",
         "inspect run.csv --input x",
+        "fit run.csv --input x --output y -o m.json --levels 0",
+        "fit run.csv --input x --output y -o m.json --levels 1000000",
+        "fit run.csv --input x --output y -o m.json --offset nan",
+        "fit run.csv --input x --output y -o m.json --range 0,inf",
+        "invert model.json run.csv --target y --band -1",
     ] {
         let done = bench.run(line);
         assert_eq!(done.code, 2, "{line}: {}", done.err);
@@ -295,10 +300,7 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
         ("t,x,y\n1,2,NaN\n", "line 2, column `y`: `NaN`"),
         ("t,x,y\n1,inf,3\n", "line 2, column `x`: `inf`"),
         ("t,x,y\n1,1e999,3\n", "line 2, column `x`: `1e999`"),
-        (
-            "t,x,y\n1,5,3\n2,5,4\n",
-            "column `x`: the input is 5 throughout",
-        ),
+        ("t,x,y\n1,5,3\n2,5,4\n", "column `x`: it is 5 throughout"),
         ("t;x;y\n1;2;3\n", "no column `x`: there are `t;x;y`"),
     ];
     for (text, expected) in cases {
@@ -400,6 +402,14 @@ fn bad_models_are_refused_by_field() {
             "{expected}: {said}"
         );
     }
+    // A fit of other tools, or none, is no fault.
+    for fit in ["{}", r#"{"solver": "nnls", "smoothing": 0.1}"#] {
+        bench.file(
+            "other.json",
+            &change("/fit", serde_json::from_str(fit).unwrap()),
+        );
+        assert_eq!(bench.run("simulate other.json run.csv --input x").code, 0);
+    }
     bench.file("bad.json", &change("/weights/4", (-1.5).into()));
     assert_eq!(bench.run("simulate bad.json run.csv --input x").code, 0);
     let said = bench.refused("invert bad.json run.csv --target y -o o.csv");
@@ -414,19 +424,80 @@ fn bad_models_are_refused_by_field() {
 #[test]
 fn bad_options_are_refused() {
     let bench = Bench::fitted();
-    for (options, expected) in [
-        ("--levels 0", "0 levels"),
-        ("--levels 1000000", "1000000 levels"),
-        ("--levels 1000", "take fewer levels"),
-        ("--offset nan", "offset"),
-    ] {
-        let said = bench.refused(&format!(
-            "fit run.csv --input x --output y -o m.json {options}"
-        ));
-        assert!(said.contains(expected), "{options}: {said}");
-    }
-    bench.refused("invert model.json run.csv --target y --band -1");
+    let said = bench.refused("fit run.csv --input x --output y -o m.json --levels 1000");
+    assert!(said.contains("take fewer levels"), "{said}");
     bench.refused("fit run.csv --input x --output y -o no/such/folder/m.json");
+    bench.refused("fit run.csv --input x --output y -o .");
+}
+
+#[test]
+fn columns_of_any_name_are_inspected() {
+    let bench = Bench::new();
+    bench.file("odd.csv", "x,x,\n1,a,3\n2,5,4\n");
+    let done = bench.run("inspect odd.csv --json");
+    assert_eq!(
+        done.json()["columns"].as_array().unwrap().len(),
+        3,
+        "{}",
+        done.err
+    );
+    assert_eq!(done.json()["columns"][1]["not_numbers"], 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_followed_and_devices_written_to() {
+    let bench = Bench::fitted();
+    bench.file("real.csv", "old");
+    std::os::unix::fs::symlink(bench.path("real.csv"), bench.path("link.csv")).unwrap();
+    assert_eq!(
+        bench
+            .run("simulate model.json run.csv --input x -o link.csv")
+            .code,
+        0
+    );
+    assert!(bench.path("link.csv").is_symlink());
+    assert_eq!(bench.read("real.csv").lines().count(), 401);
+    assert_eq!(
+        bench
+            .run("simulate model.json run.csv --input x -o /dev/null")
+            .code,
+        0
+    );
+    let said = bench.refused("simulate model.json run.csv --input x -o /dev/full");
+    assert!(said.contains("/dev/full"), "{said}");
+    // Over the file that is being read: it is replaced only when all is read.
+    assert_eq!(
+        bench
+            .run("simulate model.json run.csv --input x -o run.csv")
+            .code,
+        0
+    );
+    assert_eq!(bench.read("run.csv").lines().count(), 401);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_has_had_enough_is_no_fault() {
+    let bench = Bench::fitted();
+    let rows: String = (0..200_000).map(|n| format!("{n}\n")).collect();
+    bench.file("long.csv", &format!("x\n{rows}"));
+    let hysteron = assert_cmd::cargo::cargo_bin("hysteron");
+    let line = format!(
+        "set -o pipefail; {} simulate model.json long.csv --input x 2> err | head -n 2",
+        hysteron.display()
+    );
+    let status = std::process::Command::new("bash")
+        .args(["-c", &line])
+        .current_dir(bench.folder.path())
+        .stdout(std::process::Stdio::null())
+        .status()
+        .unwrap();
+    assert!(
+        status.success() && !bench.read("err").contains("roken"),
+        "{}",
+        bench.read("err")
+    );
 }
 
 #[test]

@@ -42,8 +42,15 @@ pub enum Error {
         /// The first one that does not fit, counted from 0.
         index: usize,
     },
-    /// A state was used with a model of other levels or another operator.
+    /// A state was used with another model than the one that made it.
     StateMismatch,
+    /// There is no operator `(i, j)`: `1 ≤ i ≤ j ≤ K`.
+    Operator {
+        /// Index of `α`.
+        i: usize,
+        /// Index of `β`.
+        j: usize,
+    },
 }
 
 impl Error {
@@ -60,6 +67,7 @@ impl Error {
             Error::InputNotFinite { .. } => 7,
             Error::TurningPoints { .. } => 8,
             Error::StateMismatch => 9,
+            Error::Operator { .. } => 10,
         }
     }
 }
@@ -133,6 +141,12 @@ impl fmt::Display for Error {
                 )
             }
             Error::StateMismatch => write!(f, "the state belongs to another model"),
+            Error::Operator { i, j } => {
+                write!(
+                    f,
+                    "there is no operator ({i}, {j}): 1 ≤ i ≤ j ≤ K is needed"
+                )
+            }
         }
     }
 }

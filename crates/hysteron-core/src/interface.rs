@@ -19,13 +19,10 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`, by equation (5) over the turning points. `O(depth)`.
     ///
     /// # Errors
-    /// [`Error::Levels`] with the index that is out of range.
+    /// [`Error::Operator`].
     pub fn gamma(&self, i: usize, j: usize) -> Result<T, Error> {
-        if i < 1 || i > j {
-            return Err(Error::Levels(i));
-        }
-        if j > self.levels() {
-            return Err(Error::Levels(j));
+        if i < 1 || i > j || j > self.levels() {
+            return Err(Error::Operator { i, j });
         }
         Ok(self
             .turning_points()

@@ -56,7 +56,7 @@ impl<T: Real> Policy<T> {
 /// Whether a target can be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// The input gives the target.
+    /// The input gives the target, up to the policy's tolerance.
     Ok,
     /// The target lies below every output; the input is the lowest one, `T_min − ΔT`.
     Low,
@@ -67,7 +67,8 @@ pub enum Status {
 /// An input, and whether it gives the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution<T> {
-    /// The input, in its unit, within the plane's active range `[T_min − ΔT, T_max]`.
+    /// The input, in its unit, within the plane's active range `[T_min − ΔT, T_max]`; where a relay model
+    /// holds an input beyond that, it stays.
     pub input: T,
     /// Whether it reaches the target.
     pub status: Status,
@@ -175,7 +176,12 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
                 Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
             },
             _ if within(wanted, now, self.slack) || goes_back && within(wanted, now, tolerance) => {
-                state.input().limited(plane.bottom(), plane.max())
+                // Beyond the plane only a relay could tell the nearest end from where it stands: on
+                // the way back it switches there.
+                match self.model.operator() {
+                    Operator::Relay => state.input(),
+                    _ => state.input().limited(plane.bottom(), plane.max()),
+                }
             }
             _ if wanted > now => self.rising(state, Goal::Reach(wanted, self.slack)),
             _ => self.falling(state, Goal::Reach(wanted, self.slack)),

@@ -5,6 +5,11 @@
 //! [`Model`] computes the same numbers in amortised `O(1)`, and [`Inverse`] solves it for the
 //! input, exactly, in `O(log K)`.
 //!
+//! *The chapter*, whose equations the docs number, is
+//! "Hysteresis behaviour and modeling of SMA actuators", in *Shape Memory Alloys*, ed. C. Cismasiu, 2010.
+//! Its misprints: (4) reads `−x/a` for `x/a`; (8) and (9) swap the indices of `s` in places; the upper
+//! index in (13) should be `f + 1`; the plane needs `α ≤ β ≤ T_max`.
+//!
 //! No allocation, no unsafe code, no panic on any input, `f32` or `f64`; all memory is the caller's.
 #![no_std]
 #![forbid(unsafe_code)]

@@ -29,6 +29,8 @@ pub struct Model<T, C> {
     operator: Operator,
     table: C,
     negative: Option<NegativeWeights>,
+    /// Tells models apart, for a state holds outputs of the one that made it.
+    stamp: u64,
 }
 
 /// What one step gives.
@@ -72,11 +74,14 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
             return Err(Error::MemoryTooSmall { needed, found });
         }
         let negative = everett::fill(levels, weights, table.as_mut())?;
+        let used = table.as_ref()[..needed].iter();
+        let stamp = stamp(operator, used.chain([&plane.min(), &plane.max()]));
         Ok(Self {
             plane,
             operator,
             table,
             negative,
+            stamp,
         })
     }
 }
@@ -110,14 +115,15 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     ///
     /// # Errors
     /// [`Error::MemoryTooSmall`].
-    pub fn state<S>(&self, corners: S) -> Result<State<T, S>, Error>
+    pub fn state<S>(&self, memory: S) -> Result<State<T, S>, Error>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        State::new(&self.plane, self.operator, corners)
+        State::new(&self.plane, self.operator, self.stamp, memory)
     }
 
-    /// Every operator off, the input at the bottom of the plane.
+    /// Every operator off, the input at the bottom of the plane. The state may have been that of
+    /// another model of the same levels and operator.
     ///
     /// # Errors
     /// [`Error::StateMismatch`].
@@ -125,8 +131,8 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        self.check(state)?;
-        state.reset_off(&self.plane);
+        self.fits(state)?;
+        state.reset_off(&self.plane, self.stamp);
         Ok(())
     }
 
@@ -143,7 +149,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         Ok(())
     }
 
-    /// Rebuilds the state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]).
+    /// Rebuilds the state that gave, in this model or one with other weights, `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]).
     ///
     /// # Errors
     /// [`Error::StateMismatch`], [`Error::InputNotFinite`], [`Error::TurningPoints`] where the
@@ -157,7 +163,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        self.check(state)?;
+        self.fits(state)?;
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
@@ -169,7 +175,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             }
             if index % 2 == 0 { high = x } else { low = x }
         }
-        state.reset_off(&self.plane);
+        state.reset_off(&self.plane, self.stamp);
         state.travel(self.table(), T::ZERO, input);
         for &x in turning_points {
             // Never −0, which has no place in the order of positions.
@@ -277,10 +283,34 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
+        if state.stamp() == self.stamp {
+            self.fits(state)
+        } else {
+            Err(Error::StateMismatch)
+        }
+    }
+
+    /// Whether a state's memory is of the right size and kind.
+    #[inline(always)]
+    fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
         if state.levels() == self.plane.levels() && state.operator() == self.operator {
             Ok(())
         } else {
             Err(Error::StateMismatch)
         }
     }
+}
+
+/// FNV-1a over whole numbers instead of bytes: quick, and different for different weights but by a
+/// chance of one in 2⁶⁴.
+fn stamp<'a, T: Real + 'a>(operator: Operator, numbers: impl Iterator<Item = &'a T>) -> u64 {
+    let start = 0xcbf2_9ce4_8422_2325 ^ operator as u64;
+    numbers.fold(start, |hash, number| {
+        (hash ^ number.bits())
+            .wrapping_mul(0x0000_0100_0000_01b3)
+            .rotate_left(29)
+    })
 }

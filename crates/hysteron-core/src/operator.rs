@@ -29,7 +29,7 @@ impl Operator {
 /// The ridge function of level `k` at the normalised input, equation (4): `r_k(x) = clamp(x − (k − 1), 0, 1)`.
 #[must_use]
 pub fn ridge<T: Real>(x: T, k: usize) -> T {
-    (x - T::from_index(k - 1)).limited(T::ZERO, T::ONE)
+    (x - T::from_index(k.saturating_sub(1))).limited(T::ZERO, T::ONE)
 }
 
 /// One MKP operator, equation (5): `γ ← max(r_j(x), min(γ, r_i(x)))`.

@@ -12,9 +12,10 @@ pub const fn operator_count(levels: usize) -> usize {
 }
 
 /// Place of operator `(i, j)`, `1 ≤ i ≤ j`, among the weights: row by row, `j = 1…K`, within a row `i = 1…j`.
+/// Level 0, which has no operators, counts as 1.
 #[must_use]
 pub const fn operator_index(i: usize, j: usize) -> usize {
-    j * (j - 1) / 2 + (i - 1)
+    j * j.saturating_sub(1) / 2 + i.saturating_sub(1)
 }
 
 /// Which end of the plane an input was clipped to.
@@ -59,13 +60,18 @@ impl<T: Real> Plane<T> {
         let steps = T::from_index(levels - 1);
         let step = (max - min) / steps;
         let mut per_unit = steps / (max - min);
-        // Rounded up, so that T_max never falls short of K.
-        while per_unit.is_finite() && (max - min) * per_unit < steps {
-            per_unit = per_unit + per_unit * T::EPSILON;
+        // Rounded up, so that T_max never falls short of K. The range is too wide for that where
+        // adding a rounding unit no longer adds anything.
+        for _ in 0..2 {
+            if (max - min) * per_unit < steps {
+                per_unit = per_unit + per_unit * T::EPSILON;
+            }
         }
+        let reaches = (max - min) * per_unit >= steps;
         let bottom = min - step;
         let distinct = min + step > min && max - step < max && bottom < min;
-        if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct) {
+        if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct && reaches)
+        {
             return Err(Error::Range);
         }
         Ok(Self {

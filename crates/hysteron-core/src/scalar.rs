@@ -46,6 +46,8 @@ pub trait Real:
     /// Whether `self < other`, both at least 0 and neither −0. The bits of such numbers are in the
     /// same order, and comparing those shortens the wait of a branch that was predicted wrongly.
     fn precedes(self, other: Self) -> bool;
+    /// The bits of the number.
+    fn bits(self) -> u64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
 
@@ -104,6 +106,11 @@ macro_rules! real {
             #[inline(always)]
             fn precedes(self, other: Self) -> bool {
                 self.to_bits() < other.to_bits()
+            }
+
+            #[inline(always)]
+            fn bits(self) -> u64 {
+                u64::from(self.to_bits())
             }
 
             #[inline(always)]

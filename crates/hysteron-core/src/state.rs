@@ -35,13 +35,20 @@ pub struct State<T, S> {
     turns: S,
     levels: usize,
     operator: Operator,
+    /// Of the model whose outputs the turning points hold.
+    stamp: u64,
     /// Last input, in its own unit, before clipping.
     input: T,
     place: Place<T>,
 }
 
 impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
-    pub(crate) fn new(plane: &Plane<T>, operator: Operator, mut turns: S) -> Result<Self, Error> {
+    pub(crate) fn new(
+        plane: &Plane<T>,
+        operator: Operator,
+        stamp: u64,
+        mut turns: S,
+    ) -> Result<Self, Error> {
         let needed = turn_capacity(plane.levels());
         let found = turns.as_ref().len();
         if found < needed {
@@ -60,6 +67,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
             turns,
             levels: plane.levels(),
             operator,
+            stamp,
             input: plane.bottom(),
             place: Place::start(plane.levels()),
         })
@@ -138,8 +146,13 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         &self.turns.as_ref()[START - 1..=self.place.top]
     }
 
-    /// All operators off, at the bottom of the plane.
-    pub(crate) fn reset_off(&mut self, plane: &Plane<T>) {
+    pub(crate) fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
+    /// All operators off, at the bottom of the plane of the model of this stamp.
+    pub(crate) fn reset_off(&mut self, plane: &Plane<T>, stamp: u64) {
+        self.stamp = stamp;
         self.input = plane.bottom();
         self.place = Place::start(plane.levels());
     }

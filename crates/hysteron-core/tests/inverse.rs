@@ -312,6 +312,16 @@ fn relays_jump_to_or_past_the_target() {
 }
 
 #[test]
+fn a_relay_holds_beyond_the_plane_too() {
+    let plane = Plane::new(0.0, 1.0, 2).unwrap();
+    let (model, mut state) = build(plane, Operator::Relay, &[1.0, 2.0, 4.0]);
+    model.step(&mut state, 1.5).unwrap();
+    let inverse = model.inverse().unwrap();
+    let held = inverse.step(&mut state, 7.0, Policy::HOLD).unwrap();
+    assert_eq!((held.input, model.output(&state)), (1.5, 7.0));
+}
+
+#[test]
 fn negative_weights_are_refused_by_name() {
     let plane = Plane::new(0.0, 1.0, 4).unwrap();
     let mut weights = vec![1.0; 10];

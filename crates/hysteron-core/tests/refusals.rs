@@ -32,6 +32,14 @@ fn planes() {
             "{min} to {max}"
         );
     }
+    // As wide as can be: ends with an answer, and where it is a plane, T_max reaches K.
+    for levels in [2, 3, 20, 1000] {
+        for max in [1e307, 1.37e308, f64::MAX] {
+            if let Ok(plane) = Plane::new(0.0, max, levels) {
+                assert_eq!(plane.normalise(max), levels as f64);
+            }
+        }
+    }
 }
 
 #[test]
@@ -141,6 +149,17 @@ fn states_of_other_models_and_broken_saves() {
     let (_, mut relay) = build(plane(3), Operator::Relay, &[1.0; 6]);
     assert_eq!(model.step(&mut larger, 0.5), Err(Error::StateMismatch));
     assert_eq!(model.step(&mut relay, 0.5), Err(Error::StateMismatch));
+    // The same levels, but other weights, or another plane.
+    let (other, mut heavier) = build(plane(3), Operator::Mkp, &[2.0; 6]);
+    let (_, mut wider) = build(Plane::new(0.0, 2.0, 3).unwrap(), Operator::Mkp, &[1.0; 6]);
+    assert_eq!(model.step(&mut heavier, 0.5), Err(Error::StateMismatch));
+    assert_eq!(model.step(&mut wider, 0.5), Err(Error::StateMismatch));
+    // Restoring carries a history over to another model.
+    model.step(&mut state, 0.7).unwrap();
+    let points: Vec<f64> = state.turning_points().collect();
+    model.restore(&mut heavier, &points, 0.7).unwrap();
+    assert_eq!(model.output(&heavier), model.output(&state));
+    assert_eq!(other.step(&mut heavier, 0.5), Err(Error::StateMismatch));
     assert_eq!(model.reset_on(&mut larger), Err(Error::StateMismatch));
     let inverse = model.inverse().unwrap();
     assert_eq!(
@@ -157,9 +176,9 @@ fn states_of_other_models_and_broken_saves() {
     assert_eq!(restore(&[3.1]), Err(Error::TurningPoints { index: 0 }));
     assert_eq!(restore(&[-0.1]), Err(Error::TurningPoints { index: 0 }));
     assert_eq!(state, before);
-    assert_eq!(state.gamma(2, 1), Err(Error::Levels(2)));
-    assert_eq!(state.gamma(1, 4), Err(Error::Levels(4)));
-    assert_eq!(state.gamma(0, 1), Err(Error::Levels(0)));
+    assert_eq!(state.gamma(2, 1), Err(Error::Operator { i: 2, j: 1 }));
+    assert_eq!(state.gamma(1, 4), Err(Error::Operator { i: 1, j: 4 }));
+    assert_eq!(state.gamma(0, 1), Err(Error::Operator { i: 0, j: 1 }));
     // −0 is 0: the bottom of the plane, from where 1 is reached again.
     assert_eq!(model.restore(&mut state, &[2.0, -0.0, 1.0], 0.0), Ok(()));
     assert!(state.turning_points().eq([1.0]));

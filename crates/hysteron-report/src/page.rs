@@ -95,7 +95,7 @@ fn errors(view: &View<'_>) -> Markup {
                 td { (significant(errors.rmse, 3)) }
                 td { (significant(errors.max_abs, 3)) }
                 td { @if let Some(unit) = unit { (unit) } }
-                td { (percent(errors.nrmse_percent)) }
+                td { (errors.nrmse_percent.map_or("–".to_owned(), percent)) }
                 td { (count(errors.samples)) }
             }
         }

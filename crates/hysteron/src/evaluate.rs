@@ -2,10 +2,10 @@
 
 use crate::recording::range;
 use crate::turning::{Turning, headings};
-use crate::{Errors, Model, Policy, Recording, Result, Status};
+use crate::{Errors, Inverse, Model, Policy, Recording, Result, Status};
 
-/// Reversals of the output up to this part of its measured range are noise: the inverse does not follow them.
-const NOISE: f64 = 0.01;
+/// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
+pub const NOISE: f64 = 0.01;
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
 /// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
@@ -29,7 +29,7 @@ pub struct Evaluation {
 pub struct InverseEvaluation {
     /// Whether the measured output moves at each sample (false: dead band).
     pub moving: Vec<bool>,
-    /// The chapter's policy: the input rests while the target rests.
+    /// The chapter's policy, equation (14): the input rests while the target rests, or goes back by no more than [`NOISE`].
     pub hold: InverseRun,
     /// The dead band is crossed as soon as the target is known to reverse.
     pub anticipate: InverseRun,
@@ -60,7 +60,7 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     let clipped = model.run(&mut model.start(), &recording.input, &mut output_model)?;
     let forward = compare(&recording.output, &output_model);
     let inverse = match model.inverse() {
-        Ok(_) => Ok(evaluate_inverse(model, recording)?),
+        Ok(inverse) => Ok(evaluate_inverse(model, &inverse, recording)?),
         Err(error) => Err(error.to_string()),
     };
     Ok(Evaluation {
@@ -71,13 +71,16 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     })
 }
 
-fn evaluate_inverse(model: &Model, recording: &Recording) -> Result<InverseEvaluation> {
+fn evaluate_inverse(
+    model: &Model,
+    inverse: &Inverse<'_>,
+    recording: &Recording,
+) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
     let headings = headings(&recording.output, tolerance);
     let run = |policy: &dyn Fn(usize) -> Policy<f64>| -> Result<InverseRun> {
-        let inverse = model.inverse()?;
         let mut state = model.start();
         let mut input_model = Vec::with_capacity(recording.len());
         let mut out_of_reach = 0;
@@ -119,14 +122,19 @@ fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
     if turns.is_empty() {
         moving.fill(false);
     }
-    for turn in turns.into_iter().chain([output.len() - 1]) {
+    let last = output.len() - 1;
+    let mut covered = 0;
+    for turn in turns.into_iter().chain([last]) {
         let still = |n: &usize| (output[*n] - output[turn]).abs() <= still;
-        let first = (0..=turn).rev().take_while(still).last().unwrap_or(turn);
-        let last = (turn..output.len())
+        let first = (covered..=turn)
+            .rev()
             .take_while(still)
             .last()
             .unwrap_or(turn);
-        moving[first..=last].fill(false);
+        let end = (turn..=last).take_while(still).last().unwrap_or(turn);
+        moving[first..=end].fill(false);
+        // What one turning point covers, the next need not look at again.
+        covered = turn;
     }
     moving
 }
@@ -136,7 +144,7 @@ fn compare(measured: &[f64], modelled: &[f64]) -> Errors {
     Errors::between(measured, modelled, |_| true).unwrap_or(Errors {
         rmse: 0.0,
         max_abs: 0.0,
-        nrmse_percent: 0.0,
+        nrmse_percent: None,
         samples: 0,
     })
 }

@@ -1,6 +1,6 @@
 //! Low-pass filtering without phase shift, for recordings that are at hand as a whole.
 //!
-//! A Butterworth filter of order 2 runs over the samples forward and then backward (Gustafsson 1996; SciPy's `filtfilt`): the
+//! A Butterworth filter of order 2 runs over the samples forward and then backward (the method of `filtfilt` in SciPy and MATLAB): the
 //! delays cancel and the attenuation doubles, so the gain is 1 at rest and ½ at the cut-off. At both ends the
 //! samples are continued by reflection through the end point, which continues a ramp as a ramp, and each pass sets out
 //! settled on its first value.

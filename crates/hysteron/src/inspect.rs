@@ -1,5 +1,6 @@
 //! What is in a recording or a model.
 
+use crate::evaluate::NOISE;
 use crate::recording::range;
 use crate::{Model, Plane, Recording, Result, Turning};
 use hysteron_core::ridge;
@@ -54,8 +55,8 @@ pub struct Sampling {
     pub median_step: f64,
     /// Longest time between samples.
     pub longest_step: f64,
-    /// Line in the file (the header being 1) before which it passed.
-    pub longest_step_at_line: usize,
+    /// The sample at its end, counted from 1.
+    pub longest_step_before_sample: usize,
     /// Gaps: steps of more than three times the median.
     pub gaps: usize,
     /// Samples at the time of the one before.
@@ -80,7 +81,7 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
             unit: quantity.unit.clone(),
             min,
             max,
-            reversals: count(0.01 * (max - min)),
+            reversals: count(NOISE * (max - min)),
             reversals_of_any_size: count(0.0),
         }
     };
@@ -126,7 +127,7 @@ fn sampling(time: &[f64]) -> Option<Sampling> {
         end: time[time.len() - 1],
         median_step: median,
         longest_step: longest,
-        longest_step_at_line: at + 3, // the second of the two, below the header, counted from 1
+        longest_step_before_sample: at + 2,
         gaps: steps.iter().filter(|step| **step > 3.0 * median).count(),
         repeated,
     })

@@ -3,7 +3,8 @@
 //! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
 //! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
 //! [`fit`], simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
-//! [`Model::inverse`], judge with [`evaluate`]. The real-time core below, `hysteron-core`, runs without
+//! [`Model::inverse`], judge with [`evaluate`]. *The chapter*, whose equations the docs number, is named in
+//! `hysteron-core`. The real-time core below, `hysteron-core`, runs without
 //! allocation.
 #![forbid(unsafe_code)]
 
@@ -23,9 +24,10 @@ mod table;
 mod turning;
 
 pub use error::{Error, Result};
-pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate};
+pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
 pub use hysteron_core::{
-    Clipped, ClippedCount, Direction, Operator, Output, Policy, Region, Solution, Status,
+    Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
+    Status,
 };
 pub use identify::{FitOptions, FitSummary, Solver, fit, plane_of};
 pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};

@@ -10,8 +10,8 @@ pub struct Errors {
     pub rmse: f64,
     /// Largest absolute difference, in the unit of the series.
     pub max_abs: f64,
-    /// `rmse` in percent of the measured range of the whole series; 0 where that range is zero and so is `rmse`.
-    pub nrmse_percent: f64,
+    /// `rmse` in percent of the measured range of the whole series; `None` where that range is zero.
+    pub nrmse_percent: Option<f64>,
     /// How many samples were compared.
     pub samples: usize,
 }
@@ -23,7 +23,7 @@ impl Errors {
     /// use hysteron::Errors;
     /// let errors = Errors::between(&[0.0, 2.0, 4.0], &[0.0, 2.0, 1.0], |_| true).unwrap();
     /// assert_eq!((errors.rmse, errors.max_abs, errors.samples), (3f64.sqrt(), 3.0, 3));
-    /// assert!((errors.nrmse_percent - 43.3).abs() < 0.01);
+    /// assert!((errors.nrmse_percent.unwrap() - 43.3).abs() < 0.01);
     /// ```
     #[must_use]
     pub fn between(
@@ -44,12 +44,7 @@ impl Errors {
         }
         let rmse = (squares / samples as f64).sqrt();
         let (low, high) = range(measured);
-        // A constant series has no range to relate to; JSON has no infinity.
-        let nrmse_percent = if high > low {
-            100.0 * rmse / (high - low)
-        } else {
-            0.0
-        };
+        let nrmse_percent = (high > low).then(|| 100.0 * rmse / (high - low));
         Some(Self {
             rmse,
             max_abs,

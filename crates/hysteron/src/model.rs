@@ -79,6 +79,11 @@ impl Model {
                 problem: format!("{offset} is not a finite number"),
             });
         }
+        // Counted before the table is made, which for a wrong number of levels can be huge.
+        let (expected, found) = (plane.operators(), weights.len());
+        if expected != found {
+            return Err(hysteron_core::Error::WeightCount { expected, found }.into());
+        }
         let table = vec![0.0; table_len(plane.levels())];
         let core = hysteron_core::Model::new(plane, operator, &weights, table)?;
         Ok(Self {

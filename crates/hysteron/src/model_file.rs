@@ -11,6 +11,7 @@ const FORMAT: &str = "hysteron-model";
 const VERSION: u64 = 1;
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct File {
     format: String,
     version: u64,
@@ -22,7 +23,7 @@ struct File {
     output: OutputEntry,
     weights: Vec<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    fit: Option<serde_json::Value>,
+    fit: Option<FitSummary>,
 }
 
 /// Only what tells whether the rest can be read at all.
@@ -41,6 +42,7 @@ enum OperatorName {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct PlaneEntry {
     min: f64,
     max: f64,
@@ -48,7 +50,7 @@ struct PlaneEntry {
 }
 
 #[derive(Serialize, Deserialize, Default)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 struct InputEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -57,7 +59,7 @@ struct InputEntry {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 struct OutputEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -158,10 +160,7 @@ impl Model {
         if let Some(name) = file.output.name {
             model.output.name = name;
         }
-        // What a fit says of itself is for people; a later version may say it otherwise.
-        model.fit = file
-            .fit
-            .and_then(|fit| serde_json::from_value::<FitSummary>(fit).ok());
+        model.fit = file.fit;
         Ok(model)
     }
 
@@ -196,10 +195,7 @@ impl Model {
                 sign: self.sign().factor() as i64,
             },
             weights: self.weights().to_vec(),
-            fit: self
-                .fit
-                .as_ref()
-                .and_then(|fit| serde_json::to_value(fit).ok()),
+            fit: self.fit.clone(),
         };
         // Numbers and strings only: there is nothing that JSON cannot hold.
         serde_json::to_string(&file).unwrap_or_default() + "\n"

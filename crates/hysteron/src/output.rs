@@ -2,13 +2,21 @@
 
 use crate::table::Row;
 use crate::{Error, Result};
+use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that is written beside its place and takes its name when it is whole; dropped before, it leaves nothing.
+///
+/// A link is followed; what is no regular file, such as a pipe or `/dev/null`, is written to as it is.
 pub struct AtomicFile {
     path: PathBuf,
-    beside: tempfile::NamedTempFile,
+    to: Place,
+}
+
+enum Place {
+    Beside(tempfile::NamedTempFile),
+    There(File),
 }
 
 impl AtomicFile {
@@ -17,6 +25,24 @@ impl AtomicFile {
     /// # Errors
     /// [`Error::File`].
     pub fn create(path: &Path) -> Result<Self> {
+        let place = Self::place(path);
+        let (path, to) = place.map_err(|source| Error::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        Ok(Self { path, to })
+    }
+
+    fn place(path: &Path) -> std::io::Result<(PathBuf, Place)> {
+        let path = match std::fs::metadata(path) {
+            Ok(there) if there.is_dir() => return Err(std::io::Error::other("this is a folder")),
+            Ok(there) if !there.is_file() => {
+                let file = File::options().write(true).open(path)?;
+                return Ok((path.to_owned(), Place::There(file)));
+            }
+            Ok(_) => path.canonicalize()?,
+            Err(_) => path.to_owned(),
+        };
         let folder = match path.parent() {
             Some(folder) if folder != Path::new("") => folder,
             _ => Path::new("."),
@@ -25,14 +51,8 @@ impl AtomicFile {
         // As a plain new file would have, not the private mode of temporary ones.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let beside = builder.prefix(".hysteron-").tempfile_in(folder);
-        Ok(Self {
-            path: path.to_owned(),
-            beside: beside.map_err(|source| Error::File {
-                path: path.to_owned(),
-                source,
-            })?,
-        })
+        let beside = builder.prefix(".hysteron-").tempfile_in(folder)?;
+        Ok((path, Place::Beside(beside)))
     }
 
     /// Gives the file its name.
@@ -41,13 +61,14 @@ impl AtomicFile {
     /// [`Error::File`].
     pub fn commit(self) -> Result<()> {
         let path = self.path;
-        match self.beside.persist(&path) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(Error::File {
-                path,
-                source: error.error,
-            }),
-        }
+        let kept = match self.to {
+            Place::There(_) => Ok(()),
+            Place::Beside(beside) => match beside.persist(&path) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(error.error),
+            },
+        };
+        kept.map_err(|source| Error::File { path, source })
     }
 
     /// Writes a whole file at once.
@@ -56,7 +77,8 @@ impl AtomicFile {
     /// [`Error::File`].
     pub fn write_all(path: &Path, bytes: &[u8]) -> Result<()> {
         let mut file = Self::create(path)?;
-        file.write(bytes).map_err(|source| Error::File {
+        let written = Write::write_all(&mut file, bytes).and_then(|()| file.flush());
+        written.map_err(|source| Error::File {
             path: path.to_owned(),
             source,
         })?;
@@ -66,12 +88,17 @@ impl AtomicFile {
 
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.beside.write_all(bytes)?;
-        Ok(bytes.len())
+        match &mut self.to {
+            Place::Beside(file) => file.write(bytes),
+            Place::There(file) => file.write(bytes),
+        }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        self.beside.flush()
+        match &mut self.to {
+            Place::Beside(file) => file.flush(),
+            Place::There(file) => file.flush(),
+        }
     }
 }
 
@@ -139,7 +166,10 @@ impl TableWriter {
         let written = self.csv.write_record(cells);
         written.map_err(|error| Error::File {
             path: self.path.clone(),
-            source: error.into(),
+            source: match error.into_kind() {
+                csv::ErrorKind::Io(source) => source,
+                other => std::io::Error::other(format!("{other:?}")),
+            },
         })
     }
 

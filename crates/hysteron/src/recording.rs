@@ -3,8 +3,6 @@
 use crate::output::TableWriter;
 use crate::table::TableReader;
 use crate::{Error, Result};
-use sha2::{Digest, Sha256};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// A physical quantity: its name and, where known, its unit.
@@ -85,39 +83,6 @@ pub struct Source {
     pub sha256: String,
 }
 
-impl Source {
-    /// A file and its digest; `None` for standard input, which cannot be read twice.
-    fn of(path: &Path) -> Result<Option<Self>> {
-        if path == Path::new("-") {
-            return Ok(None);
-        }
-        let mut digest = HashWriter(Sha256::new());
-        let copied = File::open(path).and_then(|mut file| std::io::copy(&mut file, &mut digest));
-        copied.map_err(|source| Error::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let bytes = digest.0.finalize();
-        Ok(Some(Self {
-            path: path.to_owned(),
-            sha256: bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
-        }))
-    }
-}
-
-struct HashWriter(Sha256);
-
-impl std::io::Write for HashWriter {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.update(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
 /// An input and the output it caused, sample by sample.
 ///
 /// All samples are finite and both have the same length, at least one.
@@ -175,7 +140,7 @@ impl Recording {
     /// [`Error::File`]; [`Error::Recording`] with line and column where a column is missing, a
     /// row is ragged, a cell is no finite number, time goes back, or there are no rows.
     pub fn read_csv(path: &Path, columns: Columns<'_>) -> Result<Self> {
-        let mut reader = TableReader::open(path)?;
+        let mut reader = TableReader::open_hashed(path)?;
         let input_at = reader.column(columns.input)?;
         let output_at = reader.column(columns.output)?;
         let time_at = columns.time.map(|name| reader.column(name)).transpose()?;
@@ -206,7 +171,10 @@ impl Recording {
             input_quantity: Quantity::from_column(columns.input),
             output_quantity: Quantity::from_column(columns.output),
             origin: Origin::Measured,
-            source: Source::of(path)?,
+            source: reader.sha256().map(|sha256| Source {
+                path: path.to_owned(),
+                sha256,
+            }),
         })
     }
 
@@ -214,8 +182,9 @@ impl Recording {
     /// recording has a last column that says so.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
+        self.check()?;
         let mut table = TableWriter::create(Some(path))?;
         let simulated = self.origin == Origin::Simulated;
         let names = [
@@ -258,33 +227,49 @@ impl Recording {
     /// That the samples can be worked with, as every function of this crate that takes a recording demands.
     ///
     /// # Errors
-    /// [`Error::Recording`] as for [`Recording::new`].
+    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite, or
+    /// time goes back.
     pub fn check(&self) -> Result<()> {
-        let fault = |row: Option<usize>, column: &str, problem: String| Error::Recording {
+        let fault = |column: &str, problem: String| Error::Recording {
             path: self.source.as_ref().map(|source| source.path.clone()),
-            row: row.map(|row| row as u64 + 2), // below the header, counted from 1
+            row: None,
             column: Some(column.to_owned()),
             problem,
         };
-        let (inputs, outputs) = (self.input.len(), self.output.len());
-        if inputs != outputs {
-            let problem = format!("{inputs} inputs but {outputs} outputs");
-            return Err(fault(None, &self.output_quantity.name, problem));
-        }
-        if inputs == 0 {
-            return Err(fault(None, &self.input_quantity.name, "no samples".into()));
-        }
+        let time = self.time.as_ref().map(|time| (time, "time"));
         let series = [
-            (&self.input, &self.input_quantity),
-            (&self.output, &self.output_quantity),
+            (&self.input, self.input_quantity.name.as_str()),
+            (&self.output, self.output_quantity.name.as_str()),
         ];
-        for (values, quantity) in series {
-            if let Some(row) = values.iter().position(|v| !v.is_finite()) {
-                let problem = format!("{} is not a finite number", values[row]);
-                return Err(fault(Some(row), &quantity.name, problem));
+        for (values, name) in series.into_iter().chain(time) {
+            if values.len() != self.input.len() {
+                let problem = format!(
+                    "{} samples, but {} of the input",
+                    values.len(),
+                    self.input.len()
+                );
+                return Err(fault(name, problem));
+            }
+            if values.is_empty() {
+                return Err(fault(name, "no samples".into()));
+            }
+            if let Some(n) = values.iter().position(|v| !v.is_finite()) {
+                let problem = format!("sample {n} (from 0) is {}, not a finite number", values[n]);
+                return Err(fault(name, problem));
             }
         }
-        Ok(())
+        let goes_back = |pair: &[f64]| pair[1] < pair[0];
+        match self
+            .time
+            .as_ref()
+            .and_then(|time| time.windows(2).position(goes_back))
+        {
+            Some(n) => Err(fault(
+                "time",
+                format!("goes back after sample {n} (from 0)"),
+            )),
+            None => Ok(()),
+        }
     }
 }
 

@@ -39,7 +39,7 @@ pub fn simulate_table(
             Some(crate::Clipped::Low) => sink.counts.low += 1,
             Some(crate::Clipped::High) => sink.counts.high += 1,
         }
-        sink.write(&table.row(), &[&step.output.to_string()])?;
+        sink.write(table.row(), &[&step.output.to_string()])?;
         progress(table.bytes_read());
     }
     Ok(sink.counts)
@@ -85,7 +85,7 @@ pub fn invert_table(
         Invert::Hold { band } => {
             let policy = Policy::Hold { tolerance: band };
             while table.advance()? {
-                inverting.row(&table.row(), table.number(column)?, policy)?;
+                inverting.row(table.row(), table.number(column)?, policy)?;
                 progress(table.bytes_read());
             }
         }
@@ -106,7 +106,7 @@ pub fn invert_table(
                 };
             while table.advance()? {
                 let target = table.number(column)?;
-                waiting.push_back((table.row(), target));
+                waiting.push_back((table.row().clone(), target));
                 for (heading, count) in headings.push(target) {
                     release(&mut waiting, heading, count)?;
                 }

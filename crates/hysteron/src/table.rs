@@ -1,6 +1,7 @@
 //! Tables in CSV files, read row by row so that memory does not grow with the file.
 
 use crate::{Error, Result};
+use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -9,8 +10,8 @@ use std::path::{Path, PathBuf};
 pub struct TableReader {
     path: PathBuf,
     header: Vec<String>,
-    csv: csv::Reader<Box<dyn Read>>,
-    record: csv::ByteRecord,
+    csv: csv::Reader<Hashing>,
+    row: Row,
     line: u64,
 }
 
@@ -35,6 +36,15 @@ impl TableReader {
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for an empty file or a header that cannot be.
     pub fn open(path: &Path) -> Result<Self> {
+        Self::open_with(path, None)
+    }
+
+    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end.
+    pub(crate) fn open_hashed(path: &Path) -> Result<Self> {
+        Self::open_with(path, Some(Sha256::new()))
+    }
+
+    fn open_with(path: &Path, digest: Option<Sha256>) -> Result<Self> {
         let file: Box<dyn Read> = if path == Path::new("-") {
             Box::new(std::io::stdin())
         } else {
@@ -52,12 +62,12 @@ impl TableReader {
         let csv = csv::ReaderBuilder::new()
             .flexible(true) // ragged rows are reported here, with their line and what to do
             .buffer_capacity(1 << 16)
-            .from_reader(file);
+            .from_reader(Hashing { file, digest });
         let mut reader = Self {
             path: path.to_owned(),
             header: Vec::new(),
             csv,
-            record: csv::ByteRecord::new(),
+            row: Row(csv::ByteRecord::new()),
             line: 1,
         };
         let header = match reader.csv.headers() {
@@ -111,16 +121,17 @@ impl TableReader {
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for a row with more or fewer cells than the header.
     pub fn advance(&mut self) -> Result<bool> {
-        match self.csv.read_byte_record(&mut self.record) {
+        match self.csv.read_byte_record(&mut self.row.0) {
             Ok(false) => return Ok(false),
             Ok(true) => {}
             Err(error) => return Err(self.csv_fault(error)),
         }
         self.line = self
-            .record
+            .row
+            .0
             .position()
             .map_or(self.line + 1, csv::Position::line);
-        let (found, expected) = (self.record.len(), self.header.len());
+        let (found, expected) = (self.row.0.len(), self.header.len());
         if found != expected {
             let problem = format!("{found} cells where the header has {expected}");
             return Err(self.fault(None, problem));
@@ -133,7 +144,7 @@ impl TableReader {
     /// # Errors
     /// [`Error::Recording`] with line and column where it is empty or no finite number.
     pub fn number(&self, column: Column) -> Result<f64> {
-        let cell = self.record.get(column.0).unwrap_or_default().trim_ascii();
+        let cell = self.row.0.get(column.0).unwrap_or_default().trim_ascii();
         let text = std::str::from_utf8(cell).unwrap_or("\u{fffd}");
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
@@ -158,8 +169,25 @@ impl TableReader {
 
     /// The present row, to be written out again.
     #[must_use]
-    pub fn row(&self) -> Row {
-        Row(self.record.clone())
+    pub fn row(&self) -> &Row {
+        &self.row
+    }
+
+    /// The columns in order, whatever their names.
+    pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
+        (0..self.header.len()).map(Column)
+    }
+
+    /// SHA-256 in hexadecimal of what was read; to be asked for at the end of the table.
+    pub(crate) fn sha256(self) -> Option<String> {
+        let digest = self.csv.into_inner().digest?;
+        Some(
+            digest
+                .finalize()
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+        )
     }
 
     /// An error at the present row.
@@ -193,5 +221,21 @@ impl TableReader {
                 problem: format!("{other:?}"),
             },
         }
+    }
+}
+
+/// Hashes what passes through, where asked to: a file is read once only, and may be a pipe.
+struct Hashing {
+    file: Box<dyn Read>,
+    digest: Option<Sha256>,
+}
+
+impl Read for Hashing {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        if let Some(digest) = &mut self.digest {
+            digest.update(&buffer[..count]);
+        }
+        Ok(count)
     }
 }

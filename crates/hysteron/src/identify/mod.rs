@@ -1,5 +1,6 @@
 //! Identification: the weights of a model from a recording.
 
+mod cholesky;
 mod nnls;
 mod solve;
 mod sparse;
@@ -61,7 +62,8 @@ impl Default for FitOptions {
 }
 
 /// How a model was obtained; it goes into the model file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct FitSummary {
     /// How the weights were found.
     pub solver: Solver,
@@ -76,24 +78,26 @@ pub struct FitSummary {
     /// Weights that are not zero.
     pub weights_not_zero: usize,
     /// Whether the data came from a simulated plant.
-    #[serde(default)]
     pub simulated: bool,
     /// The file fitted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// SHA-256 of its bytes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
+    /// What else a model file says of its fit.
+    #[serde(flatten)]
+    pub other: std::collections::BTreeMap<String, serde_json::Value>,
 }
 
 /// Most memory that the Gram matrix may take.
-const GRAM_BYTES: usize = 4 << 30;
+const GRAM_BYTES: u128 = 4 << 30;
 
 /// Identifies a model: the weights and offset that minimise the squared error over the recording,
 /// with every operator off before its first sample.
 ///
-/// Never forms the `n × N` matrix of operator states: `O(n + N²)` memory and time for the Gram
-/// matrix, and one factorisation of the weights that are not zero.
+/// Never forms the `n × N` matrix of operator states. The Gram matrix takes `O(N²)` memory and `O(n + N²)`
+/// time, for inputs with few turning points at once; the weights, `O(N p + p²)` for each of some `p` steps, `p` being those not zero.
 ///
 /// ```
 /// use hysteron::{FitOptions, Recording, fit};
@@ -112,7 +116,7 @@ pub fn fit(recording: &Recording, options: &FitOptions) -> Result<Model> {
     recording.check()?;
     let plane = choose_plane(recording, options)?;
     let bytes = 8 * (plane.operators() as u128).pow(2);
-    if bytes > GRAM_BYTES as u128 {
+    if bytes > GRAM_BYTES {
         return Err(Error::Fit(format!(
             "{} levels are {} operators, whose Gram matrix takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
             plane.levels(),
@@ -186,7 +190,7 @@ fn finish(
         samples: errors.samples,
         rmse: errors.rmse,
         max_abs: errors.max_abs,
-        nrmse_percent: errors.nrmse_percent,
+        nrmse_percent: errors.nrmse_percent.unwrap_or_default(),
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
         simulated: recording.origin == crate::Origin::Simulated,
         file: recording
@@ -197,19 +201,26 @@ fn finish(
             .source
             .as_ref()
             .map(|source| source.sha256.clone()),
+        other: std::collections::BTreeMap::new(),
     });
     Ok(model)
 }
 
 fn choose_plane(recording: &Recording, options: &FitOptions) -> Result<Plane> {
-    let (low, high) = range(&recording.input);
-    if low >= high {
-        return Err(Error::Recording {
-            path: recording.source.as_ref().map(|source| source.path.clone()),
-            row: None,
-            column: Some(recording.input_quantity.name.clone()),
-            problem: format!("the input is {low} throughout: nothing can be identified from it"),
-        });
+    let series = [
+        (&recording.input, &recording.input_quantity),
+        (&recording.output, &recording.output_quantity),
+    ];
+    for (values, quantity) in series {
+        let (low, high) = range(values);
+        if low >= high {
+            return Err(Error::Recording {
+                path: recording.source.as_ref().map(|source| source.path.clone()),
+                row: None,
+                column: Some(quantity.name.clone()),
+                problem: format!("it is {low} throughout: nothing can be identified from it"),
+            });
+        }
     }
     match options.range {
         Some((min, max)) => Ok(Plane::new(min, max, options.levels)?),

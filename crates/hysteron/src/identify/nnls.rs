@@ -1,78 +1,116 @@
-//! Non-negative least squares on normal equations, by block principal pivoting (Portugal, Júdice and
-//! Vicente 1994; Kim and Park 2011): whole blocks of variables change sides at once, so that a few
-//! factorisations do where an active set needs one for each variable.
+//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson (1974),
+//! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
+//! and with a factor that is updated, not made anew.
 
+use super::cholesky::Cholesky;
 use crate::{Error, Result};
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 
-/// How often a block exchange may fail to improve before one variable at a time is exchanged,
-/// which always ends (Murty's rule).
-const PATIENCE: usize = 3;
+/// Of the variables above zero, the part by which a step may increase them: more at once save
+/// gradients, but many of them leave again.
+const STRIDE: usize = 8;
 
-/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, `A` positive definite (`N × N`, given by its elements).
-///
-/// `free` says which variables are above zero: on entry a guess, on return the answer.
-pub(super) fn solve(
-    a: &impl Fn(usize, usize) -> f64,
-    b: &[f64],
-    free: &mut [bool],
-) -> Result<Vec<f64>> {
+/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
+/// definite, `N × N`, row by row. The objective falls with every step, so that it always ends.
+pub(super) fn solve(a: &[f64], b: &[f64], x: &mut [f64]) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
     // Rounding of sums of `count` products: below this a gradient is zero.
     let slack = 1e-13 * size;
-    let mut fewest = count + 1;
-    let mut patience = PATIENCE;
-    // Murty's rule ends after at most 2^N steps in theory and a few N in practice.
-    for _ in 0..20 * count + 100 {
-        let chosen: Vec<usize> = (0..count).filter(|&n| free[n]).collect();
-        let values = solve_free(a, b, &chosen)?;
-        let mut x = vec![0.0; count];
-        for (&n, &value) in chosen.iter().zip(&values) {
-            x[n] = value;
+    let row = |n: usize| &a[n * count..(n + 1) * count];
+    let mut set = FreeSet::default();
+    for n in (0..count).filter(|&n| x[n] > 0.0) {
+        set.take(n, row(n));
+    }
+    set.descend(b, x);
+    // Variables that did not help are left alone until others have.
+    let mut tried = vec![false; count];
+    for _ in 0..30 * count + 100 {
+        let mut gradient = b.to_vec();
+        for &n in &set.members {
+            for (g, a) in gradient.iter_mut().zip(row(n)) {
+                *g -= a * x[n];
+            }
         }
-        let wrong: Vec<usize> = (0..count)
-            .filter(|&n| {
-                if free[n] {
-                    x[n] < 0.0
-                } else {
-                    let gradient: f64 = chosen.iter().zip(&values).map(|(&m, v)| a(n, m) * v).sum();
-                    gradient - b[n] < -slack
-                }
-            })
-            .collect();
-        if wrong.is_empty() {
-            return Ok(x);
+        let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > slack;
+        let mut wanted: Vec<usize> = (0..count).filter(outside).collect();
+        if wanted.is_empty() {
+            return Ok(());
         }
-        if wrong.len() < fewest {
-            fewest = wrong.len();
-            patience = PATIENCE;
-        } else {
-            patience = patience.saturating_sub(1);
+        // The steepest first, in units of each variable's own curvature.
+        let steepness = |n: &usize| gradient[*n] / row(*n)[*n].sqrt();
+        wanted.sort_by(|m, n| steepness(n).total_cmp(&steepness(m)));
+        wanted.truncate(1 + set.members.len() / STRIDE);
+        for &n in &wanted {
+            set.take(n, row(n));
         }
-        let exchanged = if patience > 0 {
-            &wrong[..]
-        } else {
-            &wrong[wrong.len() - 1..]
-        };
-        for &n in exchanged {
-            free[n] = !free[n];
+        let moved = set.descend(b, x);
+        if moved {
+            tried.fill(false);
+        }
+        for &n in wanted.iter().filter(|&&n| x[n] == 0.0) {
+            tried[n] = true;
         }
     }
-    Err(Error::Fit("the non-negative solution was not found: the problem is too badly conditioned, take fewer levels".into()))
+    Err(Error::Fit(
+        "the non-negative solution was not found: the problem is too badly conditioned, take fewer levels".into(),
+    ))
 }
 
-/// The unconstrained solution over the free variables.
-fn solve_free(a: &impl Fn(usize, usize) -> f64, b: &[f64], chosen: &[usize]) -> Result<Vec<f64>> {
-    let size = chosen.len();
-    let part = Mat::from_fn(size, size, |i, j| a(chosen[i], chosen[j]));
-    let factor = part.llt(Side::Lower).map_err(|_| not_definite())?;
-    let right = Mat::from_fn(size, 1, |i, _| b[chosen[i]]);
-    let x = factor.solve(&right);
-    Ok((0..size).map(|i| x[(i, 0)]).collect())
+/// The variables that are free to be above zero, and the factor of their part of the matrix.
+#[derive(Default)]
+struct FreeSet {
+    members: Vec<usize>,
+    factor: Cholesky,
+}
+
+impl FreeSet {
+    /// Takes a variable in, unless it depends on those that are in already.
+    fn take(&mut self, n: usize, row: &[f64]) {
+        let column = self.members.iter().map(|&m| row[m]).collect();
+        if self.factor.append(column, row[n]) {
+            self.members.push(n);
+        }
+    }
+
+    /// Goes to the minimum over the free variables, dropping those that meet zero on the way. Says
+    /// whether any variable moved.
+    fn descend(&mut self, b: &[f64], x: &mut [f64]) -> bool {
+        let mut moved = false;
+        while !self.members.is_empty() {
+            let minimum = self
+                .factor
+                .solve(self.members.iter().map(|&n| b[n]).collect());
+            let towards = || self.members.iter().zip(&minimum);
+            // How far until the first variable meets zero.
+            let limit = towards()
+                .filter(|(_, z)| **z <= 0.0)
+                .map(|(&n, z)| x[n] / (x[n] - z))
+                .fold(1.0_f64, f64::min);
+            moved |= limit > 0.0;
+            if towards().all(|(_, z)| *z > 0.0) {
+                for (&n, &z) in towards() {
+                    x[n] = z;
+                }
+                return moved;
+            }
+            for k in (0..self.members.len()).rev() {
+                let (n, z) = (self.members[k], minimum[k]);
+                let meets_zero = z <= 0.0 && x[n] <= limit * (x[n] - z);
+                x[n] += limit * (z - x[n]);
+                if meets_zero {
+                    x[n] = 0.0;
+                    self.members.remove(k);
+                    self.factor.remove(k);
+                }
+            }
+        }
+        moved
+    }
 }
 
 pub(super) fn not_definite() -> Error {
-    Error::Fit("the normal equations cannot be factorised: the data hold values too large or too small to work with".into())
+    Error::Fit(
+        "the normal equations cannot be factorised: the data hold values too large or too small to work with"
+            .into(),
+    )
 }

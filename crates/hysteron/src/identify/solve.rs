@@ -15,6 +15,9 @@ use faer::{Mat, Side};
 /// large beside its rounding.
 const RIDGE: f64 = 1e-11;
 
+/// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays here.
+const ROUNDING: f64 = 1e-13;
+
 /// Proximal steps end when one improves the squared error by less than this part of it.
 const ENOUGH: f64 = 1e-12;
 
@@ -44,6 +47,7 @@ impl<'a> NormalEquations<'a> {
     pub(super) fn new(form: &'a SparseForm<'a>, offset_free: bool) -> Result<Self> {
         let count = form.operators();
         let mut gram = form.gram()?;
+        let largest = (0..count).map(|n| gram[n * count + n]).fold(0.0, f64::max);
         if offset_free {
             // A free constant is eliminated by taking the mean off every column.
             let samples = form.samples() as f64;
@@ -55,7 +59,7 @@ impl<'a> NormalEquations<'a> {
             }
         }
         let trace: f64 = (0..count).map(|n| gram[n * count + n]).sum();
-        let ridge = (RIDGE * trace / count as f64).max(f64::MIN_POSITIVE);
+        let ridge = (RIDGE * trace / count as f64 + ROUNDING * largest).max(f64::MIN_POSITIVE);
         for n in 0..count {
             gram[n * count + n] += ridge;
         }
@@ -77,7 +81,6 @@ impl<'a> NormalEquations<'a> {
             }
             Solver::Nnls => None,
         };
-        let mut free = vec![false; count];
         let mut best = self.residual(target, vec![0.0; count])?;
         let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
         for _ in 0..STEPS {
@@ -93,7 +96,9 @@ impl<'a> NormalEquations<'a> {
                 None => {
                     let moved = self.times(&solution.weights);
                     let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    nnls::solve(&element, &right, &mut free)?
+                    let mut weights = solution.weights.clone();
+                    nnls::solve(&self.gram, &right, &mut weights)?;
+                    weights
                 }
             };
             let next = self.residual(target, weights)?;

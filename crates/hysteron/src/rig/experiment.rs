@@ -37,7 +37,7 @@ pub struct Experiment {
     pub targets_degc: Vec<f64>,
     /// Rest at room temperature before the first heating, s. Default 5.
     pub rest_s: f64,
-    /// Time between samples, s. Default 0.5.
+    /// Time between samples, s. Default 0.05: the noise of many samples averages out in the filter.
     pub sample_interval_s: f64,
     /// Sensor of the temperature.
     pub thermocouple: Sensor,
