@@ -24,6 +24,7 @@ mod model;
 mod operator;
 mod plane;
 mod scalar;
+mod search;
 mod state;
 
 pub use definition::Definition;

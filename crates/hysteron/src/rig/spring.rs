@@ -15,7 +15,7 @@ pub struct Spring {
     pub wire_diameter_mm: f64,
     /// Mean coil diameter `D`, mm. Default 5.25: Table 1 gives 6, read as the outer diameter, less one wire.
     pub coil_diameter_mm: f64,
-    /// Active coils `n`. Default 11. Table 1 does not give it: it is chosen so that the stroke under 6 N comes near
+    /// Active coils `n`. Default 10. Table 1 does not give it: it is chosen so that the stroke under 6 N comes near
     /// the 13.5 mm that the chapter tells of with its Fig. 15.
     pub active_coils: f64,
     /// Young's modulus of austenite, GPa. Default 67 (Brinson 1993).
@@ -33,7 +33,7 @@ impl Default for Spring {
         Self {
             wire_diameter_mm: 0.75,
             coil_diameter_mm: 5.25,
-            active_coils: 11.0,
+            active_coils: 10.0,
             austenite_modulus_gpa: 67.0,
             martensite_modulus_gpa: 26.3,
             poisson_ratio: 0.33,
