@@ -10,6 +10,14 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         output: &args.output,
         time: None,
     };
+    let same = |a: &std::path::Path| a.canonicalize().ok();
+    if same(&args.out).is_some_and(|out| same(&args.data) == Some(out)) {
+        return Err(format!(
+            "{}: the model would replace the recording: name another file",
+            args.out.display()
+        )
+        .into());
+    }
     let mut recording = Recording::read_csv(&args.data, columns)?;
     let units = [
         (&args.input_unit, &mut recording.input_quantity),

@@ -5,7 +5,11 @@ use hysteron::{Columns, Model, Plane, Recording, RecordingSummary, TableReader};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Inspect) -> Result<()> {
-    if args.file.extension().is_some_and(|ending| ending == "json") {
+    if args
+        .file
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    {
         return model(args);
     }
     match (&args.input, &args.output) {

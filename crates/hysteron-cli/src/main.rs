@@ -18,6 +18,11 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() -> ExitCode {
+    // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works as well.
+    let _ = ctrlc::set_handler(|| {
+        hysteron::discard_unfinished();
+        std::process::exit(130);
+    });
     let done = match Cli::parse().command {
         Command::Fit(args) => fit::run(&args),
         Command::Simulate(args) => table::simulate(&args),

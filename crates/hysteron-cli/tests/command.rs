@@ -301,7 +301,24 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
         ("t,x,y\n1,inf,3\n", "line 2, column `x`: `inf`"),
         ("t,x,y\n1,1e999,3\n", "line 2, column `x`: `1e999`"),
         ("t,x,y\n1,5,3\n2,5,4\n", "column `x`: it is 5 throughout"),
-        ("t;x;y\n1;2;3\n", "no column `x`: there are `t;x;y`"),
+        (
+            "t;x;y\n1;2;3\n",
+            "no column `x`: there are `t;x;y`; separate the columns by commas",
+        ),
+        ("t,x,y\r\n1,2,3\r\n\r\n4,a,6\r\n", "line 4, column `x`: `a`"),
+        ("t,x,y\n\n\n1,2,3\n4,a,6\n", "line 5, column `x`: `a`"),
+        (
+            "x,y,note\n1,2,ok\n2,3,\"oops\n3,1,ok\n4,5,ok\n",
+            "line 3: a quote is opened here and never closed",
+        ),
+        (
+            "t,x,y\n1,2,3\n2,3,1e160\n",
+            "column `y`: 1e160 is too large",
+        ),
+        (
+            "t,x,y\n1,2,0\n2,3,1e-200\n",
+            "column `y`: it moves by 1e-200 only",
+        ),
     ];
     for (text, expected) in cases {
         bench.file("bad.csv", text);
@@ -426,6 +443,16 @@ fn bad_options_are_refused() {
     let bench = Bench::fitted();
     let said = bench.refused("fit run.csv --input x --output y -o m.json --levels 1000");
     assert!(said.contains("take fewer levels"), "{said}");
+    let said = bench.refused("fit run.csv --input x --output y -o m.json --range -50,0");
+    assert!(said.contains("take another range"), "{said}");
+    let said = bench.refused("fit run.csv --input x --output y -o run.csv");
+    assert!(said.contains("would replace the recording"), "{said}");
+    for levels in 2..30 {
+        let done = bench.run(&format!(
+            "fit run.csv --input x --output y -o m.json --levels {levels}"
+        ));
+        assert_eq!(done.err, "", "nothing lies outside a plane made for it");
+    }
     bench.refused("fit run.csv --input x --output y -o no/such/folder/m.json");
     bench.refused("fit run.csv --input x --output y -o .");
 }
@@ -474,6 +501,48 @@ fn links_are_followed_and_devices_written_to() {
         0
     );
     assert_eq!(bench.read("run.csv").lines().count(), 401);
+}
+
+#[cfg(unix)]
+#[test]
+fn ended_in_the_middle_it_leaves_nothing() {
+    let bench = Bench::fitted();
+    let hysteron = assert_cmd::cargo::cargo_bin("hysteron");
+    // Standard input that never ends.
+    let mut child = std::process::Command::new(hysteron)
+        .args([
+            "simulate",
+            "model.json",
+            "-",
+            "--input",
+            "x",
+            "-o",
+            "out.csv",
+        ])
+        .current_dir(bench.folder.path())
+        .stdin(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    std::io::Write::write_all(&mut stdin, b"x\n1\n2\n").unwrap();
+    let names = || entries(bench.folder.path());
+    let started = |names: Vec<String>| names.iter().any(|name| name.starts_with(".hysteron-"));
+    for _ in 0..500 {
+        if started(names()) {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert!(
+        started(names()),
+        "the file beside is there while it is written"
+    );
+    let kill = std::process::Command::new("kill")
+        .args(["-TERM", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(names(), ["model.json", "run.csv"]);
 }
 
 #[cfg(unix)]

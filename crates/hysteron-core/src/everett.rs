@@ -31,6 +31,8 @@ pub(crate) fn fill<T: Real>(
 ) -> Result<Option<NegativeWeights>, Error> {
     table[0] = T::ZERO;
     let mut negative: Option<NegativeWeights> = None;
+    // No output can be larger than this, twice for operators of ±1.
+    let mut size = T::ZERO;
     for p in 1..=levels {
         let (above, row) = table[table_index(p - 1, 0)..].split_at_mut(p);
         row[p] = T::ZERO;
@@ -40,7 +42,8 @@ pub(crate) fn fill<T: Real>(
             let weight = weights[index];
             row_sum = row_sum + weight;
             row[q] = above[q] + row_sum;
-            if !row[q].is_finite() {
+            size = size + weight.larger(-weight);
+            if !(size + size).is_finite() {
                 return Err(Error::WeightNotFinite { index });
             }
         }

@@ -217,7 +217,9 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         match self.model.operator() {
             Operator::Relay => {
                 let level = plane.level(ceil_index(x, plane.levels()));
-                level.larger(state.input() + plane.nudge())
+                level
+                    .larger(state.input() + plane.nudge())
+                    .smaller(plane.max())
             }
             _ => plane.denormalise(x),
         }
@@ -236,7 +238,9 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             // Off at the level itself: one above the last level left on.
             Operator::Relay => {
                 let level = plane.level(x.floor_index().min(plane.levels() - 1) + 1);
-                level.smaller(state.input() - plane.nudge())
+                level
+                    .smaller(state.input() - plane.nudge())
+                    .larger(plane.bottom())
             }
             _ => plane.denormalise(x),
         }

@@ -69,7 +69,9 @@ impl<T: Real> Plane<T> {
         }
         let reaches = (max - min) * per_unit >= steps;
         let bottom = min - step;
-        let distinct = min + step > min && max - step < max && bottom < min;
+        // Some rounding units from each other, so that no two levels coincide.
+        let largest = max.larger(-max).larger(min.larger(-min));
+        let distinct = step > largest * T::EPSILON * T::from_index(4);
         if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct && reaches)
         {
             return Err(Error::Range);

@@ -122,19 +122,16 @@ fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
     if turns.is_empty() {
         moving.fill(false);
     }
+    // From each turning point as far as its neighbours at most: they look on from there.
     let last = output.len() - 1;
-    let mut covered = 0;
-    for turn in turns.into_iter().chain([last]) {
-        let still = |n: &usize| (output[*n] - output[turn]).abs() <= still;
-        let first = (covered..=turn)
-            .rev()
-            .take_while(still)
-            .last()
-            .unwrap_or(turn);
-        let end = (turn..=last).take_while(still).last().unwrap_or(turn);
-        moving[first..=end].fill(false);
-        // What one turning point covers, the next need not look at again.
-        covered = turn;
+    let ends: Vec<usize> = [0].into_iter().chain(turns).chain([last]).collect();
+    for (n, &turn) in ends.iter().enumerate().skip(1) {
+        let next = ends.get(n + 1).copied().unwrap_or(last);
+        let still = |at: &usize| (output[*at] - output[turn]).abs() <= still;
+        let before = (ends[n - 1]..=turn).rev().take_while(still);
+        for at in before.chain((turn..=next).take_while(still)) {
+            moving[at] = false;
+        }
     }
     moving
 }

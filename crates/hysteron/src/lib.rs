@@ -33,7 +33,7 @@ pub use identify::{FitOptions, FitSummary, Solver, fit, plane_of};
 pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
-pub use output::{AtomicFile, TableWriter};
+pub use output::{AtomicFile, TableWriter, discard_unfinished};
 pub use recording::{Columns, Origin, Quantity, Recording, Source};
 pub use stream::{Counts, Invert, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};

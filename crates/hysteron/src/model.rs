@@ -84,6 +84,14 @@ impl Model {
         if expected != found {
             return Err(hysteron_core::Error::WeightCount { expected, found }.into());
         }
+        let largest = offset.abs() + 2.0 * weights.iter().map(|mu| mu.abs()).sum::<f64>();
+        if weights.iter().all(|mu| mu.is_finite()) && !largest.is_finite() {
+            return Err(Error::ModelFile {
+                path: None,
+                field: "weights".into(),
+                problem: "their sum with the offset is too large for a number".into(),
+            });
+        }
         let table = vec![0.0; table_len(plane.levels())];
         let core = hysteron_core::Model::new(plane, operator, &weights, table)?;
         Ok(Self {

@@ -11,7 +11,7 @@ const FORMAT: &str = "hysteron-model";
 const VERSION: u64 = 1;
 
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
 struct File {
     format: String,
     version: u64,
@@ -28,6 +28,7 @@ struct File {
 
 /// Only what tells whether the rest can be read at all.
 #[derive(Deserialize)]
+#[serde(expecting = "a model: an object in braces")]
 struct Head {
     format: Option<String>,
     version: Option<serde_json::Value>,
@@ -42,7 +43,7 @@ enum OperatorName {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
 struct PlaneEntry {
     min: f64,
     max: f64,
@@ -50,7 +51,7 @@ struct PlaneEntry {
 }
 
 #[derive(Serialize, Deserialize, Default)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "an object in braces")]
 struct InputEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -59,7 +60,7 @@ struct InputEntry {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, expecting = "an object in braces")]
 struct OutputEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -113,6 +114,7 @@ impl Model {
     /// # Errors
     /// As [`Model::read`].
     pub fn from_json(text: &str) -> Result<Self> {
+        let text = text.trim_start_matches('\u{feff}');
         let head: Head = parse(text)?;
         if head.format.as_deref() != Some(FORMAT) {
             let found = head

@@ -5,6 +5,23 @@ use crate::{Error, Result};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Files being written beside their places.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of paths is whole whatever a thread that held it was doing.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every file that is still being written, for a program that is told to end.
+pub fn discard_unfinished() {
+    for path in unfinished().drain(..) {
+        // One that cannot be removed is no reason not to end.
+        let _ = std::fs::remove_file(path);
+    }
+}
 
 /// A file that is written beside its place and takes its name when it is whole; dropped before, it leaves nothing.
 ///
@@ -43,6 +60,7 @@ impl AtomicFile {
             Ok(_) => path.canonicalize()?,
             Err(_) => path.to_owned(),
         };
+        let before = std::fs::metadata(&path).map(|there| there.permissions());
         let folder = match path.parent() {
             Some(folder) if folder != Path::new("") => folder,
             _ => Path::new("."),
@@ -51,7 +69,17 @@ impl AtomicFile {
         // As a plain new file would have, not the private mode of temporary ones.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let beside = builder.prefix(".hysteron-").tempfile_in(folder)?;
+        if let Ok(permissions) = before {
+            builder.permissions(permissions);
+        }
+        let beside = builder
+            .prefix(".hysteron-")
+            .tempfile_in(folder)
+            .map_err(|error| {
+                // Without the name of the file beside, which says nothing to anyone.
+                std::io::Error::from(error.kind())
+            })?;
+        unfinished().push(beside.path().to_owned());
         Ok((path, Place::Beside(beside)))
     }
 
@@ -63,10 +91,13 @@ impl AtomicFile {
         let path = self.path;
         let kept = match self.to {
             Place::There(_) => Ok(()),
-            Place::Beside(beside) => match beside.persist(&path) {
-                Ok(_) => Ok(()),
-                Err(error) => Err(error.error),
-            },
+            Place::Beside(beside) => {
+                unfinished().retain(|other| other != beside.path());
+                match beside.persist(&path) {
+                    Ok(_) => Ok(()),
+                    Err(error) => Err(error.error),
+                }
+            }
         };
         kept.map_err(|source| Error::File { path, source })
     }
@@ -130,11 +161,12 @@ impl Write for Sink {
 }
 
 impl TableWriter {
-    /// A table to `path`, or to standard output without one.
+    /// A table to `path`, or to standard output without one or with `-`.
     ///
     /// # Errors
     /// [`Error::File`].
     pub fn create(path: Option<&Path>) -> Result<Self> {
+        let path = path.filter(|path| *path != Path::new("-"));
         let sink = match path {
             None => Sink::Stdout(BufWriter::new(std::io::stdout())),
             Some(path) => Sink::Beside(BufWriter::new(AtomicFile::create(path)?)),

@@ -83,6 +83,9 @@ pub struct Source {
     pub sha256: String,
 }
 
+/// Values beyond this have squares that a sum of squares cannot hold.
+const LARGEST: f64 = 1e140;
+
 /// An input and the output it caused, sample by sample.
 ///
 /// All samples are finite and both have the same length, at least one.
@@ -164,7 +167,7 @@ impl Recording {
         if input.is_empty() {
             return Err(reader.fault(None, "there are no rows below the header".into()));
         }
-        Ok(Self {
+        let recording = Self {
             time,
             input,
             output,
@@ -175,7 +178,9 @@ impl Recording {
                 path: path.to_owned(),
                 sha256,
             }),
-        })
+        };
+        recording.check()?;
+        Ok(recording)
     }
 
     /// Writes a CSV file with a header row; units stand in brackets behind the names. A simulated
@@ -255,6 +260,10 @@ impl Recording {
             }
             if let Some(n) = values.iter().position(|v| !v.is_finite()) {
                 let problem = format!("sample {n} (from 0) is {}, not a finite number", values[n]);
+                return Err(fault(name, problem));
+            }
+            if let Some(value) = values.iter().find(|v| v.abs() > LARGEST) {
+                let problem = format!("{value} is too large to be squared: use another unit");
                 return Err(fault(name, problem));
             }
         }

@@ -62,7 +62,11 @@ impl TableReader {
         let csv = csv::ReaderBuilder::new()
             .flexible(true) // ragged rows are reported here, with their line and what to do
             .buffer_capacity(1 << 16)
-            .from_reader(Hashing { file, digest });
+            .from_reader(Hashing {
+                file,
+                digest,
+                quotes: 0,
+            });
         let mut reader = Self {
             path: path.to_owned(),
             header: Vec::new(),
@@ -109,8 +113,20 @@ impl TableReader {
             (Some(place), None) => Ok(Column(place)),
             (Some(_), Some(_)) => Err(self.fault(None, format!("two columns are called `{name}`"))),
             (None, _) => {
-                let names: Vec<String> = self.header.iter().map(|n| format!("`{n}`")).collect();
-                let problem = format!("no column `{name}`: there are {}", names.join(", "));
+                let names: Vec<String> = self
+                    .header
+                    .iter()
+                    .map(|n| format!("`{}`", shortened(n)))
+                    .collect();
+                let mut problem = format!("no column `{name}`: there are {}", names.join(", "));
+                if let ([only], true) = (&self.header[..], self.header[0].contains([';', '\t'])) {
+                    let separator = if only.contains(';') {
+                        "semicolons"
+                    } else {
+                        "tabs"
+                    };
+                    problem += &format!("; separate the columns by commas, not {separator}");
+                }
                 Err(self.fault(None, problem))
             }
         }
@@ -122,6 +138,15 @@ impl TableReader {
     /// [`Error::File`]; [`Error::Recording`] for a row with more or fewer cells than the header.
     pub fn advance(&mut self) -> Result<bool> {
         match self.csv.read_byte_record(&mut self.row.0) {
+            Ok(false) if self.csv.get_ref().quotes % 2 == 1 => {
+                // The last row read is the one that goes on to the end of the file.
+                return Err(Error::Recording {
+                    path: Some(self.path.clone()),
+                    row: Some(self.line),
+                    column: None,
+                    problem: "a quote is opened here and never closed".into(),
+                });
+            }
             Ok(false) => return Ok(false),
             Ok(true) => {}
             Err(error) => return Err(self.csv_fault(error)),
@@ -133,7 +158,9 @@ impl TableReader {
             .map_or(self.line + 1, csv::Position::line);
         let (found, expected) = (self.row.0.len(), self.header.len());
         if found != expected {
-            let problem = format!("{found} cells where the header has {expected}");
+            let problem = format!(
+                "{found} cells where the header has {expected}: give every row as many, separated by commas"
+            );
             return Err(self.fault(None, problem));
         }
         Ok(true)
@@ -152,7 +179,7 @@ impl TableReader {
                 let what = if text.is_empty() {
                     "an empty cell".to_owned()
                 } else {
-                    format!("`{text}`")
+                    format!("`{}`", shortened(text))
                 };
                 let problem =
                     format!("{what} where a finite number is needed: mend or remove the row");
@@ -195,10 +222,28 @@ impl TableReader {
     pub fn fault(&self, column: Option<Column>, problem: String) -> Error {
         Error::Recording {
             path: Some(self.path.clone()),
-            row: Some(self.line),
+            row: Some(self.line_of_row().unwrap_or(self.line)),
             column: column.map(|column| self.header[column.0].clone()),
             problem,
         }
+    }
+
+    /// The line that the present row begins on, counted in the file itself: the parser leaves the end
+    /// of a line, and blank lines, to the row after them. `None` where the file cannot be read again.
+    fn line_of_row(&self) -> Option<u64> {
+        let start = self.row.0.position()?.byte();
+        if !std::fs::metadata(&self.path).ok()?.is_file() {
+            return None;
+        }
+        let mut bytes = std::io::BufReader::new(File::open(&self.path).ok()?).bytes();
+        let mut line = 1;
+        for _ in 0..start {
+            line += u64::from(bytes.next()?.ok()? == b'\n');
+        }
+        while let Some(Ok(byte @ (b'\r' | b'\n'))) = bytes.next() {
+            line += u64::from(byte == b'\n');
+        }
+        Some(line)
     }
 
     fn csv_fault(&self, error: csv::Error) -> Error {
@@ -224,15 +269,27 @@ impl TableReader {
     }
 }
 
+/// At most 40 characters of a text, for a message.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
 /// Hashes what passes through, where asked to: a file is read once only, and may be a pipe.
 struct Hashing {
     file: Box<dyn Read>,
     digest: Option<Sha256>,
+    /// Quotation marks so far: they come in pairs.
+    quotes: usize,
 }
 
 impl Read for Hashing {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.file.read(buffer)?;
+        self.quotes += buffer[..count].iter().filter(|byte| **byte == b'"').count();
         if let Some(digest) = &mut self.digest {
             digest.update(&buffer[..count]);
         }

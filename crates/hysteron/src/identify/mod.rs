@@ -90,6 +90,9 @@ pub struct FitSummary {
     pub other: std::collections::BTreeMap<String, serde_json::Value>,
 }
 
+/// Ranges below this have squares of zero.
+const SMALLEST: f64 = 1e-140;
+
 /// Most memory that the Gram matrix may take.
 const GRAM_BYTES: u128 = 4 << 30;
 
@@ -125,9 +128,12 @@ pub fn fit(recording: &Recording, options: &FitOptions) -> Result<Model> {
             GRAM_BYTES >> 30
         )));
     }
-    if let Some(offset) = options.offset.filter(|offset| !offset.is_finite()) {
+    if let Some(offset) = options
+        .offset
+        .filter(|offset| offset.is_nan() || offset.abs() > 1e140)
+    {
         return Err(Error::Fit(format!(
-            "the offset {offset} is not a finite number"
+            "the offset {offset} is not a number to work with"
         )));
     }
 
@@ -213,19 +219,29 @@ fn choose_plane(recording: &Recording, options: &FitOptions) -> Result<Plane> {
     ];
     for (values, quantity) in series {
         let (low, high) = range(values);
-        if low >= high {
+        if high - low < SMALLEST {
             return Err(Error::Recording {
                 path: recording.source.as_ref().map(|source| source.path.clone()),
                 row: None,
                 column: Some(quantity.name.clone()),
-                problem: format!("it is {low} throughout: nothing can be identified from it"),
+                problem: match high > low {
+                    true => format!("it moves by {:e} only: use another unit", high - low),
+                    false => format!("it is {low} throughout: nothing can be identified from it"),
+                },
             });
         }
     }
-    match options.range {
-        Some((min, max)) => Ok(Plane::new(min, max, options.levels)?),
-        None => plane_of(recording, options.levels),
+    let Some((min, max)) = options.range else {
+        return plane_of(recording, options.levels);
+    };
+    let plane = Plane::new(min, max, options.levels)?;
+    let (low, high) = range(&recording.input);
+    if plane.normalise(low) >= plane.normalise(high) {
+        return Err(Error::Fit(format!(
+            "the input, from {low} to {high}, moves no operator of a plane from {min} to {max}: take another range"
+        )));
     }
+    Ok(plane)
 }
 
 /// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is that of the recording's
@@ -235,6 +251,21 @@ fn choose_plane(recording: &Recording, options: &FitOptions) -> Result<Plane> {
 /// [`Error::Core`] for a number of levels that cannot be, or an input that never changes.
 pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
     let (low, high) = range(&recording.input);
+    if low >= high {
+        return Err(Error::Recording {
+            path: recording.source.as_ref().map(|source| source.path.clone()),
+            row: None,
+            column: Some(recording.input_quantity.name.clone()),
+            problem: format!("it is {low} throughout: no plane follows from it, give a range"),
+        });
+    }
     let step = (high - low) / levels.max(1) as f64;
-    Ok(Plane::new(low + step, high, levels)?)
+    let mut plane = Plane::new(low + step, high, levels)?;
+    // Rounding must not leave the lowest input outside.
+    for _ in 0..4 {
+        if plane.bottom() > low {
+            plane = Plane::new(plane.min().next_down(), high, levels)?;
+        }
+    }
+    Ok(plane)
 }
