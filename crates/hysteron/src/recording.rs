@@ -263,7 +263,7 @@ impl Recording {
                 return Err(fault(name, problem));
             }
             if let Some(value) = values.iter().find(|v| v.abs() > LARGEST) {
-                let problem = format!("{value} is too large to be squared: use another unit");
+                let problem = format!("{value:e} is too large to be squared: use another unit");
                 return Err(fault(name, problem));
             }
         }
