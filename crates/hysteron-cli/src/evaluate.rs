@@ -11,6 +11,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         input: &args.input,
         output: &args.output,
         time: args.time.as_deref(),
+        load: None,
     };
     let recording = Recording::read_csv(&args.data, columns)?;
     let evaluation = hysteron::evaluate(&model, &recording)?;

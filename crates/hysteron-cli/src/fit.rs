@@ -5,11 +5,7 @@ use hysteron::{Columns, FitOptions, Operator, Recording, Sign, Solver};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
-    let columns = Columns {
-        input: &args.input,
-        output: &args.output,
-        time: None,
-    };
+    let columns = Columns::new(&args.input, &args.output);
     let same = |a: &std::path::Path| a.canonicalize().ok();
     if same(&args.out).is_some_and(|out| same(&args.data) == Some(out)) {
         return Err(format!(

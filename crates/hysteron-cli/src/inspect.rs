@@ -70,6 +70,7 @@ fn recording(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
         input,
         output,
         time: args.time.as_deref(),
+        load: None,
     };
     let recording = Recording::read_csv(&args.file, columns)?;
     let plane = match args.range {

@@ -59,11 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("| {name} | no known columns | | | | | | | |");
             continue;
         };
-        let columns = Columns {
-            input,
-            output,
-            time: None,
-        };
+        let columns = Columns::new(input, output);
         let recording = Recording::read_csv(&path, columns)?;
         let run = |operator, solver| -> Result<(FitSummary, Sign), Box<dyn Error>> {
             let options = FitOptions {

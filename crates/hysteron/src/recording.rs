@@ -101,6 +101,10 @@ pub struct Recording {
     pub input_quantity: Quantity,
     /// What the output is.
     pub output_quantity: Quantity,
+    /// The load (or stress) at each sample, as many as `input`, where the recording has it.
+    pub load: Option<Vec<f64>>,
+    /// What the load is; of no meaning without it.
+    pub load_quantity: Quantity,
     /// Measured or simulated.
     pub origin: Origin,
     /// The file it was read from.
@@ -116,6 +120,21 @@ pub struct Columns<'a> {
     pub output: &'a str,
     /// Time in seconds, if wanted.
     pub time: Option<&'a str>,
+    /// The load or stress, if wanted.
+    pub load: Option<&'a str>,
+}
+
+impl<'a> Columns<'a> {
+    /// An input and an output, and nothing else.
+    #[must_use]
+    pub fn new(input: &'a str, output: &'a str) -> Self {
+        Self {
+            input,
+            output,
+            time: None,
+            load: None,
+        }
+    }
 }
 
 impl Recording {
@@ -130,6 +149,8 @@ impl Recording {
             output,
             input_quantity: Quantity::named("input"),
             output_quantity: Quantity::named("output"),
+            load: None,
+            load_quantity: Quantity::named("load"),
             origin: Origin::Measured,
             source: None,
         };
@@ -147,8 +168,10 @@ impl Recording {
         let input_at = reader.column(columns.input)?;
         let output_at = reader.column(columns.output)?;
         let time_at = columns.time.map(|name| reader.column(name)).transpose()?;
+        let load_at = columns.load.map(|name| reader.column(name)).transpose()?;
         let (mut input, mut output) = (Vec::new(), Vec::new());
         let mut time: Option<Vec<f64>> = time_at.map(|_| Vec::new());
+        let mut load: Option<Vec<f64>> = load_at.map(|_| Vec::new());
         while reader.advance()? {
             input.push(reader.number(input_at)?);
             output.push(reader.number(output_at)?);
@@ -163,6 +186,9 @@ impl Recording {
                 }
                 time.push(now);
             }
+            if let (Some(load), Some(at)) = (&mut load, load_at) {
+                load.push(reader.number(at)?);
+            }
         }
         if input.is_empty() {
             return Err(reader.fault(None, "there are no rows below the header".into()));
@@ -173,6 +199,8 @@ impl Recording {
             output,
             input_quantity: Quantity::from_column(columns.input),
             output_quantity: Quantity::from_column(columns.output),
+            load,
+            load_quantity: Quantity::from_column(columns.load.unwrap_or("load")),
             origin: Origin::Measured,
             source: reader.sha256().map(|sha256| Source {
                 path: path.to_owned(),
@@ -196,6 +224,7 @@ impl Recording {
             self.time.as_ref().map(|_| "time [s]".to_owned()),
             Some(self.input_quantity.to_column()),
             Some(self.output_quantity.to_column()),
+            self.load.as_ref().map(|_| self.load_quantity.to_column()),
             simulated.then(|| "simulated".to_owned()),
         ];
         table.row(names.iter().flatten())?;
@@ -204,6 +233,7 @@ impl Recording {
                 self.time.as_ref().map(|time| time[n].to_string()),
                 Some(input.to_string()),
                 Some(output.to_string()),
+                self.load.as_ref().map(|load| load[n].to_string()),
                 simulated.then(|| "1".to_owned()),
             ];
             table.row(cells.iter().flatten())?;
@@ -246,7 +276,9 @@ impl Recording {
             (&self.input, self.input_quantity.name.as_str()),
             (&self.output, self.output_quantity.name.as_str()),
         ];
-        for (values, name) in series.into_iter().chain(time) {
+        let load = self.load.as_ref();
+        let load = load.map(|load| (load, self.load_quantity.name.as_str()));
+        for (values, name) in series.into_iter().chain(time).chain(load) {
             if values.len() != self.input.len() {
                 let problem = format!(
                     "{} samples, but {} of the input",

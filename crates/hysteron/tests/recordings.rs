@@ -30,11 +30,7 @@ fn the_optimum_is_scipys() {
     let Some(path) = shared("sma_basaeri_train.csv") else {
         return;
     };
-    let columns = Columns {
-        input: "voltage_V",
-        output: "output",
-        time: None,
-    };
+    let columns = Columns::new("voltage_V", "output");
     let recording = Recording::read_csv(&path, columns).unwrap();
     for (levels, nnls, ols) in SCIPY {
         for (solver, expected) in [(Solver::Nnls, nnls), (Solver::Ols, ols)] {
@@ -61,11 +57,7 @@ fn with_a_free_offset_kp_fits_as_mkp_does() {
     let Some(path) = shared("sma_basaeri_train.csv") else {
         return;
     };
-    let columns = Columns {
-        input: "voltage_V",
-        output: "output",
-        time: None,
-    };
+    let columns = Columns::new("voltage_V", "output");
     let recording = Recording::read_csv(&path, columns).unwrap();
     let errors = [Operator::Mkp, Operator::Kp].map(|operator| {
         let options = FitOptions {

@@ -135,6 +135,8 @@ impl Experiment {
             output,
             input_quantity: Quantity::with_unit("temperature", "degC"),
             output_quantity: Quantity::with_unit("displacement", "mm"),
+            load: None,
+            load_quantity: Quantity::named("load"),
             origin: Origin::Simulated,
             source: None,
         })
