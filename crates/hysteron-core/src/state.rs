@@ -105,28 +105,58 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         turns.iter().map(|turn| turn.x).chain([self.place.x])
     }
 
+    /// How many turning points lie before the branch being travelled. While it stays the same from one
+    /// sample to the next, so does what [`State::memory_terms`] gives.
+    #[must_use]
+    pub fn held(&self) -> usize {
+        self.place.top - START
+    }
+
     /// The terms of `H` over the Everett table: calls `term(index, factor)` so that
     /// `Σ factor · C[index]` is the output `Σ μ γ`. An index may come more than once.
     ///
-    /// This is a row of the sparse matrix that identification works with.
+    /// This is a row of the sparse matrix that identification works with. It is
+    /// [`State::memory_terms`] and [`State::branch_terms`] together.
     pub fn everett_terms(&self, mut term: impl FnMut(usize, T)) {
-        let mut last = T::ZERO;
-        for x in self.turning_points() {
-            // Up to a maximum adds its triangle, down to a minimum takes one away.
-            if x != last {
-                let (sign, max, min) = if x > last {
-                    (T::ONE, x, last)
-                } else {
-                    (-T::ONE, last, x)
-                };
-                let [max, min] = [max, min].map(|x| Split::of(x, self.levels));
-                let triangle = Triangle::of(max, min);
-                term(triangle.near, sign * (T::ONE - triangle.larger));
-                term(triangle.mid, sign * (triangle.larger - triangle.smaller));
-                term(triangle.far, sign * triangle.smaller);
-            }
-            last = x;
+        self.memory_terms(&mut term);
+        for (index, factor) in self.branch_terms() {
+            term(index, factor);
         }
+    }
+
+    /// The terms of the turning points before the branch being travelled: the same all along it.
+    pub fn memory_terms(&self, mut term: impl FnMut(usize, T)) {
+        let mut last = T::ZERO;
+        for turn in &self.turns()[2..] {
+            for (index, factor) in self.terms_between(last, turn.x) {
+                term(index, factor);
+            }
+            last = turn.x;
+        }
+    }
+
+    /// The terms of the branch being travelled.
+    #[must_use]
+    #[inline]
+    pub fn branch_terms(&self) -> [(usize, T); 3] {
+        self.terms_between(self.turns.as_ref()[self.place.top].x, self.place.x)
+    }
+
+    /// Up to a maximum adds its triangle, down to a minimum takes one away.
+    #[inline]
+    fn terms_between(&self, from: T, to: T) -> [(usize, T); 3] {
+        let (sign, max, min) = if to > from {
+            (T::ONE, to, from)
+        } else {
+            (-T::ONE, from, to)
+        };
+        let [max, min] = [max, min].map(|x| Split::of(x, self.levels));
+        let triangle = Triangle::of(max, min);
+        [
+            (triangle.near, sign * (T::ONE - triangle.larger)),
+            (triangle.mid, sign * (triangle.larger - triangle.smaller)),
+            (triangle.far, sign * triangle.smaller),
+        ]
     }
 
     pub(crate) fn levels(&self) -> usize {

@@ -13,6 +13,7 @@ mod evaluate;
 pub mod filter;
 mod identify;
 mod inspect;
+mod load;
 mod metrics;
 mod model;
 mod model_file;
@@ -29,8 +30,12 @@ pub use hysteron_core::{
     Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
     Status,
 };
-pub use identify::{FitOptions, FitSummary, Solver, fit, plane_of};
+pub use identify::{
+    Candidates, Confidence, Factor, FitOptions, FitSummary, LeftOut, Score, Solver, Start,
+    Validation, Watch, cross_validate, fit, fit_experiment, left_out, plane_of,
+};
 pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
+pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};

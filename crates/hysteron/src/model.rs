@@ -54,6 +54,8 @@ pub struct Model {
     pub input: Quantity,
     /// What the output is.
     pub output: Quantity,
+    /// How offset and weights depend on a load, where they do; the model itself is then that of the middle of its range.
+    pub load: Option<crate::LoadDependence>,
     /// How the model was obtained, where it was identified.
     pub fit: Option<FitSummary>,
 }
@@ -101,6 +103,7 @@ impl Model {
             sign,
             input: Quantity::named("input"),
             output: Quantity::named("output"),
+            load: None,
             fit: None,
         })
     }

@@ -2,6 +2,7 @@
 //! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
 //! and with a factor that is updated, not made anew.
 
+use super::Watch;
 use super::cholesky::Cholesky;
 use crate::{Error, Result};
 
@@ -11,7 +12,7 @@ const STRIDE: usize = 8;
 
 /// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
 /// definite, `N × N`, row by row. The objective falls with every step, so that it always ends.
-pub(super) fn solve(a: &[f64], b: &[f64], x: &mut [f64]) -> Result<()> {
+pub(super) fn solve(a: &[f64], b: &[f64], x: &mut [f64], watch: Watch<'_>) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
     // Rounding of sums of `count` products: below this a gradient is zero.
@@ -25,6 +26,7 @@ pub(super) fn solve(a: &[f64], b: &[f64], x: &mut [f64]) -> Result<()> {
     // Variables that did not help are left alone until others have.
     let mut tried = vec![false; count];
     for _ in 0..30 * count + 100 {
+        watch("weights", set.members.len() as f64 / count as f64)?;
         let mut gradient = b.to_vec();
         for &n in &set.members {
             for (g, a) in gradient.iter_mut().zip(row(n)) {

@@ -1,12 +1,15 @@
 //! Least squares on the normal equations, made exact by refinement against the sparse form.
 //!
 //! The Gram matrix is singular as a rule: operators that were never excited, or always together. A
-//! small ridge makes it definite, and proximal steps `min |Φ(μ + δ) − y|² + ε |δ|²` (Rockafellar 1976)
+//! small ridge makes it definite, and proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar 1976)
 //! take the ridge's effect away again: the residual of each step is computed by a run of the model,
 //! not from the Gram matrix. From zero on they lead to the solution of smallest norm.
 
-use super::sparse::SparseForm;
-use super::{Solver, nnls};
+use super::experiment::Experiment;
+use super::free::FreeColumns;
+use super::regressor::Regressor;
+use super::smoothness::Smoothness;
+use super::{Solver, Watch, nnls};
 use crate::Result;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -18,91 +21,127 @@ const RIDGE: f64 = 1e-11;
 /// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays here.
 const ROUNDING: f64 = 1e-13;
 
-/// Proximal steps end when one improves the squared error by less than this part of it.
+/// Proximal steps end when one improves the objective by less than this part of it.
 const ENOUGH: f64 = 1e-12;
 
 /// Or when the error is this small beside the data: nothing but rounding is left.
 const NOTHING_LEFT: f64 = 1e-26;
 
-/// Most proximal steps.
-const STEPS: usize = 200;
+/// Most proximal steps of a fit.
+pub(super) const STEPS: usize = 200;
 
-/// Weights and what they leave.
+/// Column values and what they leave.
+#[derive(Debug, Clone)]
 pub(super) struct Solution {
-    pub(super) weights: Vec<f64>,
-    /// The constant that is best with them, 0 where it is not free.
-    pub(super) offset: f64,
-    /// Sum of squared residuals.
-    pub(super) squares: f64,
+    /// One value a column of the regressor.
+    pub(super) x: Vec<f64>,
+    /// Values of the free columns.
+    pub(super) free: Vec<f64>,
+    /// What is left at every sample, zero where it was not kept.
+    pub(super) residual: Vec<f64>,
+    /// Sum of squared residuals and penalty.
+    pub(super) objective: f64,
 }
 
-/// `Φᵀ Φ` of a recording, centred where a constant is free, with its ridge.
+/// `Aᵀ A` of the samples kept, free columns eliminated, with penalty and ridge.
 pub(super) struct NormalEquations<'a> {
-    form: &'a SparseForm<'a>,
-    gram: Vec<f64>,
-    offset_free: bool,
+    regressor: &'a Regressor,
+    experiment: &'a Experiment,
+    free: &'a FreeColumns,
+    kept: Option<&'a [f64]>,
+    smoothness: Smoothness,
+    /// With ridge, `C × C`, row by row.
+    pub(super) matrix: Vec<f64>,
+    /// The ridge.
+    pub(super) ridge: f64,
 }
 
 impl<'a> NormalEquations<'a> {
-    pub(super) fn new(form: &'a SparseForm<'a>, offset_free: bool) -> Result<Self> {
-        let count = form.operators();
-        let mut gram = form.gram()?;
-        let largest = (0..count).map(|n| gram[n * count + n]).fold(0.0, f64::max);
-        if offset_free {
-            // A free constant is eliminated by taking the mean off every column.
-            let samples = form.samples() as f64;
-            let sums = form.adjoint(&vec![1.0; form.samples()])?;
-            for (row, a) in gram.chunks_exact_mut(count).zip(&sums) {
-                for (element, b) in row.iter_mut().zip(&sums) {
-                    *element -= a * b / samples;
-                }
-            }
-        }
-        let trace: f64 = (0..count).map(|n| gram[n * count + n]).sum();
+    /// `kept` is 1 at samples that count and 0 at others; `smooth` the strength of the penalty.
+    pub(super) fn new(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        smooth: f64,
+        watch: Watch<'_>,
+    ) -> Result<Self> {
+        let gram = regressor.gram(experiment, kept, watch)?;
+        Self::of_gram(regressor, experiment, free, kept, smooth, gram)
+    }
+
+    /// As [`NormalEquations::new`], from the Gram matrix of the samples kept.
+    pub(super) fn of_gram(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        smooth: f64,
+        mut matrix: Vec<f64>,
+    ) -> Result<Self> {
+        let count = regressor.columns().len();
+        let largest = (0..count)
+            .map(|n| matrix[n * count + n])
+            .fold(0.0, f64::max);
+        free.eliminate_from(&mut matrix, regressor, experiment)?;
+        let samples = kept.map_or(experiment.input.len() as f64, |kept| kept.iter().sum());
+        let smoothness = Smoothness::new(regressor.plane().levels(), smooth, samples);
+        smoothness.add_to(&mut matrix, regressor.columns());
+        let trace: f64 = (0..count).map(|n| matrix[n * count + n]).sum();
         let ridge = (RIDGE * trace / count as f64 + ROUNDING * largest).max(f64::MIN_POSITIVE);
         for n in 0..count {
-            gram[n * count + n] += ridge;
+            matrix[n * count + n] += ridge;
         }
         Ok(Self {
-            form,
-            gram,
-            offset_free,
+            regressor,
+            experiment,
+            free,
+            kept,
+            smoothness,
+            matrix,
+            ridge,
         })
     }
 
-    /// The weights that bring `Φ μ` (and a constant, where free) closest to `target`.
-    pub(super) fn solve(&self, target: &[f64], solver: Solver) -> Result<Solution> {
-        let count = self.form.operators();
-        let element = |i: usize, j: usize| self.gram[i * count + j];
+    /// The values that bring `A x`, with the best free columns, closest to `target`, from `start` on, in `steps` proximal steps at most.
+    pub(super) fn solve(
+        &self,
+        target: &[f64],
+        solver: Solver,
+        start: Option<&[f64]>,
+        steps: usize,
+        watch: Watch<'_>,
+    ) -> Result<Solution> {
+        let count = self.regressor.columns().len();
         let full = match solver {
             Solver::Ols => {
+                let element = |i: usize, j: usize| self.matrix[i * count + j];
                 let matrix = Mat::from_fn(count, count, element);
                 Some(matrix.llt(Side::Lower).map_err(|_| nnls::not_definite())?)
             }
             Solver::Nnls => None,
         };
-        let mut best = self.residual(target, vec![0.0; count])?;
+        let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
+        let mut best = self.solution(target, start)?;
         let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
-        for _ in 0..STEPS {
-            let (ref solution, ref residual) = best;
-            let gradient = self.form.adjoint(residual)?;
-            let weights = match &full {
+        for _ in 0..steps {
+            watch("weights", 0.0)?;
+            let gradient = self.descent(&best)?;
+            let x = match &full {
                 Some(factor) => {
                     let step = factor.solve(&Mat::from_fn(count, 1, |n, _| gradient[n]));
-                    (0..count)
-                        .map(|n| solution.weights[n] + step[(n, 0)])
-                        .collect()
+                    (0..count).map(|n| best.x[n] + step[(n, 0)]).collect()
                 }
                 None => {
-                    let moved = self.times(&solution.weights);
+                    let moved = self.times(&best.x);
                     let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    let mut weights = solution.weights.clone();
-                    nnls::solve(&self.gram, &right, &mut weights)?;
-                    weights
+                    let mut x = best.x.clone();
+                    nnls::solve(&self.matrix, &right, &mut x, watch)?;
+                    x
                 }
             };
-            let next = self.residual(target, weights)?;
-            let (before, after) = (best.0.squares, next.0.squares);
+            let next = self.solution(target, x)?;
+            let (before, after) = (best.objective, next.objective);
             if after < before {
                 best = next;
             }
@@ -110,30 +149,42 @@ impl<'a> NormalEquations<'a> {
                 break;
             }
         }
-        Ok(best.0)
+        Ok(best)
     }
 
-    /// What `weights` leave of `target`, with the best constant taken off.
-    fn residual(&self, target: &[f64], weights: Vec<f64>) -> Result<(Solution, Vec<f64>)> {
-        let modelled = self.form.forward(&weights)?;
+    /// What `x` leaves of `target`, with the best free columns taken off.
+    fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
+        let modelled = self.regressor.forward(self.experiment, &x)?;
         let mut residual: Vec<f64> = target.iter().zip(&modelled).map(|(y, h)| y - h).collect();
-        let mut offset = 0.0;
-        if self.offset_free {
-            offset = residual.iter().sum::<f64>() / residual.len() as f64;
-            residual.iter_mut().for_each(|r| *r -= offset);
+        if let Some(kept) = self.kept {
+            residual
+                .iter_mut()
+                .zip(kept)
+                .for_each(|(r, kept)| *r *= kept);
         }
-        let squares = residual.iter().map(|r| r * r).sum();
-        let solution = Solution {
-            weights,
-            offset,
-            squares,
-        };
-        Ok((solution, residual))
+        let free = self.free.take_off(&mut residual);
+        let slopes = self.smoothness.times(&x, self.regressor.columns());
+        let penalty: f64 = x.iter().zip(&slopes).map(|(x, s)| x * s).sum();
+        let objective = residual.iter().map(|r| r * r).sum::<f64>() + penalty;
+        Ok(Solution {
+            x,
+            free,
+            residual,
+            objective,
+        })
     }
 
-    fn times(&self, vector: &[f64]) -> Vec<f64> {
+    /// Half the descent of the objective: `Aᵀ r − P x`.
+    pub(super) fn descent(&self, at: &Solution) -> Result<Vec<f64>> {
+        let mut descent = self.regressor.adjoint(self.experiment, &at.residual)?;
+        let slopes = self.smoothness.times(&at.x, self.regressor.columns());
+        descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
+        Ok(descent)
+    }
+
+    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let row_times = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
-        self.gram
+        self.matrix
             .chunks_exact(vector.len())
             .map(row_times)
             .collect()

@@ -1,52 +1,69 @@
 //! The sparse form of the regressor matrix, `Φ = W S`: `S` the prefix sums of the Everett table, a row
 //! of `W` the few triangle factors of a sample's turning points. `Φ` itself is never formed.
+//!
+//! Along a branch only three factors of a row change; those of the turning points before it stay. So
+//! sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a branch.
 
-use crate::{Operator, Plane, Result, State};
-use hysteron_core::{Model, Turn, operator_index, table_index, table_len, turn_capacity};
+use super::Watch;
+use super::rows::{Rows, Term};
+use crate::{Operator, Plane, Result};
+use hysteron_core::{Model, operator_index, table_index, table_len};
 
-/// The regressor of one recording: `n` samples, `N` operators with states in `[0, 1]`.
-pub(super) struct SparseForm<'a> {
+/// Where the operators stand before the first sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum From {
+    Off,
+    On,
+}
+
+/// How often a long pass tells how far it is, in samples.
+const REPORT: usize = 1 << 16;
+
+/// The regressor of a plane: `N` operators with states in `[0, 1]`, for any input.
+pub(super) struct SparseForm {
     plane: Plane,
     operator: Operator,
-    input: &'a [f64],
     /// A model without weights, that moves states.
     blank: Model<f64, Vec<f64>>,
     /// From a place in the Everett table to the place of `C[p][q]` among the `N` with `q < p`;
-    /// those with `q = p` are zero.
-    place: Vec<Option<usize>>,
+    /// [`Term::NOWHERE`] for those with `q = p`, which are zero.
+    place: Vec<u32>,
 }
 
-impl<'a> SparseForm<'a> {
-    pub(super) fn new(plane: Plane, operator: Operator, input: &'a [f64]) -> Result<Self> {
+impl SparseForm {
+    pub(super) fn new(plane: Plane, operator: Operator) -> Result<Self> {
         let levels = plane.levels();
         let zeros = vec![0.0; plane.operators()];
         let blank = Model::new(plane, operator, &zeros, vec![0.0; table_len(levels)])?;
-        let mut place = vec![None; table_len(levels)];
+        let mut place = vec![Term::NOWHERE; table_len(levels)];
         for p in 1..=levels {
             for q in 0..p {
                 // C[p][q] has the place of weight (i, j) = (q + 1, p).
-                place[table_index(p, q)] = Some(operator_index(q + 1, p));
+                place[table_index(p, q)] = operator_index(q + 1, p) as u32;
             }
         }
         Ok(Self {
             plane,
             operator,
-            input,
             blank,
             place,
         })
     }
 
-    pub(super) fn samples(&self) -> usize {
-        self.input.len()
+    pub(super) fn plane(&self) -> &Plane {
+        &self.plane
     }
 
     pub(super) fn operators(&self) -> usize {
         self.plane.operators()
     }
 
+    pub(super) fn rows(&self, from: From) -> Result<Rows<'_>> {
+        Rows::new(&self.blank, &self.place, from)
+    }
+
     /// `Φ μ`: a run of the forward model, `O(n + K²)`.
-    pub(super) fn forward(&self, weights: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn forward(&self, weights: &[f64], input: &[f64], from: From) -> Result<Vec<f64>> {
         let table = vec![0.0; table_len(self.plane.levels())];
         // A relay's states come doubled and shifted by its output of ±1; KP states are those of MKP.
         let relay = self.operator == Operator::Relay;
@@ -56,8 +73,9 @@ impl<'a> SparseForm<'a> {
             Operator::Mkp
         };
         let model = Model::new(self.plane, operator, weights, table)?;
-        let mut output = vec![0.0; self.input.len()];
-        model.run(&mut state_of(&model)?, self.input, &mut output)?;
+        let mut output = vec![0.0; input.len()];
+        let mut state = super::rows::state_of(&model, from)?;
+        model.run(&mut state, input, &mut output)?;
         if relay {
             let (low, high) = model.output_range();
             output
@@ -67,75 +85,156 @@ impl<'a> SparseForm<'a> {
         Ok(output)
     }
 
-    /// `Φᵀ r`, the adjoint run.
-    pub(super) fn adjoint(&self, residual: &[f64]) -> Result<Vec<f64>> {
-        let mut sums = vec![0.0; self.operators()];
-        self.rows(|n, terms| {
-            for &(place, factor) in terms {
-                sums[place] += factor * residual[n];
+    /// Adds `Wᵀ r` to `sums`; [`SparseForm::operators_of`] makes `Φᵀ r` of it.
+    pub(super) fn add_adjoint(
+        &self,
+        input: &[f64],
+        from: From,
+        residual: impl Fn(usize) -> f64,
+        sums: &mut [f64],
+    ) -> Result<()> {
+        let mut rows = self.rows(from)?;
+        let mut held = 0.0;
+        for (n, &x) in input.iter().enumerate() {
+            if rows.leaves_branch(x)? {
+                rows.add_memory(held, sums);
+                rows.remember();
+                held = 0.0;
             }
-        })?;
-        transpose_sums(self.plane.levels(), &mut sums);
-        Ok(sums)
+            let r = residual(n);
+            held += r;
+            for term in rows.branch() {
+                sums[term.place as usize] += term.factor * r;
+            }
+        }
+        rows.add_memory(held, sums);
+        Ok(())
     }
 
-    /// `Φᵀ Φ = Sᵀ (Wᵀ W) S`, row by row, `N × N`: `O(n · nnz² + N²)`.
-    pub(super) fn gram(&self) -> Result<Vec<f64>> {
+    /// `Sᵀ w` in place: operator `(i, j)` is part of every `C[p][q]` with `p ≥ j` and `q < i`.
+    pub(super) fn operators_of(&self, w: &mut [f64]) {
+        transpose_sums(self.plane.levels(), w);
+    }
+
+    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, `W` and `W'` being the rows of the two
+    /// starts; [`SparseForm::gram_of`] makes `Φᵀ diag(scale) Φ'` of it.
+    pub(super) fn add_outer(
+        &self,
+        input: &[f64],
+        (left, right): (From, From),
+        scale: impl Fn(usize) -> f64,
+        gram: &mut [f64],
+        watch: Watch<'_>,
+    ) -> Result<()> {
         let count = self.operators();
-        let levels = self.plane.levels();
-        let mut gram = vec![0.0; count * count];
-        self.rows(|_, terms| {
-            for &(a, factor_a) in terms {
-                for &(b, factor_b) in terms {
-                    gram[a * count + b] += factor_a * factor_b;
+        let mut a = self.rows(left)?;
+        // The same rows on both sides are walked once.
+        let mut other = (left != right).then(|| self.rows(right)).transpose()?;
+        let mut sums = BranchSums::default();
+        for (n, &x) in input.iter().enumerate() {
+            if n % REPORT == 0 {
+                watch("samples", n as f64 / input.len() as f64)?;
+            }
+            let mut left_branch = a.leaves_branch(x)?;
+            if let Some(b) = &mut other {
+                left_branch |= b.leaves_branch(x)?;
+            }
+            if left_branch {
+                let b = other.as_ref().unwrap_or(&a);
+                sums.flush(a.memory(), b.memory(), gram, count);
+                a.remember();
+                if let Some(b) = &mut other {
+                    b.remember();
                 }
             }
-        })?;
+            let s = scale(n);
+            if s == 0.0 {
+                continue;
+            }
+            let t = a.branch();
+            let u = other.as_ref().map_or(t, Rows::branch);
+            sums.add(s, &t, &u);
+            for t in &t {
+                let row = &mut gram[t.place as usize * count..][..count];
+                for u in &u {
+                    row[u.place as usize] += s * t.factor * u.factor;
+                }
+            }
+        }
+        let b = other.as_ref().unwrap_or(&a);
+        sums.flush(a.memory(), b.memory(), gram, count);
+        Ok(())
+    }
+
+    /// `Sᵀ A S` in place.
+    pub(super) fn gram_of(&self, gram: &mut [f64]) {
+        let (count, levels) = (self.operators(), self.plane.levels());
         // Sᵀ from the left: the same sums with whole rows as elements; then from the right.
         let row = |i: usize, j: usize| operator_index(i, j) * count;
         for j in 1..=levels {
             for i in 2..=j {
-                add_row(&mut gram, row(i - 1, j), row(i, j), count);
+                add_row(gram, row(i - 1, j), row(i, j), count);
             }
         }
         for j in (1..levels).rev() {
             for i in 1..=j {
-                add_row(&mut gram, row(i, j + 1), row(i, j), count);
+                add_row(gram, row(i, j + 1), row(i, j), count);
             }
         }
         for row in gram.chunks_exact_mut(count) {
             transpose_sums(levels, row);
         }
-        Ok(gram)
     }
+}
 
-    /// Hands the non-zero elements of each row of `W` to `each`, every place once.
-    fn rows(&self, mut each: impl FnMut(usize, &[(usize, f64)])) -> Result<()> {
-        let mut state = state_of(&self.blank)?;
-        let mut terms: Vec<(usize, f64)> = Vec::new();
-        for (n, &input) in self.input.iter().enumerate() {
-            self.blank.step(&mut state, input)?;
-            terms.clear();
-            state.everett_terms(|index, factor| {
-                if let (Some(place), true) = (self.place[index], factor != 0.0) {
-                    match terms.iter_mut().find(|(other, _)| *other == place) {
-                        Some((_, sum)) => *sum += factor,
-                        None => terms.push((place, factor)),
-                    }
+/// What the samples of one branch sum up to: with `f`, `g` the factors of the turning points and `t`, `u`
+/// those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
+#[derive(Default)]
+struct BranchSums {
+    scale: f64,
+    left: Vec<Term>,
+    right: Vec<Term>,
+}
+
+impl BranchSums {
+    fn add(&mut self, s: f64, t: &[Term; 3], u: &[Term; 3]) {
+        self.scale += s;
+        for (sums, terms) in [(&mut self.left, t), (&mut self.right, u)] {
+            for term in terms {
+                // A branch passes its triangles in order: the same ones are the last ones.
+                let recent = sums.len().saturating_sub(4);
+                match sums[recent..]
+                    .iter_mut()
+                    .find(|sum| sum.place == term.place)
+                {
+                    Some(sum) => sum.factor += s * term.factor,
+                    None => sums.push(Term {
+                        place: term.place,
+                        factor: s * term.factor,
+                    }),
                 }
-            });
-            each(n, &terms);
+            }
         }
-        Ok(())
+    }
+
+    fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
+        let mut outer = |a: &[Term], b: &[Term], scale: f64| {
+            for a in a {
+                let row = &mut gram[a.place as usize * count..][..count];
+                for b in b {
+                    row[b.place as usize] += scale * a.factor * b.factor;
+                }
+            }
+        };
+        outer(f, g, self.scale);
+        outer(f, &self.right, 1.0);
+        outer(&self.left, g, 1.0);
+        self.scale = 0.0;
+        self.left.clear();
+        self.right.clear();
     }
 }
 
-fn state_of(model: &Model<f64, Vec<f64>>) -> Result<State> {
-    let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
-    Ok(model.state(memory)?)
-}
-
-/// `Sᵀ w` in place: operator `(i, j)` is part of every `C[p][q]` with `p ≥ j` and `q < i`.
 fn transpose_sums(levels: usize, w: &mut [f64]) {
     for j in 1..=levels {
         for i in 2..=j {
@@ -167,14 +266,17 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use hysteron_core::Definition;
+    use hysteron_core::{Definition, operator_count};
     use rand::{RngExt, SeedableRng};
 
     /// `Φ` from the definition, column by column of each row.
-    fn dense(plane: Plane, operator: Operator, input: &[f64]) -> Vec<Vec<f64>> {
+    fn dense(plane: Plane, operator: Operator, input: &[f64], from: From) -> Vec<Vec<f64>> {
         let weights = vec![1.0; plane.operators()];
         let mut states = weights.clone();
         let mut plain = Definition::new(plane, operator, &weights, &mut states).unwrap();
+        if from == From::On {
+            plain.step(plane.max()).unwrap();
+        }
         let step = |&t: &f64| {
             plain.step(t).unwrap();
             plain.states().to_vec()
@@ -186,32 +288,57 @@ mod tests {
     fn products_equal_those_with_the_dense_matrix() {
         for (seed, levels) in [2, 3, 7, 15].into_iter().enumerate() {
             for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
-                let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed as u64);
-                let plane = Plane::new(-1.0, 4.0, levels).unwrap();
-                let input: Vec<f64> = (0..300).map(|_| rng.random_range(-4.0..5.0)).collect();
-                let form = SparseForm::new(plane, operator, &input).unwrap();
-                let phi = dense(plane, operator, &input);
-                let count = plane.operators();
-                let mu: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..1.0)).collect();
-                let r: Vec<f64> = input.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
-                // Sums of at most 300 · N numbers of size one.
-                let close = |a: f64, b: f64| (a - b).abs() < 1e-10;
-                let forward = form.forward(&mu).unwrap();
-                for (row, y) in phi.iter().zip(&forward) {
-                    assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
+                for starts in [
+                    (From::Off, From::Off),
+                    (From::On, From::On),
+                    (From::Off, From::On),
+                ] {
+                    agrees(seed as u64, levels, operator, starts);
                 }
-                let adjoint = form.adjoint(&r).unwrap();
-                let gram = form.gram().unwrap();
-                for a in 0..count {
-                    assert!(close(
-                        phi.iter().zip(&r).map(|(row, r)| row[a] * r).sum(),
-                        adjoint[a]
-                    ));
-                    for b in 0..count {
-                        let exact: f64 = phi.iter().map(|row| row[a] * row[b]).sum();
-                        assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
-                    }
-                }
+            }
+        }
+    }
+
+    fn agrees(seed: u64, levels: usize, operator: Operator, (left, right): (From, From)) {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let plane = Plane::new(-1.0, 4.0, levels).unwrap();
+        // Runs of small steps, so that branches have many samples, and jumps between.
+        let mut x = 0.0;
+        let input: Vec<f64> = (0..400)
+            .map(|_| {
+                x = match rng.random_range(0..10) {
+                    0 => rng.random_range(-4.0..5.0),
+                    _ => x + rng.random_range(-0.3..0.4),
+                };
+                x
+            })
+            .collect();
+        let form = SparseForm::new(plane, operator).unwrap();
+        let count = operator_count(levels);
+        let phi = [left, right].map(|from| dense(plane, operator, &input, from));
+        let mu: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let r: Vec<f64> = input.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
+        // Sums of at most 400 · N numbers of size one.
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-10;
+        let forward = form.forward(&mu, &input, left).unwrap();
+        for (row, y) in phi[0].iter().zip(&forward) {
+            assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
+        }
+        let mut adjoint = vec![0.0; count];
+        form.add_adjoint(&input, left, |n| r[n], &mut adjoint)
+            .unwrap();
+        form.operators_of(&mut adjoint);
+        let mut gram = vec![0.0; count * count];
+        form.add_outer(&input, (left, right), |n| r[n], &mut gram, &|_, _| Ok(()))
+            .unwrap();
+        form.gram_of(&mut gram);
+        for a in 0..count {
+            let exact: f64 = phi[0].iter().zip(&r).map(|(row, r)| row[a] * r).sum();
+            assert!(close(exact, adjoint[a]));
+            for b in 0..count {
+                let rows = phi[0].iter().zip(&phi[1]).zip(&r);
+                let exact: f64 = rows.map(|((left, right), r)| left[a] * r * right[b]).sum();
+                assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
             }
         }
     }

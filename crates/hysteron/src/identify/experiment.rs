@@ -1,0 +1,213 @@
+//! Recordings put together into one experiment: their samples one after the other, their branches, and
+//! the functions of the load.
+
+use super::FitOptions;
+use super::regressor::MOST_RECORDINGS;
+use crate::evaluate::NOISE;
+use crate::recording::range;
+use crate::{Error, Plane, Recording, Result, Turning};
+use std::ops::Range;
+
+pub(super) struct Experiment {
+    pub(super) input: Vec<f64>,
+    pub(super) output: Vec<f64>,
+    /// Samples of each recording.
+    pub(super) recordings: Vec<Range<usize>>,
+    /// For each sample the branch it lies on, counted through all recordings.
+    pub(super) branch: Vec<usize>,
+    /// Smallest and largest load, where there is one.
+    pub(super) load_range: Option<(f64, f64)>,
+    /// Functions of the load at each sample, a single 1 where there is none.
+    pub(super) parts: Vec<Vec<f64>>,
+}
+
+impl Experiment {
+    pub(super) fn new(recordings: &[Recording], options: &FitOptions) -> Result<Self> {
+        let Some(first) = recordings.first() else {
+            return Err(Error::Fit("there is no recording to fit".into()));
+        };
+        if recordings.len() > MOST_RECORDINGS {
+            return Err(Error::Fit(format!(
+                "{} recordings, where one experiment has {MOST_RECORDINGS} at most",
+                recordings.len()
+            )));
+        }
+        let mut experiment = Self {
+            input: Vec::new(),
+            output: Vec::new(),
+            recordings: Vec::new(),
+            branch: Vec::new(),
+            load_range: None,
+            parts: Vec::new(),
+        };
+        let mut load = first.load.as_ref().map(|_| Vec::new());
+        for recording in recordings {
+            recording.check()?;
+            let start = experiment.input.len();
+            experiment.input.extend_from_slice(&recording.input);
+            experiment.output.extend_from_slice(&recording.output);
+            experiment.recordings.push(start..experiment.input.len());
+            match (&mut load, &recording.load) {
+                (Some(all), Some(load)) => all.extend_from_slice(load),
+                (None, None) => {}
+                _ => {
+                    return Err(Error::Fit(
+                        "some recordings have a load and some have none".into(),
+                    ));
+                }
+            }
+        }
+        experiment.find_branches();
+        match load {
+            None => experiment.parts = vec![vec![1.0; experiment.input.len()]],
+            Some(load) => {
+                let (low, high) = range(&load);
+                if low >= high {
+                    return Err(Error::Fit(format!(
+                        "the load is {low} throughout: nothing can be learned of its effect, fit without it"
+                    )));
+                }
+                experiment.load_range = Some((low, high));
+                let functions = load
+                    .iter()
+                    .map(|f| bernstein(options.load_degree, (f - low) / (high - low)));
+                let mut parts = vec![Vec::with_capacity(load.len()); options.load_degree + 1];
+                for values in functions {
+                    for (part, value) in parts.iter_mut().zip(values) {
+                        part.push(value);
+                    }
+                }
+                experiment.parts = parts;
+            }
+        }
+        Ok(experiment)
+    }
+
+    /// A branch ends where the input turns by more than noise. The turning point belongs to the branch before it.
+    fn find_branches(&mut self) {
+        let (low, high) = range(&self.input);
+        let mut branch = 0;
+        for range in &self.recordings {
+            let mut turning = Turning::new(NOISE * (high - low));
+            let turns = self.input[range.clone()].iter();
+            let turns: Vec<usize> = turns
+                .filter_map(|&x| turning.push(x))
+                .map(|(n, _)| n)
+                .filter(|n| *n > 0)
+                .collect();
+            let mut next = turns.into_iter().peekable();
+            for n in 0..range.len() {
+                self.branch.push(branch);
+                if next.next_if(|turn| *turn == n).is_some() {
+                    branch += 1;
+                }
+            }
+            branch += 1;
+        }
+    }
+
+    pub(super) fn branches(&self) -> usize {
+        self.branch.last().map_or(0, |last| last + 1)
+    }
+
+    /// The plane of the options, from the range of all inputs where they leave it open.
+    pub(super) fn plane(&self, recordings: &[Recording], options: &FitOptions) -> Result<Plane> {
+        check_range(recordings, &self.output, |r| &r.output_quantity.name)?;
+        check_range(recordings, &self.input, |r| &r.input_quantity.name)?;
+        let (low, high) = range(&self.input);
+        let Some((min, max)) = options.range else {
+            return active_plane(low, high, options.levels);
+        };
+        let plane = Plane::new(min, max, options.levels)?;
+        if plane.normalise(low) >= plane.normalise(high) {
+            return Err(Error::Fit(format!(
+                "the input, from {low} to {high}, moves no operator of a plane from {min} to {max}: take another range"
+            )));
+        }
+        Ok(plane)
+    }
+}
+
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
+/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
+pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
+    // De Casteljau's scheme.
+    let mut values = vec![1.0];
+    for _ in 0..degree {
+        let mut next = vec![0.0; values.len() + 1];
+        for (k, value) in values.iter().enumerate() {
+            next[k] += (1.0 - s) * value;
+            next[k + 1] += s * value;
+        }
+        values = next;
+    }
+    values
+}
+
+/// Ranges below this have squares of zero.
+const SMALLEST: f64 = 1e-140;
+
+fn check_range(
+    recordings: &[Recording],
+    values: &[f64],
+    name: impl Fn(&Recording) -> &String,
+) -> Result<()> {
+    let (low, high) = range(values);
+    if high - low >= SMALLEST {
+        return Ok(());
+    }
+    Err(Error::Recording {
+        path: recordings[0].source.as_ref().map(|s| s.path.clone()),
+        row: None,
+        column: Some(name(&recordings[0]).clone()),
+        problem: match high > low {
+            true => format!("it moves by {:e} only: use another unit", high - low),
+            false => format!("it is {low} throughout: nothing can be identified from it"),
+        },
+    })
+}
+
+/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is that of the recording's
+/// input: the lowest ridge starts one step below the lowest level.
+///
+/// # Errors
+/// [`Error::Core`] for a number of levels that cannot be, [`Error::Recording`] for an input that never changes.
+pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
+    check_range(std::slice::from_ref(recording), &recording.input, |r| {
+        &r.input_quantity.name
+    })?;
+    let (low, high) = range(&recording.input);
+    active_plane(low, high, levels)
+}
+
+fn active_plane(low: f64, high: f64, levels: usize) -> Result<Plane> {
+    let step = (high - low) / levels.max(1) as f64;
+    let mut plane = Plane::new(low + step, high, levels)?;
+    // Rounding must not leave the lowest input outside.
+    for _ in 0..4 {
+        if plane.bottom() > low {
+            plane = Plane::new(plane.min().next_down(), high, levels)?;
+        }
+    }
+    Ok(plane)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bernstein;
+
+    #[test]
+    fn load_functions_sum_to_one_and_meet_the_ends() {
+        for degree in 0..5 {
+            for s in [0.0, 0.3, 1.0] {
+                let values = bernstein(degree, s);
+                assert_eq!(values.len(), degree + 1);
+                // Five roundings of numbers up to one.
+                assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-15 * 5.0);
+                assert!(values.iter().all(|v| *v >= 0.0));
+            }
+            assert_eq!(bernstein(degree, 0.0)[0], 1.0);
+            assert_eq!(bernstein(degree, 1.0)[degree], 1.0);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What a fit may choose, and what it tells afterwards.
+
+use super::Confidence;
+use crate::{Operator, Sign};
+use serde::{Deserialize, Serialize};
+
+/// How the weights are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Solver {
+    /// Non-negative least squares: a monotone model, which has an inverse.
+    #[default]
+    Nnls,
+    /// Plain least squares, the chapter's; of all solutions that of smallest norm. Weights of either
+    /// sign, which a material with a butterfly loop needs; as a rule without an inverse.
+    Ols,
+}
+
+/// Where the operators stand before the first sample of each recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Start {
+    /// All off, as after the lowest input.
+    #[default]
+    Off,
+    /// All on, as after the highest input.
+    On,
+    /// Not known: what the operators that the input has not reached yet contribute is estimated with the weights.
+    Unknown,
+}
+
+/// What a fit may choose.
+///
+/// | field | default | range | purpose |
+/// | --- | --- | --- | --- |
+/// | `operator` | MKP | MKP, KP, relay | the elementary operator |
+/// | `levels` | 20 | from 2 on; the Gram matrix takes `8 N²` bytes, `N = K(K + 1)/2` | how fine the plane is |
+/// | `range` | from the data | finite, in order | the plane's lowest and highest level |
+/// | `solver` | NNLS | NNLS, OLS | see [`Solver`] |
+/// | `sign` | the better one | ± | direction of the output |
+/// | `offset` | free | finite | output with every operator off |
+/// | `smooth` | 0 | from 0 on; 1e-8 to 1e-4 as a rule | strength of the smoothness across the plane |
+/// | `start` | off | off, on, unknown | where the operators stand before each recording |
+/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, where the recordings have one |
+/// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitOptions {
+    /// The elementary operator.
+    pub operator: Operator,
+    /// Number of levels `K`.
+    pub levels: usize,
+    /// Lowest and highest level; `None` for a plane whose active range is that of the input.
+    pub range: Option<(f64, f64)>,
+    /// How the weights are found.
+    pub solver: Solver,
+    /// Direction of the output; `None` for the one that fits better.
+    pub sign: Option<Sign>,
+    /// Output with every operator off; `None` to identify it.
+    pub offset: Option<f64>,
+    /// Strength `λ` of the smoothness of the weights' density across the plane, against the mean squared
+    /// error; it means the same whatever the number of levels.
+    pub smooth: f64,
+    /// Where the operators stand before the first sample of each recording.
+    pub start: Start,
+    /// Order of the weights as a function of the load.
+    pub load_degree: usize,
+    /// Replicates of the bootstrap.
+    pub bootstrap: usize,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            operator: Operator::Mkp,
+            levels: 20,
+            range: None,
+            solver: Solver::Nnls,
+            sign: None,
+            offset: None,
+            smooth: 0.0,
+            start: Start::Off,
+            load_degree: 1,
+            bootstrap: 0,
+        }
+    }
+}
+
+/// How a model was obtained; it goes into the model file.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FitSummary {
+    /// How the weights were found.
+    pub solver: Solver,
+    /// Strength of the smoothness.
+    pub smooth: f64,
+    /// Where the operators were taken to stand before each recording.
+    pub start: Start,
+    /// Samples fitted.
+    pub samples: usize,
+    /// Root mean squared error over them, in the output's unit.
+    pub rmse: f64,
+    /// Largest absolute error, in the output's unit.
+    pub max_abs: f64,
+    /// `rmse` in percent of the measured range.
+    pub nrmse_percent: f64,
+    /// Weights that are not zero.
+    pub weights_not_zero: usize,
+    /// Whether the data came from a simulated plant.
+    pub simulated: bool,
+    /// The file fitted, the first where there were several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// SHA-256 of its bytes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
+    /// The other files fitted with it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_files: Vec<String>,
+    /// How smoothness and levels were chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub validation: Option<super::Validation>,
+    /// What the data say, and what not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<Confidence>,
+    /// What else a model file says of its fit.
+    #[serde(flatten)]
+    pub other: std::collections::BTreeMap<String, serde_json::Value>,
+}

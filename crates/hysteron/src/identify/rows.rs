@@ -1,0 +1,108 @@
+//! The rows of `W`, sample by sample: the factors of the turning points before the branch, which stay
+//! the same along it, and the three of the branch itself.
+
+use super::sparse::From;
+use crate::{Result, State};
+use hysteron_core::{Model, Turn, turn_capacity};
+
+/// A non-zero element of `W`: its column and its value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term {
+    pub(super) place: u32,
+    pub(super) factor: f64,
+}
+
+impl Term {
+    /// The place of an Everett corner that is always zero.
+    pub(super) const NOWHERE: u32 = u32::MAX;
+}
+
+/// Walks an input and knows the row of the present sample.
+pub(super) struct Rows<'a> {
+    blank: &'a Model<f64, Vec<f64>>,
+    place: &'a [u32],
+    state: State,
+    /// Turning points that `memory` was made of.
+    held: usize,
+    memory: Vec<Term>,
+}
+
+impl<'a> Rows<'a> {
+    pub(super) fn new(
+        blank: &'a Model<f64, Vec<f64>>,
+        place: &'a [u32],
+        from: From,
+    ) -> Result<Self> {
+        let state = state_of(blank, from)?;
+        let mut rows = Self {
+            blank,
+            place,
+            state,
+            held: 0,
+            memory: Vec::new(),
+        };
+        rows.remember();
+        Ok(rows)
+    }
+
+    /// Moves to the next sample; says whether that is on another branch, so that [`Rows::memory`],
+    /// still that of the branch before, has to be made anew.
+    #[inline]
+    pub(super) fn leaves_branch(&mut self, input: f64) -> Result<bool> {
+        self.blank.step(&mut self.state, input)?;
+        Ok(self.state.held() != self.held)
+    }
+
+    /// Makes [`Rows::memory`] that of the present branch.
+    pub(super) fn remember(&mut self) {
+        self.held = self.state.held();
+        self.memory.clear();
+        self.state.memory_terms(|index, factor| {
+            let place = self.place[index];
+            if place != Term::NOWHERE && factor != 0.0 {
+                self.memory.push(Term { place, factor });
+            }
+        });
+    }
+
+    pub(super) fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The factors of the turning points before the branch. A place may come more than once.
+    pub(super) fn memory(&self) -> &[Term] {
+        &self.memory
+    }
+
+    /// The factors of the branch itself, at the present sample.
+    #[inline]
+    pub(super) fn branch(&self) -> [Term; 3] {
+        self.state.branch_terms().map(|(index, factor)| {
+            match self.place[index] {
+                // Zero times anything.
+                Term::NOWHERE => Term {
+                    place: 0,
+                    factor: 0.0,
+                },
+                place => Term { place, factor },
+            }
+        })
+    }
+
+    /// Adds the factors of the turning points, `sum` times, to `sums`.
+    pub(super) fn add_memory(&self, sum: f64, sums: &mut [f64]) {
+        for term in &self.memory {
+            sums[term.place as usize] += term.factor * sum;
+        }
+    }
+}
+
+/// The state of a model before the first sample.
+pub(super) fn state_of(model: &Model<f64, Vec<f64>>, from: From) -> Result<State> {
+    let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
+    let mut state = model.state(memory)?;
+    if from == From::On {
+        model.reset_on(&mut state)?;
+    }
+    Ok(state)
+}

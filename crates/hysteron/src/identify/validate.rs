@@ -1,0 +1,327 @@
+//! Cross-validation that leaves out whole branches: the samples of one branch are so alike that leaving
+//! out some of them would test nothing.
+
+use super::problem::Problem;
+use super::solve::NormalEquations;
+use super::{FitOptions, Watch};
+use crate::recording::range;
+use crate::{Recording, Result, Solver};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Folds at most.
+const FOLDS: usize = 5;
+
+/// With fewer branches than this, parts of branches are left out instead.
+const ENOUGH_BRANCHES: usize = 4;
+
+/// How many parts there are then at least.
+const PARTS: usize = 8;
+
+/// What to choose from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidates {
+    /// Numbers of levels, ascending.
+    pub levels: Vec<usize>,
+    /// Strengths of the smoothness.
+    pub smooth: Vec<f64>,
+}
+
+impl Candidates {
+    /// All that are worth trying; `None` where the choice is open.
+    ///
+    /// Levels in steps of `√2` from 5 to 40; strengths in decades, and 0.
+    #[must_use]
+    pub fn new(levels: Option<usize>, smooth: Option<f64>) -> Self {
+        Self {
+            levels: levels.map_or(vec![5, 7, 10, 14, 20, 28, 40], |levels| vec![levels]),
+            smooth: smooth.map_or_else(
+                || (-10..=-3).map(|n| 10_f64.powi(n)).chain([0.0]).collect(),
+                |smooth| vec![smooth],
+            ),
+        }
+    }
+}
+
+/// The error of one candidate on what was left out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Number of levels.
+    pub levels: usize,
+    /// Strength of the smoothness.
+    pub smooth: f64,
+    /// Root mean squared error over all samples, each left out once, in the output's unit.
+    pub rmse: f64,
+}
+
+/// What a cross-validation found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Validation {
+    /// Groups of branches that were left out in turn.
+    pub folds: usize,
+    /// Whether whole branches were left out: with fewer than four, parts of them.
+    pub whole_branches: bool,
+    /// The error left out of the best candidate, in the output's unit.
+    pub rmse: f64,
+    /// The same in percent of the measured range.
+    pub nrmse_percent: f64,
+    /// All candidates.
+    pub scores: Vec<Score>,
+}
+
+/// Chooses levels and smoothness by the error on left-out branches. Returns the options with the choice
+/// made, and how it came about.
+///
+/// More levels are tried until two numbers in a row have not helped.
+///
+/// # Errors
+/// As [`super::fit_experiment`].
+pub fn cross_validate(
+    recordings: &[Recording],
+    options: &FitOptions,
+    candidates: &Candidates,
+    watch: Watch<'_>,
+) -> Result<(FitOptions, Validation)> {
+    choose(recordings, options, candidates, None, watch)
+}
+
+fn choose(
+    recordings: &[Recording],
+    options: &FitOptions,
+    candidates: &Candidates,
+    kept: Option<&[f64]>,
+    watch: Watch<'_>,
+) -> Result<(FitOptions, Validation)> {
+    let mut options = options.clone();
+    let first = FitOptions {
+        levels: candidates.levels.first().copied().unwrap_or(options.levels),
+        ..options.clone()
+    };
+    let mut problem = Problem::new(recordings, &first)?;
+    if options.sign.is_none() && options.solver == Solver::Nnls {
+        options.sign = Some(problem.solve(kept, &|_, _| Ok(()))?.sign);
+    }
+    let (folds, whole_branches) = folds(&problem, kept);
+    let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
+    // The strongest first: each solution is a start for the next.
+    let mut smooth = candidates.smooth.clone();
+    smooth.sort_by(|a, b| b.total_cmp(a));
+    let mut scores: Vec<Score> = Vec::new();
+    let mut best: Option<Score> = None;
+    let mut no_better = 0;
+    for (n, &levels) in candidates.levels.iter().enumerate() {
+        watch(
+            "cross-validation",
+            n as f64 / candidates.levels.len() as f64,
+        )?;
+        let at = FitOptions {
+            levels,
+            ..options.clone()
+        };
+        let problem = Problem::new(recordings, &at)?;
+        let all: Vec<Vec<f64>> = (0..count)
+            .into_par_iter()
+            .map(|fold| squares_left_out(&problem, &folds, fold, &smooth, watch))
+            .collect::<Result<_>>()?;
+        let samples = folds.iter().flatten().count() as f64;
+        let before = best.map_or(f64::INFINITY, |best| best.rmse);
+        for (k, &smooth) in smooth.iter().enumerate() {
+            let squares: f64 = all.iter().map(|fold| fold[k]).sum();
+            let rmse = (squares / samples).sqrt();
+            let score = Score {
+                levels,
+                smooth,
+                rmse,
+            };
+            if best.is_none_or(|best| rmse < best.rmse) {
+                best = Some(score);
+            }
+            scores.push(score);
+        }
+        no_better = match best {
+            Some(best) if best.rmse < before * 0.99 => 0,
+            _ => no_better + 1,
+        };
+        if no_better == 2 {
+            break;
+        }
+    }
+    let best = best.ok_or_else(|| crate::Error::Fit("there are no candidates".into()))?;
+    let (low, high) = range(&problem.experiment.output);
+    let validation = Validation {
+        folds: count,
+        whole_branches,
+        rmse: best.rmse,
+        nrmse_percent: 100.0 * best.rmse / (high - low),
+        scores,
+    };
+    options.levels = best.levels;
+    options.smooth = best.smooth;
+    Ok((options, validation))
+}
+
+/// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the folds
+/// are of whole branches.
+fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) {
+    let experiment = &problem.experiment;
+    let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
+    let mut unit = vec![None; experiment.input.len()];
+    let (mut units, mut last) = (0, None);
+    for (n, &branch) in experiment.branch.iter().enumerate() {
+        if is_kept(n) {
+            if last.is_some_and(|last| last != branch) {
+                units += 1;
+            }
+            last = Some(branch);
+            unit[n] = Some(units);
+        }
+    }
+    units += 1;
+    let whole = units >= ENOUGH_BRANCHES;
+    if !whole {
+        // Parts of equal travel, as far as samples allow.
+        let parts = PARTS.div_ceil(units);
+        let mut travel = vec![0.0; units];
+        let mut at = vec![0.0; unit.len()];
+        for n in 0..unit.len() {
+            if let Some(u) = unit[n] {
+                if n > 0 && unit[n - 1] == Some(u) {
+                    travel[u] += (experiment.input[n] - experiment.input[n - 1]).abs();
+                }
+                at[n] = travel[u];
+            }
+        }
+        for (unit, at) in unit.iter_mut().zip(at) {
+            if let Some(u) = unit {
+                let part = (parts as f64 * at / travel[*u].max(f64::MIN_POSITIVE)) as usize;
+                *u = *u * parts + part.min(parts - 1);
+            }
+        }
+        units *= parts;
+    }
+    let count = units.min(FOLDS);
+    let folds = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
+    (folds, whole)
+}
+
+/// Squared errors on what a fold leaves out, for each strength of the smoothness.
+fn squares_left_out(
+    problem: &Problem,
+    folds: &[Option<usize>],
+    fold: usize,
+    smooth: &[f64],
+    watch: Watch<'_>,
+) -> Result<Vec<f64>> {
+    let rest = |f: &Option<usize>| {
+        if f.is_some_and(|f| f != fold) {
+            1.0
+        } else {
+            0.0
+        }
+    };
+    let kept: Vec<f64> = folds.iter().map(rest).collect();
+    let target = problem.target(problem.options.sign.unwrap_or_default());
+    let free = problem.free(Some(&kept))?;
+    let quiet: Watch<'_> = &|_, _| watch("cross-validation", f64::NAN);
+    let gram = problem
+        .regressor
+        .gram(&problem.experiment, Some(&kept), quiet)?;
+    let mut start: Option<Vec<f64>> = None;
+    let mut squares = Vec::with_capacity(smooth.len());
+    for &smooth in smooth {
+        let equations = NormalEquations::of_gram(
+            &problem.regressor,
+            &problem.experiment,
+            &free,
+            Some(&kept),
+            smooth,
+            gram.clone(),
+        )?;
+        let solution =
+            equations.solve(&target, problem.options.solver, start.as_deref(), 1, quiet)?;
+        let predicted = problem.predict(&solution)?;
+        let left_out = (0..target.len()).filter(|&n| folds[n] == Some(fold));
+        squares.push(left_out.map(|n| (target[n] - predicted[n]).powi(2)).sum());
+        start = Some(solution.x);
+    }
+    Ok(squares)
+}
+
+/// Errors over branches that were left out, and over those that were not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeftOut {
+    /// For each sample the group of branches it was left out with.
+    pub fold: Vec<usize>,
+    /// Predicted output at each sample, when it was left out.
+    pub predicted: Vec<f64>,
+    /// Root mean squared error left out, in percent of the measured range.
+    pub nrmse_percent: f64,
+    /// The same over the samples that were fitted, all folds together.
+    pub training_nrmse_percent: f64,
+    /// Levels and smoothness of each fold.
+    pub chosen: Vec<(usize, f64)>,
+}
+
+/// Leaves out whole branches in turn and predicts them, with the options given, or with those that
+/// cross-validation of the remaining branches chooses from `candidates`.
+///
+/// # Errors
+/// As [`super::fit_experiment`]; [`crate::Error::Fit`] for a single branch.
+pub fn left_out(
+    recordings: &[Recording],
+    options: &FitOptions,
+    candidates: Option<&Candidates>,
+    watch: Watch<'_>,
+) -> Result<LeftOut> {
+    let mut problem = Problem::new(recordings, options)?;
+    let experiment = &problem.experiment;
+    let count = experiment.branches().min(FOLDS);
+    if count < 2 {
+        return Err(crate::Error::Fit(
+            "there is only one branch: nothing can be left out".into(),
+        ));
+    }
+    let fold: Vec<usize> = experiment.branch.iter().map(|b| b % count).collect();
+    let measured = experiment.output.clone();
+    let mut predicted = vec![0.0; measured.len()];
+    let (mut training, mut chosen) = (0.0, Vec::new());
+    for f in 0..count {
+        watch("left-out branches", f as f64 / count as f64)?;
+        let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
+        let mut options = options.clone();
+        if let Some(candidates) = candidates {
+            options = choose(recordings, &options, candidates, Some(&kept), &|_, _| {
+                watch("left-out branches", f as f64 / count as f64)
+            })?
+            .0;
+            problem = Problem::new(recordings, &options)?;
+        }
+        chosen.push((options.levels, options.smooth));
+        let fitted = problem.solve(Some(&kept), &|_, _| Ok(()))?;
+        let h = problem.predict(&fitted.solution)?;
+        let offset = options.offset.unwrap_or(0.0);
+        for n in 0..measured.len() {
+            let y = offset + fitted.sign.factor() * h[n];
+            if fold[n] == f {
+                predicted[n] = y;
+            } else {
+                training += (measured[n] - y).powi(2);
+            }
+        }
+    }
+    let (low, high) = range(&measured);
+    let samples = measured.len() as f64;
+    let squares: f64 = measured
+        .iter()
+        .zip(&predicted)
+        .map(|(y, p)| (y - p).powi(2))
+        .sum();
+    let percent = |squares: f64, samples: f64| 100.0 * (squares / samples).sqrt() / (high - low);
+    Ok(LeftOut {
+        nrmse_percent: percent(squares, samples),
+        training_nrmse_percent: percent(training, samples * (count - 1) as f64),
+        fold,
+        predicted,
+        chosen,
+    })
+}

@@ -1,0 +1,93 @@
+//! Weights that depend on a load: one model for several loads or stresses.
+
+use crate::identify::bernstein;
+use crate::{Error, Quantity, Result};
+use serde::{Deserialize, Serialize};
+
+/// Offset and weights that one Bernstein polynomial of the load is multiplied with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+pub struct LoadPart {
+    /// Output with every operator off.
+    pub offset: f64,
+    /// `N` weights, row by row.
+    pub weights: Vec<f64>,
+}
+
+/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein polynomials of the load
+/// scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those between, and the largest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadDependence {
+    /// What the load is.
+    pub quantity: Quantity,
+    range: (f64, f64),
+    parts: Vec<LoadPart>,
+}
+
+impl LoadDependence {
+    /// Of the parts, one at least and all with as many weights, over the `range` of loads.
+    #[must_use]
+    pub(crate) fn new(quantity: Quantity, range: (f64, f64), parts: Vec<LoadPart>) -> Self {
+        Self {
+            quantity,
+            range,
+            parts,
+        }
+    }
+
+    /// Smallest and largest load that the model was identified at.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    /// The parts, one more than the order in the load.
+    #[must_use]
+    pub fn parts(&self) -> &[LoadPart] {
+        &self.parts
+    }
+
+    /// The factors of the parts at a load.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for a load outside the range: weights there could be below zero.
+    pub fn factors(&self, load: f64) -> Result<Vec<f64>> {
+        let (low, high) = self.range;
+        // A millionth of the range is a number printed with few digits, not another load.
+        let slack = 1e-6 * (high - low);
+        if !(load >= low - slack && load <= high + slack) {
+            return Err(Error::Fit(format!(
+                "the {} {load} is outside the range {low} to {high} that the model was identified at",
+                self.quantity.name
+            )));
+        }
+        let s = ((load - low) / (high - low)).clamp(0.0, 1.0);
+        Ok(bernstein(self.parts.len() - 1, s))
+    }
+
+    /// Offset and weights at a load.
+    ///
+    /// # Errors
+    /// As [`LoadDependence::factors`].
+    pub fn at(&self, load: f64) -> Result<LoadPart> {
+        Ok(self.sum(&self.factors(load)?))
+    }
+
+    pub(crate) fn at_middle(&self) -> LoadPart {
+        self.sum(&bernstein(self.parts.len() - 1, 0.5))
+    }
+
+    fn sum(&self, factors: &[f64]) -> LoadPart {
+        let mut sum = LoadPart {
+            offset: 0.0,
+            weights: vec![0.0; self.parts[0].weights.len()],
+        };
+        for (factor, part) in factors.iter().zip(&self.parts) {
+            sum.offset += factor * part.offset;
+            for (sum, mu) in sum.weights.iter_mut().zip(&part.weights) {
+                *sum += factor * mu;
+            }
+        }
+        sum
+    }
+}
