@@ -1,5 +1,7 @@
 //! A Cholesky factor that grows and shrinks by one variable at a time, `O(p²)` each.
 
+use faer::{Mat, Side};
+
 /// `L` with `L Lᵀ` the matrix of the variables taken in so far, in that order; rows packed.
 #[derive(Default)]
 pub(super) struct Cholesky {
@@ -18,6 +20,18 @@ fn start(i: usize) -> usize {
 impl Cholesky {
     fn row(&self, i: usize) -> &[f64] {
         &self.rows[start(i)..=start(i) + i]
+    }
+
+    /// The factor of a whole matrix; `None` where that is not definite enough to tell from rounding.
+    pub(super) fn of(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
+        let factor = Mat::from_fn(size, size, &element).llt(Side::Lower).ok()?;
+        let l = factor.L();
+        let definite = |i: usize| l[(i, i)].powi(2) > ROUNDING * element(i, i);
+        let rows = (0..size).flat_map(|i| (0..=i).map(move |j| l[(i, j)]));
+        (0..size).all(definite).then(|| Self {
+            rows: rows.collect(),
+            size,
+        })
     }
 
     /// Takes a variable in: `column` holds its matrix elements with those taken in before, `diagonal`
@@ -116,6 +130,13 @@ mod tests {
                     assert!(!factor.append(again, a(n, n)));
                     chosen.push(n);
                 }
+            }
+            let whole = Cholesky::of(chosen.len(), |i, j| a(chosen[i], chosen[j]));
+            let whole = whole.map(|whole| whole.rows).unwrap_or_default();
+            assert_eq!(whole.len(), factor.rows.len());
+            for (a, b) in whole.iter().zip(&factor.rows) {
+                // Condition numbers of some thousands on rounding of 1e-16.
+                assert!((a.abs() - b.abs()).abs() < 1e-9, "{a} for {b}");
             }
             let x = factor.solve(chosen.iter().map(|&m| m as f64).collect());
             for &m in &chosen {

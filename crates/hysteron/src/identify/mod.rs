@@ -6,6 +6,7 @@ mod experiment;
 mod free;
 mod nnls;
 mod options;
+mod pivoting;
 mod problem;
 mod regressor;
 mod rows;

@@ -19,8 +19,13 @@ pub(super) fn solve(a: &[f64], b: &[f64], x: &mut [f64], watch: Watch<'_>) -> Re
     let slack = 1e-13 * size;
     let row = |n: usize| &a[n * count..(n + 1) * count];
     let mut set = FreeSet::default();
-    for n in (0..count).filter(|&n| x[n] > 0.0) {
-        set.take(n, row(n));
+    let above: Vec<usize> = (0..count).filter(|&n| x[n] > 0.0).collect();
+    match Cholesky::of(above.len(), |i, j| a[above[i] * count + above[j]]) {
+        Some(factor) => {
+            set.factor = factor;
+            set.members = above;
+        }
+        None => above.into_iter().for_each(|n| set.take(n, row(n))),
     }
     set.descend(b, x);
     // Variables that did not help are left alone until others have.
@@ -84,9 +89,10 @@ impl FreeSet {
                 .solve(self.members.iter().map(|&n| b[n]).collect());
             let towards = || self.members.iter().zip(&minimum);
             // How far until the first variable meets zero.
+            let reach = |x: f64, z: f64| if x > 0.0 { x / (x - z) } else { 0.0 };
             let limit = towards()
                 .filter(|(_, z)| **z <= 0.0)
-                .map(|(&n, z)| x[n] / (x[n] - z))
+                .map(|(&n, z)| reach(x[n], *z))
                 .fold(1.0_f64, f64::min);
             moved |= limit > 0.0;
             if towards().all(|(_, z)| *z > 0.0) {
@@ -97,7 +103,8 @@ impl FreeSet {
             }
             for k in (0..self.members.len()).rev() {
                 let (n, z) = (self.members[k], minimum[k]);
-                let meets_zero = z <= 0.0 && x[n] <= limit * (x[n] - z);
+                // The same number as above, so that one at least is dropped, whatever the rounding.
+                let meets_zero = z <= 0.0 && reach(x[n], z) <= limit;
                 x[n] += limit * (z - x[n]);
                 if meets_zero {
                     x[n] = 0.0;

@@ -17,6 +17,9 @@ use std::ops::Range;
 /// Most recordings in one experiment: a pattern of starts has a bit for each.
 pub(super) const MOST_RECORDINGS: usize = 64;
 
+/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
+const OPEN: f64 = 1e-9;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Column {
     /// Which of the functions of the load it is multiplied with.
@@ -96,7 +99,7 @@ impl Regressor {
             on.leaves_branch(first)?;
             let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
             for (open, (i, j)) in open.iter_mut().zip(operators) {
-                if on.state().gamma(i, j)? > off.state().gamma(i, j)? {
+                if on.state().gamma(i, j)? > off.state().gamma(i, j)? + OPEN {
                     *open |= 1 << s;
                 }
             }

@@ -43,6 +43,10 @@ impl Smoothness {
         }
     }
 
+    pub(super) fn is_any(&self) -> bool {
+        !self.edges.is_empty()
+    }
+
     /// Adds the penalty's matrix to that of the columns.
     pub(super) fn add_to(&self, gram: &mut [f64], columns: &[Column]) {
         if self.edges.is_empty() {

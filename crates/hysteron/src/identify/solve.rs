@@ -9,7 +9,7 @@ use super::experiment::Experiment;
 use super::free::FreeColumns;
 use super::regressor::Regressor;
 use super::smoothness::Smoothness;
-use super::{Solver, Watch, nnls};
+use super::{Solver, Watch, nnls, pivoting};
 use crate::Result;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -135,8 +135,14 @@ impl<'a> NormalEquations<'a> {
                 None => {
                     let moved = self.times(&best.x);
                     let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    let mut x = best.x.clone();
-                    nnls::solve(&self.matrix, &right, &mut x, watch)?;
+                    // Smooth weights are not zero as a rule.
+                    let (mut x, exact) = match self.smoothness.is_any() {
+                        true => pivoting::minimum(&self.matrix, &right, &best.x),
+                        false => (best.x.clone(), false),
+                    };
+                    if !exact {
+                        nnls::solve(&self.matrix, &right, &mut x, watch)?;
+                    }
                     x
                 }
             };

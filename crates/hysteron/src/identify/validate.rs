@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 /// Folds at most.
 const FOLDS: usize = 5;
 
+/// x
+const INNER: usize = 10;
+
 /// With fewer branches than this, parts of branches are left out instead.
 const ENOUGH_BRANCHES: usize = 4;
 
@@ -107,6 +110,7 @@ fn choose(
     let mut smooth = candidates.smooth.clone();
     smooth.sort_by(|a, b| b.total_cmp(a));
     let mut scores: Vec<Score> = Vec::new();
+    let mut by_fold: Vec<Vec<f64>> = Vec::new();
     let mut best: Option<Score> = None;
     let mut no_better = 0;
     for (n, &levels) in candidates.levels.iter().enumerate() {
@@ -137,6 +141,7 @@ fn choose(
                 best = Some(score);
             }
             scores.push(score);
+            by_fold.push(all.iter().map(|fold| fold[k]).collect());
         }
         no_better = match best {
             Some(best) if best.rmse < before * 0.99 => 0,
@@ -146,7 +151,8 @@ fn choose(
             break;
         }
     }
-    let best = best.ok_or_else(|| crate::Error::Fit("there are no candidates".into()))?;
+    let best = simplest(&scores, &by_fold)
+        .ok_or_else(|| crate::Error::Fit("there are no candidates".into()))?;
     let (low, high) = range(&problem.experiment.output);
     let validation = Validation {
         folds: count,
@@ -158,6 +164,26 @@ fn choose(
     options.levels = best.levels;
     options.smooth = best.smooth;
     Ok((options, validation))
+}
+
+/// Of the candidates that are worse than the best by no more than one standard error of that
+/// difference over the folds, the smoothest, and of these the best: the one-standard-error rule of Breiman
+/// et al. (1984), which keeps the noise of the folds from choosing too little.
+fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
+    let best = (0..scores.len()).min_by(|a, b| scores[*a].rmse.total_cmp(&scores[*b].rmse))?;
+    let as_good = |n: &usize| {
+        let pairs = by_fold[*n].iter().zip(&by_fold[best]);
+        let worse: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+        let folds = worse.len() as f64;
+        let mean = worse.iter().sum::<f64>() / folds;
+        let variance = worse.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (folds - 1.0);
+        mean <= (variance / folds).sqrt()
+    };
+    let chosen = (0..scores.len()).filter(as_good).min_by(|a, b| {
+        let (a, b) = (scores[*a], scores[*b]);
+        b.smooth.total_cmp(&a.smooth).then(a.rmse.total_cmp(&b.rmse))
+    });
+    chosen.map(|n| scores[n])
 }
 
 /// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the folds
@@ -199,7 +225,7 @@ fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) 
         }
         units *= parts;
     }
-    let count = units.min(FOLDS);
+    let count = units.min(INNER);
     let folds = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
     (folds, whole)
 }
@@ -237,8 +263,9 @@ fn squares_left_out(
             smooth,
             gram.clone(),
         )?;
-        let solution =
-            equations.solve(&target, problem.options.solver, start.as_deref(), 1, quiet)?;
+        // Without smoothness most weights are zero: to begin with none is nearer.
+        let start_here = start.as_deref().filter(|_| smooth > 0.0);
+        let solution = equations.solve(&target, problem.options.solver, start_here, 1, quiet)?;
         let predicted = problem.predict(&solution)?;
         let left_out = (0..target.len()).filter(|&n| folds[n] == Some(fold));
         squares.push(left_out.map(|n| (target[n] - predicted[n]).powi(2)).sum());
