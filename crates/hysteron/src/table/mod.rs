@@ -175,7 +175,7 @@ impl TableReader {
             place = Some(data);
         }
         let Some(place) = place else {
-            return Err(self.fault(None, self.no_column(name)));
+            return Err(self.fault_at(None, None, self.no_column(name)));
         };
         let Source::Numbers(numbers) = &mut self.source else {
             return Ok(Column(place));
@@ -187,7 +187,9 @@ impl TableReader {
     fn place(&self, name: &str) -> Result<Option<usize>> {
         let mut places = (0..self.header.len()).filter(|&n| self.header[n] == name);
         match (places.next(), places.next()) {
-            (_, Some(_)) => Err(self.fault(None, format!("two columns are called `{name}`"))),
+            (_, Some(_)) => {
+                Err(self.fault_at(None, None, format!("two columns are called `{name}`")))
+            }
             (place, None) => Ok(place),
         }
     }

@@ -7,14 +7,16 @@ use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
+use std::fmt::Display;
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// The numeric columns of a file: their names and rows. Times are in seconds.
 pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_or(0, |about| about.len());
-    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let reader = caught(|| SerializedFileReader::new(file))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let numeric: Vec<(usize, Scale)> = (0..schema.num_columns())
         .filter_map(|n| Some((n, Scale::of(&schema.column(n))?)))
@@ -26,10 +28,12 @@ pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
     }
     let rows = reader.metadata().file_metadata().num_rows();
     let groups = (0..reader.num_row_groups()).map(move |n| {
-        let group = reader.get_row_group(n).map_err(damaged)?;
-        let columns = numeric.iter();
-        let columns = columns.map(|(column, scale)| read(group.as_ref(), *column, *scale));
-        columns.collect::<Result<Group, _>>().map_err(damaged)
+        caught(|| {
+            let group = reader.get_row_group(n)?;
+            let columns = numeric.iter();
+            let columns = columns.map(|(column, scale)| read(group.as_ref(), *column, *scale));
+            columns.collect::<Result<Group, _>>()
+        })
     });
     Ok((
         header,
@@ -37,7 +41,15 @@ pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
     ))
 }
 
-fn damaged(error: ParquetError) -> String {
+/// What a use of the library gives. It panics where a damaged file contradicts itself.
+fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
+    match catch_unwind(AssertUnwindSafe(use_it)) {
+        Ok(result) => result.map_err(damaged),
+        Err(_) => Err(damaged("it contradicts itself")),
+    }
+}
+
+fn damaged(error: impl Display) -> String {
     format!("the Parquet file is damaged or cut off ({error}): write or copy it again")
 }
 

@@ -167,13 +167,14 @@ impl Text {
         if found == expected {
             return Ok(true);
         }
-        let (between, advice) = match self.dialect.delimiter {
-            b',' => (
-                "commas",
-                "; numbers with decimal commas need semicolons or tabs between them",
-            ),
-            b';' => ("semicolons", ""),
-            _ => ("tabs", ""),
+        let between = match self.dialect.delimiter {
+            b';' => "semicolons",
+            b'\t' => "tabs",
+            _ => "commas",
+        };
+        let advice = match between == "commas" && found > expected {
+            true => "; numbers with decimal commas need semicolons or tabs between them",
+            false => "",
         };
         Err(self.fault(format!(
             "{found} cells where the header has {expected}: give every row as many, separated by {between}{advice}"
