@@ -357,17 +357,12 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
 #[test]
 fn recordings_are_mended_where_that_is_asked_for() {
     let bench = Bench::fitted();
-    let rows = bench.read("run.csv");
-    let rows = rows.trim_end().replace("\n7,", "\n7,oops,") + "\n500,70,8\n500,72,8.4\n";
-    let rows = rows.replace("\n7,oops,", "\n7,oops").replace(',', ";");
-    let mended: Vec<String> = rows
-        .lines()
-        .map(|line| match line.starts_with("7;") {
-            true => "7;oops;1".into(),
-            false => line.replace('.', ","),
-        })
-        .collect();
-    bench.file("raw.csv", &(mended.join("\n") + "\n"));
+    let run = bench.read("run.csv");
+    let european = |line: &str| line.replace(',', ";").replace('.', ",");
+    let mut rows: Vec<String> = run.lines().map(european).collect();
+    rows[8] = "7;oops;1".into();
+    rows.extend(["500;70;8", "500;72;8,4"].map(String::from));
+    bench.file("raw.csv", &(rows.join("\n") + "\n"));
     let said = bench.refused("fit raw.csv --input x --output y -o m.json");
     assert!(
         said.contains("raw.csv, line 9, column `x`: `oops`"),

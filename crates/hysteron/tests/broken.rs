@@ -1,5 +1,5 @@
 //! Recordings that cannot be used, each with the error that it gets.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use hysteron::{Columns, FitOptions, Recording, Repair, fit};
 use std::fs;

@@ -1,5 +1,5 @@
 //! Recordings in every format and dialect, and what is mended in them.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use hysteron::{Columns, Recording, Repair, TableReader, TableWriter};
 use std::fs;
@@ -25,8 +25,7 @@ fn timed<'a>(input: &'a str, output: &'a str, time: &'a str) -> Columns<'a> {
 fn read(text: &str, columns: Columns<'_>, repair: Repair) -> (Recording, Vec<String>) {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), text).unwrap();
-    let (recording, notes) =
-        Recording::read(file.path(), columns, repair).unwrap_or_else(|e| panic!("{text:?}: {e}"));
+    let (recording, notes) = Recording::read(file.path(), columns, repair).expect(text);
     (recording, notes.iter().map(ToString::to_string).collect())
 }
 

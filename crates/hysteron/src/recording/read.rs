@@ -48,7 +48,7 @@ impl Recording {
         };
         let interpolated = match &pairs {
             [Some([wanted, _]), Some([times, output])]
-                if columns.time.is_none() && wanted != times =>
+                if columns.time.is_none() && !same(wanted, times) =>
             {
                 if repair == Repair::Refuse {
                     let problem = format!(
@@ -108,4 +108,11 @@ impl Recording {
         recording.check()?;
         Ok((recording, notes))
     }
+}
+
+/// Whether times are the same, those that are no numbers as well.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.iter()
+        .map(|t| t.to_bits())
+        .eq(b.iter().map(|t| t.to_bits()))
 }

@@ -60,7 +60,7 @@ fn matrix(kind: u32, mut parts: Elements<'_>) -> Option<Option<Variable>> {
     }
     let (kind, flags) = parts.next()?;
     let flags = match kind {
-        UINT32 => parts.number::<4>(flags).map(|b| u32::from_le_bytes(b))?,
+        UINT32 => parts.number::<4>(flags).map(u32::from_le_bytes)?,
         _ => return None,
     };
     let (class, complex) = (flags & 0xff, flags & 0x0800 != 0);

@@ -1,6 +1,7 @@
 //! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through one reader.
 
 mod dialect;
+mod format;
 mod mat;
 mod mat_v5;
 mod mat_v73;
@@ -10,8 +11,6 @@ mod text;
 
 use crate::{Error, Place, Result};
 use numbers::Numbers;
-use std::fs::File;
-use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 use text::Text;
 
@@ -47,42 +46,6 @@ impl Row {
     }
 }
 
-/// What the first bytes of a file, or else the end of its name, say it is.
-enum Format {
-    Csv,
-    Parquet,
-    MatV5,
-    MatV73,
-}
-
-impl Format {
-    fn of(path: &Path, head: &[u8]) -> std::result::Result<Self, &'static str> {
-        let named = |ending: &str| {
-            path.extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-        };
-        let hdf5 = b"\x89HDF\r\n\x1a\n";
-        match head {
-            _ if head.starts_with(b"PAR1") => Ok(Self::Parquet),
-            _ if head.starts_with(b"MATLAB 5.0") => Ok(Self::MatV5),
-            _ if head.starts_with(b"MATLAB 7.3") || head.starts_with(hdf5) => Ok(Self::MatV73),
-            _ if head.starts_with(b"\x1f\x8b") => {
-                Err("the file is compressed by gzip: unpack it first")
-            }
-            _ if head.starts_with(b"PK\x03\x04") || head.starts_with(b"\xd0\xcf\x11\xe0") => {
-                Err("this is a workbook or an archive: save the table as CSV")
-            }
-            _ if named("parquet") => {
-                Err("this is no Parquet file, for all its name: it does not begin with `PAR1`")
-            }
-            _ if named("mat") => {
-                Err("this is no MATLAB file of version 5, 7 or 7.3: save it in MATLAB with `-v7`")
-            }
-            _ => Ok(Self::Csv),
-        }
-    }
-}
-
 impl TableReader {
     /// Opens a file and reads its header; `-` is standard input, for CSV only.
     ///
@@ -99,55 +62,7 @@ impl TableReader {
     }
 
     fn open_with(path: &Path, hashed: bool) -> Result<Self> {
-        let failed = |source| Error::File {
-            path: path.to_owned(),
-            source,
-        };
-        let refused = |problem: String| Error::Recording {
-            path: Some(path.to_owned()),
-            row: None,
-            column: None,
-            problem,
-        };
-        let mut seekable = false;
-        let file: Box<dyn Read> = if path == Path::new("-") {
-            Box::new(std::io::stdin())
-        } else {
-            let file = File::open(path).map_err(failed)?;
-            let about = file.metadata().map_err(failed)?;
-            if about.is_dir() {
-                let problem = "this is a folder: name a file in it";
-                return Err(failed(std::io::Error::other(problem)));
-            }
-            seekable = about.is_file();
-            Box::new(file)
-        };
-        let mut file = text::Hashing::new(file, hashed);
-        let (head, whole) = dialect::head(&mut file).map_err(failed)?;
-        let format = Format::of(path, &head).map_err(|problem| refused(problem.to_owned()))?;
-        let (header, source) = match format {
-            Format::Csv => {
-                let dialect = dialect::Dialect::of(&head, whole);
-                let (header, text) = Text::open(path, Cursor::new(head).chain(file), dialect)?;
-                (header, Source::Text(Box::new(text)))
-            }
-            _ if !seekable => {
-                let problem = "only CSV can be read from a pipe: name the file";
-                return Err(refused(problem.to_owned()));
-            }
-            binary => {
-                let table = match binary {
-                    Format::Parquet => parquet::open(path),
-                    Format::MatV73 => mat_v73::read(path).and_then(mat::table),
-                    _ => {
-                        let bytes = std::fs::read(path).map_err(failed)?;
-                        mat_v5::read(&bytes).and_then(mat::table)
-                    }
-                };
-                let (header, numbers) = table.map_err(refused)?;
-                (header, Source::Numbers(numbers))
-            }
-        };
+        let (header, source) = format::open(path, hashed)?;
         Ok(Self {
             path: path.to_owned(),
             header,
