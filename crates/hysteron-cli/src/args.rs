@@ -9,7 +9,8 @@ use std::path::PathBuf;
     name = "hysteron",
     version,
     arg_required_else_help = true,
-    after_help = "Recordings are CSV files with a header row; `-` reads one from standard input.\n\
+    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs; decimal points or commas;\n\
+                  a row of units; # and % comments), Parquet, or MATLAB files (v5, v7, v7.3). `-` reads CSV from standard input.\n\
                   Exit codes: 0 done, 1 the work failed, 2 wrong usage."
 )]
 pub(crate) struct Cli {
@@ -56,6 +57,22 @@ pub(crate) struct Json {
     pub(crate) json: bool,
 }
 
+#[derive(Args)]
+pub(crate) struct Repair {
+    /// Drop rows without a number, sort times that go back, merge repeated ones, and tell of it
+    #[arg(long)]
+    repair: bool,
+}
+
+impl From<&Repair> for hysteron::Repair {
+    fn from(args: &Repair) -> Self {
+        match args.repair {
+            true => Self::Mend,
+            false => Self::Refuse,
+        }
+    }
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Operator {
     /// Continuous, from 0 to 1
@@ -95,7 +112,8 @@ pub(crate) enum Sign {
 #[derive(Args)]
 pub(crate) struct Fit {
     /// The recording
-    pub(crate) data: PathBuf,
+    #[arg(required = true, value_name = "DATA")]
+    pub(crate) data: Vec<PathBuf>,
     /// Column of the input
     #[arg(long, value_name = "COL")]
     pub(crate) input: String,
@@ -126,6 +144,8 @@ pub(crate) struct Fit {
     /// Unit of the output
     #[arg(long, value_name = "UNIT")]
     pub(crate) output_unit: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
     /// Where the model goes
     #[arg(short, value_name = "MODEL")]
     pub(crate) out: PathBuf,
@@ -190,6 +210,8 @@ pub(crate) struct Evaluate {
     /// Column of time in seconds, for the report's figures
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
     /// Write a page and its figures (SVG, PNG) into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
@@ -210,6 +232,8 @@ pub(crate) struct Inspect {
     /// Column of time in seconds
     #[arg(long, value_name = "COL", requires = "input")]
     pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
     /// Levels of the plane on which excited operators are counted
     #[arg(long, default_value_t = 20, value_parser = parse_levels)]
     pub(crate) levels: usize,

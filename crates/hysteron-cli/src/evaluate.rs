@@ -1,6 +1,6 @@
 //! `hysteron evaluate`
 
-use crate::{Result, args, print, text};
+use crate::{Result, args, print, recording, text};
 use hysteron::{Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
 use hysteron_report::Report;
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         time: args.time.as_deref(),
         load: None,
     };
-    let recording = Recording::read_csv(&args.data, columns)?;
+    let recording = recording::read(&args.data, columns, &args.repair)?;
     let evaluation = hysteron::evaluate(&model, &recording)?;
     if let Some(folder) = &args.report {
         let title = format!("{} on {}", args.model.display(), args.data.display());

@@ -1,20 +1,26 @@
 //! `hysteron fit`
 
-use crate::{Result, args, print, text};
-use hysteron::{Columns, FitOptions, Operator, Recording, Sign, Solver};
+use crate::{Result, args, print, recording, text};
+use hysteron::{Columns, FitOptions, Operator, Sign, Solver};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let columns = Columns::new(&args.input, &args.output);
     let same = |a: &std::path::Path| a.canonicalize().ok();
-    if same(&args.out).is_some_and(|out| same(&args.data) == Some(out)) {
+    let replaced = |data: &std::path::PathBuf| same(data) == same(&args.out);
+    if args.out.exists() && args.data.iter().any(replaced) {
         return Err(format!(
             "{}: the model would replace the recording: name another file",
             args.out.display()
         )
         .into());
     }
-    let mut recording = Recording::read_csv(&args.data, columns)?;
+    let read = |data: &std::path::PathBuf| recording::read(data, columns, &args.repair);
+    let recordings: Vec<_> = args.data.iter().map(read).collect::<Result<_>>()?;
+    let mut recording = match <[_; 1]>::try_from(recordings) {
+        Ok([recording]) => recording,
+        Err(_) => return Err("a fit takes one recording: name one file".into()),
+    };
     let units = [
         (&args.input_unit, &mut recording.input_quantity),
         (&args.output_unit, &mut recording.output_quantity),

@@ -1,7 +1,7 @@
 //! `hysteron inspect`
 
-use crate::{Result, args, print, text};
-use hysteron::{Columns, Model, Plane, Recording, RecordingSummary, TableReader};
+use crate::{Result, args, print, recording, text};
+use hysteron::{Columns, Model, Plane, RecordingSummary, TableReader};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Inspect) -> Result<()> {
@@ -13,7 +13,7 @@ pub(crate) fn run(args: &args::Inspect) -> Result<()> {
         return model(args);
     }
     match (&args.input, &args.output) {
-        (Some(input), Some(output)) => recording(args, input, output),
+        (Some(input), Some(output)) => summary(args, input, output),
         _ => columns(args),
     }
 }
@@ -29,9 +29,9 @@ fn columns(args: &args::Inspect) -> Result<()> {
     while table.advance()? {
         rows += 1;
         for (range, &column) in ranges.iter_mut().zip(&columns) {
-            match table.number(column) {
-                Ok(value) => *range = (range.0.min(value), range.1.max(value), range.2),
-                Err(_) => range.2 += 1,
+            match table.value(column) {
+                Some(value) => *range = (range.0.min(value), range.1.max(value), range.2),
+                None => range.2 += 1,
             }
         }
     }
@@ -65,14 +65,14 @@ fn columns(args: &args::Inspect) -> Result<()> {
     ))
 }
 
-fn recording(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
+fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
     let columns = Columns {
         input,
         output,
         time: args.time.as_deref(),
         load: None,
     };
-    let recording = Recording::read_csv(&args.file, columns)?;
+    let recording = recording::read(&args.file, columns, &args.repair)?;
     let plane = match args.range {
         Some((min, max)) => Plane::new(min, max, args.levels)?,
         None => hysteron::plane_of(&recording, args.levels)?,

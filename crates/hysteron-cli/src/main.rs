@@ -6,6 +6,7 @@ mod evaluate;
 mod fit;
 mod inspect;
 mod progress;
+mod recording;
 mod table;
 mod text;
 

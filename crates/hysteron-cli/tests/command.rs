@@ -301,10 +301,7 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
         ("t,x,y\n1,inf,3\n", "line 2, column `x`: `inf`"),
         ("t,x,y\n1,1e999,3\n", "line 2, column `x`: `1e999`"),
         ("t,x,y\n1,5,3\n2,5,4\n", "column `x`: it is 5 throughout"),
-        (
-            "t;x;y\n1;2;3\n",
-            "no column `x`: there are `t;x;y`; separate the columns by commas",
-        ),
+        ("t;x\n1;2\n", "no column `y`: there are `t`, `x`"),
         ("t,x,y\r\n1,2,3\r\n\r\n4,a,6\r\n", "line 4, column `x`: `a`"),
         ("t,x,y\n\n\n1,2,3\n4,a,6\n", "line 5, column `x`: `a`"),
         (
@@ -355,6 +352,59 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
             .refused("simulate model.json bad.csv --input x -o o.csv")
             .contains("`output_model` already")
     );
+}
+
+#[test]
+fn recordings_are_mended_where_that_is_asked_for() {
+    let bench = Bench::fitted();
+    let run = bench.read("run.csv");
+    let european = |line: &str| line.replace(',', ";").replace('.', ",");
+    let mut rows: Vec<String> = run.lines().map(european).collect();
+    rows[8] = "7;oops;1".into();
+    rows.extend(["500;70;8", "500;72;8,4"].map(String::from));
+    bench.file("raw.csv", &(rows.join("\n") + "\n"));
+    let said = bench.refused("fit raw.csv --input x --output y -o m.json");
+    assert!(
+        said.contains("raw.csv, line 9, column `x`: `oops`"),
+        "{said}"
+    );
+    let done = bench.run("fit raw.csv --input x --output y --repair -o m.json");
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(
+        done.err,
+        "hysteron: raw.csv: line 9 without a number: dropped\n"
+    );
+    for line in [
+        "evaluate model.json raw.csv --input x --output y --time t --repair --json",
+        "inspect raw.csv --input x --output y --time t --repair --json",
+    ] {
+        let done = bench.run(line);
+        assert_eq!(done.code, 0, "{line}: {}", done.err);
+        done.json();
+        let notes: Vec<&str> = done.err.lines().collect();
+        assert_eq!(
+            notes,
+            [
+                "hysteron: raw.csv: line 9 without a number: dropped",
+                "hysteron: raw.csv: line 403 at the time of the row before: merged to their mean",
+                "hysteron: raw.csv: line 402 after a gap of over three times the median time step",
+            ]
+        );
+    }
+    assert_eq!(bench.run("fit").code, 2);
+}
+
+#[test]
+fn columns_of_every_format_are_listed() {
+    let bench = Bench::new();
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hysteron/tests/fixtures");
+    for name in ["v5.mat", "v7.mat", "v73.mat", "snappy.parquet"] {
+        let done = bench.run(&format!("inspect {} --json", fixtures.join(name).display()));
+        assert_eq!(done.json()["rows"], 6, "{name}: {}", done.err);
+        let columns = done.json()["columns"].as_array().unwrap().clone();
+        let x = columns.iter().find(|column| column["name"] == "x").unwrap();
+        assert_eq!((&x["min"], &x["max"]), (&20.0.into(), &80.0.into()));
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! `cargo run --release -p hysteron --example recordings -- ../shared/data`
 
 use hysteron::{
-    Columns, FitOptions, FitSummary, Operator, Recording, Sign, Solver, TableReader, fit,
+    Columns, FitOptions, FitSummary, Operator, Recording, Repair, Sign, Solver, TableReader, fit,
 };
 use std::error::Error;
 use std::path::Path;
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         };
         let columns = Columns::new(input, output);
-        let recording = Recording::read_csv(&path, columns)?;
+        let recording = Recording::read(&path, columns, Repair::Refuse)?.0;
         let run = |operator, solver| -> Result<(FitSummary, Sign), Box<dyn Error>> {
             let options = FitOptions {
                 operator,

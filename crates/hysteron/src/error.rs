@@ -5,6 +5,24 @@ use std::path::PathBuf;
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
+/// Where a row of a table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// It begins on this line of a text file, counted from 1.
+    Line(u64),
+    /// It is this row of a file without lines, counted from 1.
+    Row(u64),
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Line(n) => write!(f, "line {n}"),
+            Self::Row(n) => write!(f, "row {n}"),
+        }
+    }
+}
+
 /// Why a call was refused. Nothing is changed or half-written when an error is returned.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -35,8 +53,8 @@ pub enum Error {
     Recording {
         /// The file, where there is one.
         path: Option<PathBuf>,
-        /// Line of the file, the header being line 1, where the fault is in one line.
-        row: Option<u64>,
+        /// Where the row is, where the fault is in one row.
+        row: Option<Place>,
         /// Name of the column, where the fault is in one column.
         column: Option<String>,
         /// What is wrong, and what to do.
@@ -74,8 +92,8 @@ fn place(path: &Option<PathBuf>) -> String {
         .map_or(String::new(), |path| format!(" {}", path.display()))
 }
 
-fn at(row: Option<u64>, column: &Option<String>) -> String {
-    let row = row.map(|row| format!(", line {row}"));
+fn at(row: Option<Place>, column: &Option<String>) -> String {
+    let row = row.map(|row| format!(", {row}"));
     let column = column.as_ref().map(|column| format!(", column `{column}`"));
     row.unwrap_or_default() + &column.unwrap_or_default()
 }

@@ -1,7 +1,7 @@
 //! What is in a recording or a model.
 
 use crate::evaluate::NOISE;
-use crate::recording::range;
+use crate::recording::{gaps, range};
 use crate::{Model, Plane, Recording, Result, Turning};
 use hysteron_core::ridge;
 use serde::Serialize;
@@ -113,23 +113,17 @@ fn excited(input: &[f64], plane: Plane) -> usize {
 }
 
 fn sampling(time: &[f64]) -> Option<Sampling> {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (at, longest) = steps
-        .iter()
-        .copied()
-        .enumerate()
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let repeated = steps.iter().filter(|step| **step == 0.0).count();
-    let middle = steps.len() / 2;
-    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let step = |n: usize| time[n] - time[n - 1];
+    let longest = (1..time.len()).max_by(|&a, &b| step(a).total_cmp(&step(b)))?;
+    let (median_step, gaps) = gaps(time)?;
     Some(Sampling {
         start: time[0],
         end: time[time.len() - 1],
-        median_step: median,
-        longest_step: longest,
-        longest_step_before_sample: at + 2,
-        gaps: steps.iter().filter(|step| **step > 3.0 * median).count(),
-        repeated,
+        median_step,
+        longest_step: step(longest),
+        longest_step_before_sample: longest + 1,
+        gaps: gaps.len(),
+        repeated: (1..time.len()).filter(|&n| step(n) == 0.0).count(),
     })
 }
 

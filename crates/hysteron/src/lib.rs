@@ -24,7 +24,7 @@ mod stream;
 mod table;
 mod turning;
 
-pub use error::{Error, Result};
+pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
 pub use hysteron_core::{
     Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
@@ -39,7 +39,7 @@ pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
-pub use recording::{Columns, Origin, Quantity, Recording, Source};
+pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
 pub use stream::{Counts, Invert, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
 pub use turning::{Headings, Turning, headings};

@@ -1,7 +1,13 @@
 //! Recordings: an input and the output it caused.
 
+mod read;
+mod repair;
+mod samples;
+
+pub(crate) use repair::gaps;
+pub use repair::{Note, NoteKind, Places, Repair};
+
 use crate::output::TableWriter;
-use crate::table::TableReader;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -153,59 +159,6 @@ impl Recording {
             load_quantity: Quantity::named("load"),
             origin: Origin::Measured,
             source: None,
-        };
-        recording.check()?;
-        Ok(recording)
-    }
-
-    /// Reads a CSV file with a header row.
-    ///
-    /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] with line and column where a column is missing, a
-    /// row is ragged, a cell is no finite number, time goes back, or there are no rows.
-    pub fn read_csv(path: &Path, columns: Columns<'_>) -> Result<Self> {
-        let mut reader = TableReader::open_hashed(path)?;
-        let input_at = reader.column(columns.input)?;
-        let output_at = reader.column(columns.output)?;
-        let time_at = columns.time.map(|name| reader.column(name)).transpose()?;
-        let load_at = columns.load.map(|name| reader.column(name)).transpose()?;
-        let (mut input, mut output) = (Vec::new(), Vec::new());
-        let mut time: Option<Vec<f64>> = time_at.map(|_| Vec::new());
-        let mut load: Option<Vec<f64>> = load_at.map(|_| Vec::new());
-        while reader.advance()? {
-            input.push(reader.number(input_at)?);
-            output.push(reader.number(output_at)?);
-            if let (Some(time), Some(at)) = (&mut time, time_at) {
-                let now = reader.number(at)?;
-                if let Some(&last) = time.last()
-                    && now < last
-                {
-                    return Err(reader.fault(Some(at), format!(
-                            "time goes back from {last} to {now}: sort the rows, or leave the time column out"
-                        )));
-                }
-                time.push(now);
-            }
-            if let (Some(load), Some(at)) = (&mut load, load_at) {
-                load.push(reader.number(at)?);
-            }
-        }
-        if input.is_empty() {
-            return Err(reader.fault(None, "there are no rows below the header".into()));
-        }
-        let recording = Self {
-            time,
-            input,
-            output,
-            input_quantity: Quantity::from_column(columns.input),
-            output_quantity: Quantity::from_column(columns.output),
-            load,
-            load_quantity: Quantity::from_column(columns.load.unwrap_or("load")),
-            origin: Origin::Measured,
-            source: reader.sha256().map(|sha256| Source {
-                path: path.to_owned(),
-                sha256,
-            }),
         };
         recording.check()?;
         Ok(recording)

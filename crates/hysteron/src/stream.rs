@@ -85,7 +85,8 @@ pub fn invert_table(
         Invert::Hold { band } => {
             let policy = Policy::Hold { tolerance: band };
             while table.advance()? {
-                inverting.row(table.row(), table.number(column)?, policy)?;
+                let target = table.number(column)?;
+                inverting.row(table.row(), target, policy)?;
                 progress(table.bytes_read());
             }
         }

@@ -1,7 +1,7 @@
 //! Fits of real recordings. The data stay in `../shared/data`; without them the tests say so and pass.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Columns, FitOptions, Operator, Recording, Solver, fit};
+use hysteron::{Columns, FitOptions, Operator, Recording, Repair, Solver, fit};
 use std::path::{Path, PathBuf};
 
 /// The recording's path, or `None` after saying that the test is skipped.
@@ -31,7 +31,7 @@ fn the_optimum_is_scipys() {
         return;
     };
     let columns = Columns::new("voltage_V", "output");
-    let recording = Recording::read_csv(&path, columns).unwrap();
+    let recording = Recording::read(&path, columns, Repair::Refuse).unwrap().0;
     for (levels, nnls, ols) in SCIPY {
         for (solver, expected) in [(Solver::Nnls, nnls), (Solver::Ols, ols)] {
             let options = FitOptions {
@@ -58,7 +58,7 @@ fn with_a_free_offset_kp_fits_as_mkp_does() {
         return;
     };
     let columns = Columns::new("voltage_V", "output");
-    let recording = Recording::read_csv(&path, columns).unwrap();
+    let recording = Recording::read(&path, columns, Repair::Refuse).unwrap().0;
     let errors = [Operator::Mkp, Operator::Kp].map(|operator| {
         let options = FitOptions {
             operator,

@@ -1,0 +1,139 @@
+//! Rows of a recording that cannot be used as they are, and what is done about them.
+
+use crate::Place;
+use std::fmt;
+
+/// What becomes of rows that cannot be used as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Repair {
+    /// They are refused, with their places.
+    #[default]
+    Refuse,
+    /// Those without a number are dropped; those whose times go back are sorted; those at one time
+    /// become one, with the mean of their values.
+    Mend,
+}
+
+/// What was noted about the rows of a recording: it was mended, or is worth knowing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Note {
+    /// What it is.
+    pub kind: NoteKind,
+    /// The rows.
+    pub places: Places,
+}
+
+/// What can be noted about rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoteKind {
+    /// There is no finite number in a column that was asked for: dropped.
+    Dropped,
+    /// The time goes back: sorted.
+    Sorted,
+    /// The time is that of the row before: merged to the mean.
+    Merged,
+    /// Input and output have times of their own: the output was interpolated onto the input's.
+    Interpolated,
+    /// More than three times the median step has passed since the row before: left as it is.
+    Gap,
+}
+
+impl NoteKind {
+    /// What is wrong with so many rows that were not mended.
+    fn fault(self) -> &'static str {
+        match self {
+            Self::Dropped => "without a number",
+            Self::Sorted => "going back in time",
+            Self::Merged => "at the time of the row before",
+            Self::Interpolated => "of an output with times of its own",
+            Self::Gap => "after a gap of over three times the median time step",
+        }
+    }
+
+    fn mended(self) -> &'static str {
+        match self {
+            Self::Dropped => ": dropped",
+            Self::Sorted => ": sorted",
+            Self::Merged => ": merged to their mean",
+            Self::Interpolated => ": interpolated onto the times of the input",
+            Self::Gap => "",
+        }
+    }
+}
+
+impl Note {
+    /// The note as a fault that was not mended.
+    pub(super) fn as_fault(&self) -> String {
+        format!("{} {}", self.places, self.kind.fault())
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.as_fault(), self.kind.mended())
+    }
+}
+
+/// How many rows there are of a kind, and the first of them.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Places {
+    /// How many.
+    pub count: u64,
+    /// The first few.
+    pub first: Vec<Place>,
+}
+
+impl Places {
+    /// How many are named.
+    const NAMED: usize = 3;
+
+    pub(super) fn push(&mut self, place: Place) {
+        self.count += 1;
+        if self.first.len() < Self::NAMED {
+            self.first.push(place);
+        }
+    }
+}
+
+impl FromIterator<Place> for Places {
+    fn from_iter<I: IntoIterator<Item = Place>>(places: I) -> Self {
+        let mut all = Self::default();
+        places.into_iter().for_each(|place| all.push(place));
+        all
+    }
+}
+
+impl fmt::Display for Places {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |place: &Place| match place {
+            Place::Line(n) | Place::Row(n) => n.to_string(),
+        };
+        let numbers: Vec<String> = self.first.iter().map(number).collect();
+        let word = match (self.first.first(), self.count) {
+            (Some(Place::Line(_)), 1) => "line",
+            (Some(Place::Line(_)), _) => "lines",
+            (_, 1) => "row",
+            _ => "rows",
+        };
+        let more = self.count - self.first.len() as u64;
+        match (&numbers[..], more) {
+            ([before @ .., last], 0) if !before.is_empty() => {
+                write!(f, "{word} {} and {last}", before.join(", "))
+            }
+            (_, 0) => write!(f, "{word} {}", numbers.join(", ")),
+            _ => write!(f, "{word} {} and {more} more", numbers.join(", ")),
+        }
+    }
+}
+
+/// The median time step, and the samples that come more than three times as long after the one before.
+pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() {
+        return None;
+    }
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let gap = |&n: &usize| time[n] - time[n - 1] > 3.0 * median;
+    Some((median, (1..time.len()).filter(gap).collect()))
+}

@@ -1,0 +1,140 @@
+//! Columns of numbers in memory, one group of rows after another.
+
+use super::Row;
+
+/// Columns of numbers; where one is missing it is not a number.
+pub(super) type Group = Vec<Vec<f64>>;
+
+/// The rows of a table that is stored by columns.
+pub(super) struct Numbers {
+    group: Group,
+    /// The groups after this one.
+    rest: Box<dyn Iterator<Item = Result<Group, String>>>,
+    /// Rows of this group that were given out, and of those before it.
+    at: usize,
+    before: u64,
+    rows: u64,
+    bytes: u64,
+    matrices: bool,
+    /// Names and lengths of the columns that are not as long as those asked for.
+    left_out: Vec<(String, usize)>,
+    row: Row,
+}
+
+impl Numbers {
+    /// Groups of `rows` rows in all, from a file of so many bytes.
+    pub(super) fn in_groups(
+        rest: impl Iterator<Item = Result<Group, String>> + 'static,
+        rows: u64,
+        bytes: u64,
+    ) -> Self {
+        Self {
+            group: Vec::new(),
+            rest: Box::new(rest),
+            at: 0,
+            before: 0,
+            rows,
+            bytes,
+            matrices: false,
+            left_out: Vec::new(),
+            row: Row::default(),
+        }
+    }
+
+    /// Columns that are all there, and need not be of one length; some may be those of matrices.
+    pub(super) fn held_whole(group: Group) -> Self {
+        let bytes = group.iter().map(|column| 8 * column.len() as u64).sum();
+        let rows = group.iter().map(Vec::len).max().unwrap_or(0) as u64;
+        Self {
+            group,
+            matrices: true,
+            ..Self::in_groups(std::iter::empty(), rows, bytes)
+        }
+    }
+
+    pub(super) fn has_matrices(&self) -> bool {
+        self.matrices
+    }
+
+    /// A column of a table that is held whole.
+    pub(super) fn held(&self, column: usize) -> &[f64] {
+        &self.group[column]
+    }
+
+    /// Leaves the columns that are as long as one of them out of those held whole, and tells where
+    /// that one is now.
+    pub(super) fn keep_as_long_as(&mut self, column: usize, header: &mut Vec<String>) -> usize {
+        let Some(length) = self.group.get(column).map(Vec::len) else {
+            return column;
+        };
+        let keep: Vec<bool> = self
+            .group
+            .iter()
+            .map(|other| other.len() == length)
+            .collect();
+        let names = header.iter().zip(&self.group).zip(&keep);
+        let left_out = names.filter(|(_, keep)| !**keep);
+        self.left_out
+            .extend(left_out.map(|((name, other), _)| (name.clone(), other.len())));
+        let mut kept = keep.iter();
+        header.retain(|_| kept.next() == Some(&true));
+        let mut kept = keep.iter();
+        self.group.retain(|_| kept.next() == Some(&true));
+        self.rows = length as u64;
+        keep[..column].iter().filter(|keep| **keep).count()
+    }
+
+    /// The length of a column that was left out, and that of those kept.
+    pub(super) fn left_out(&self, name: &str) -> Option<(usize, usize)> {
+        let data = format!("{name}:2");
+        let found = self
+            .left_out
+            .iter()
+            .find(|(n, _)| n == name || *n == data)?;
+        Some((found.1, self.rows as usize))
+    }
+
+    fn length(&self) -> usize {
+        self.group.iter().map(Vec::len).max().unwrap_or(0)
+    }
+
+    pub(super) fn advance(&mut self) -> Result<bool, String> {
+        while self.at >= self.length() {
+            let Some(group) = self.rest.next().transpose()? else {
+                return Ok(false);
+            };
+            self.before += self.length() as u64;
+            (self.group, self.at) = (group, 0);
+        }
+        self.at += 1;
+        Ok(true)
+    }
+
+    /// `None` beyond the end of a column that is shorter than others.
+    pub(super) fn value(&self, column: usize) -> Option<f64> {
+        let row = self.at.checked_sub(1)?;
+        self.group.get(column)?.get(row).copied()
+    }
+
+    pub(super) fn row(&mut self) -> &Row {
+        self.row.0.clear();
+        for column in 0..self.group.len() {
+            let cell = match self.value(column).filter(|value| !value.is_nan()) {
+                Some(value) => value.to_string(),
+                None => String::new(),
+            };
+            self.row.0.push_field(cell.as_bytes());
+        }
+        &self.row
+    }
+
+    /// Counted from 1; 0 before the first.
+    pub(super) fn number_of_row(&self) -> u64 {
+        self.before + self.at as u64
+    }
+
+    pub(super) fn bytes_read(&self) -> u64 {
+        let share = self.number_of_row() as f64 / self.rows.max(1) as f64;
+        (self.bytes as f64 * share) as u64
+    }
+}

@@ -1,0 +1,163 @@
+//! Parquet files, one row group at a time.
+
+use super::numbers::{Group, Numbers};
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{DataType, Int96};
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+use std::fmt::Display;
+use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// The numeric columns of a file: their names and rows. Times are in seconds.
+pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let bytes = file.metadata().map_or(0, |about| about.len());
+    let reader = caught(|| SerializedFileReader::new(file))?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let numeric: Vec<(usize, Scale)> = (0..schema.num_columns())
+        .filter_map(|n| Some((n, Scale::of(&schema.column(n))?)))
+        .collect();
+    let name = |(n, _): &(usize, Scale)| schema.column(*n).path().string();
+    let header: Vec<String> = numeric.iter().map(name).collect();
+    if header.is_empty() {
+        return Err("there is no column of numbers in this file".into());
+    }
+    let rows = reader.metadata().file_metadata().num_rows();
+    let groups = (0..reader.num_row_groups()).map(move |n| {
+        caught(|| {
+            let group = reader.get_row_group(n)?;
+            let columns = numeric.iter();
+            let columns = columns.map(|(column, scale)| read(group.as_ref(), *column, *scale));
+            columns.collect::<Result<Group, _>>()
+        })
+    });
+    Ok((
+        header,
+        Numbers::in_groups(groups, rows.max(0) as u64, bytes),
+    ))
+}
+
+/// What a use of the library gives. It panics where a damaged file contradicts itself.
+fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
+    match catch_unwind(AssertUnwindSafe(use_it)) {
+        Ok(result) => result.map_err(damaged),
+        Err(_) => Err(damaged("it contradicts itself")),
+    }
+}
+
+fn damaged(error: impl Display) -> String {
+    format!("the Parquet file is damaged or cut off ({error}): write or copy it again")
+}
+
+/// What turns a stored number into the one that is meant.
+#[derive(Clone, Copy)]
+struct Scale {
+    factor: f64,
+    unsigned: bool,
+}
+
+impl Scale {
+    /// `None` for a column that is no single number a row.
+    fn of(column: &ColumnDescriptor) -> Option<Self> {
+        let stored = column.physical_type();
+        if column.max_rep_level() > 0
+            || matches!(stored, Type::BYTE_ARRAY | Type::FIXED_LEN_BYTE_ARRAY)
+        {
+            return None;
+        }
+        use ConvertedType::{
+            DATE, DECIMAL, TIME_MICROS, TIME_MILLIS, TIMESTAMP_MICROS, TIMESTAMP_MILLIS, UINT_8,
+            UINT_16, UINT_32, UINT_64,
+        };
+        let converted = column.converted_type();
+        let nanoseconds = matches!(
+            column.logical_type_ref(),
+            Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) if time.unit == TimeUnit::NANOS
+        );
+        let factor = match converted {
+            _ if nanoseconds || stored == Type::INT96 => 1e-9,
+            TIME_MICROS | TIMESTAMP_MICROS => 1e-6,
+            TIME_MILLIS | TIMESTAMP_MILLIS => 1e-3,
+            DATE => 86_400.0,
+            DECIMAL => 10_f64.powi(-column.type_scale()),
+            _ => 1.0,
+        };
+        Some(Self {
+            factor,
+            unsigned: matches!(converted, UINT_8 | UINT_16 | UINT_32 | UINT_64),
+        })
+    }
+
+    fn apply(self, stored: f64) -> f64 {
+        // Dividing by a whole number is exact where its inverse is not.
+        match self.factor < 1.0 {
+            true => stored / (1.0 / self.factor).round(),
+            false => stored * self.factor,
+        }
+    }
+}
+
+/// A column of a row group.
+fn read(group: &dyn RowGroupReader, column: usize, scale: Scale) -> Result<Vec<f64>, ParquetError> {
+    let rows = group.metadata().num_rows().max(0) as usize;
+    let defined = group
+        .metadata()
+        .column(column)
+        .column_descr()
+        .max_def_level();
+    use ColumnReader as R;
+    match group.get_column_reader(column)? {
+        R::BoolColumnReader(reader) => numbers(reader, rows, defined, |v| f64::from(u8::from(*v))),
+        R::Int32ColumnReader(reader) if scale.unsigned => {
+            numbers(reader, rows, defined, |v| f64::from(*v as u32))
+        }
+        R::Int32ColumnReader(reader) => {
+            numbers(reader, rows, defined, |v| scale.apply(f64::from(*v)))
+        }
+        R::Int64ColumnReader(reader) if scale.unsigned => {
+            numbers(reader, rows, defined, |v| *v as u64 as f64)
+        }
+        R::Int64ColumnReader(reader) => numbers(reader, rows, defined, |v| scale.apply(*v as f64)),
+        R::Int96ColumnReader(reader) => numbers(reader, rows, defined, |v: &Int96| {
+            scale.apply(v.to_nanos() as f64)
+        }),
+        R::FloatColumnReader(reader) => numbers(reader, rows, defined, |v| f64::from(*v)),
+        R::DoubleColumnReader(reader) => numbers(reader, rows, defined, |v| *v),
+        // `Scale::of` lets none of these through.
+        R::ByteArrayColumnReader(_) | R::FixedLenByteArrayColumnReader(_) => {
+            Ok(vec![f64::NAN; rows])
+        }
+    }
+}
+
+/// All values of a column, NaN for those that are null.
+fn numbers<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    rows: usize,
+    defined: i16,
+    number: impl Fn(&T::T) -> f64,
+) -> Result<Vec<f64>, ParquetError> {
+    let (mut values, mut levels) = (Vec::new(), Vec::new());
+    let mut read = 0;
+    while read < rows {
+        let (records, _, _) =
+            reader.read_records(rows - read, Some(&mut levels), None, &mut values)?;
+        if records == 0 {
+            return Err(ParquetError::EOF(format!("{read} of {rows} rows")));
+        }
+        read += records;
+    }
+    let mut values = values.iter().map(number);
+    if defined == 0 {
+        return Ok(values.collect());
+    }
+    let cell = |level: &i16| match *level == defined {
+        true => values.next().unwrap_or(f64::NAN),
+        false => f64::NAN,
+    };
+    Ok(levels.iter().map(cell).collect())
+}
