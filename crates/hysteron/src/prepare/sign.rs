@@ -71,8 +71,8 @@ mod tests {
     use crate::prepare::test_series::gaussian;
 
     fn cooling_and_heating() -> Vec<f64> {
-        (0..400)
-            .map(|n| 20.0 + 50.0 * (f64::from(n) * 0.05).cos())
+        (0..2000)
+            .map(|n| 20.0 + 50.0 * (f64::from(n) * 0.01).cos())
             .collect()
     }
 
@@ -83,15 +83,20 @@ mod tests {
         // The first three passes from zero down to −8 whole, of the others every third sample.
         let lost: Vec<usize> = (0..truth.len())
             .filter(below_zero)
-            .filter(|n| *n < 200 || n % 3 == 0 && truth[*n] < -3.0)
+            .filter(|n| *n < 1000 || n % 3 == 0 && truth[*n] < -3.0)
             .collect();
         let mut read = truth.clone();
         for &n in &lost {
             read[n] = -read[n];
         }
-        assert!(lost.len() > 15);
-        assert_eq!(restore(&mut read), lost);
-        assert_eq!(read, truth);
+        assert!(lost.len() > 40);
+        let turned = restore(&mut read);
+        assert!(turned.iter().all(|n| lost.contains(n)));
+        for (n, (found, truth)) in read.iter().zip(&truth).enumerate() {
+            // Within a step of zero, 0.5, either sign continues the series as well.
+            let unsure = if truth.abs() < 0.5 { 1.0 } else { 0.0 };
+            assert!((found - truth).abs() <= unsure, "{n}: {found} for {truth}");
+        }
     }
 
     #[test]
@@ -99,7 +104,7 @@ mod tests {
         let quiet = cooling_and_heating();
         let noisy: Vec<f64> = quiet
             .iter()
-            .zip(gaussian(4, 400))
+            .zip(gaussian(4, 2000))
             .map(|(x, e)| x + e)
             .collect();
         let noise_alone = gaussian(5, 4000);
@@ -113,7 +118,7 @@ mod tests {
         let touching: Vec<f64> = (0..200).map(|n| f64::from(n - 100).abs() - 1.0).collect();
         for series in [quiet, noisy, noise_alone, alternating, square, touching] {
             let mut after = series.clone();
-            assert_eq!(restore(&mut after), []);
+            assert_eq!(restore(&mut after), [0; 0]);
             assert_eq!(after, series);
         }
     }

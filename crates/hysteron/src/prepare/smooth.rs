@@ -71,8 +71,9 @@ mod tests {
         let smooth = low_pass(&noisy, 1.0, cutoff).unwrap();
         // The cut-off is found to a hundredth.
         assert!((distance(&noisy, &smooth) / 0.05 - 1.0).abs() < 0.01);
-        // The signal turns 0.0032 times a sample; a filter at ten times that leaves a fifth of the noise.
-        assert!(distance(&truth, &smooth) < 0.2 * 0.05, "cut-off {cutoff}");
+        // What is taken away is nearly all noise: of 3000 samples it is known to 1.3 %, and what the signal may lose beside
+        // it is √(2 · 0.013) = 0.16 of it; as much noise stays, and both may be somewhat unlucky.
+        assert!(distance(&truth, &smooth) < 0.3 * 0.05, "cut-off {cutoff}");
     }
 
     #[test]

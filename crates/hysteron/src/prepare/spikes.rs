@@ -99,12 +99,12 @@ mod tests {
     fn spikes_are_found_and_nothing_else() {
         let clean = noisy_triangle();
         let mut spiked = clean.clone();
-        let at = [50, 151, 152, 300, 444, 445, 446, 700];
+        let at = [50, 151, 152, 300, 444, 445, 446, 800];
         for n in at {
             spiked[n] = 0.0;
         }
         spiked[300] = 140.0;
-        // At 300 there is a turning point of the triangle itself, at 700 too.
+        // At 300 and 800 there are turning points of the triangle itself.
         let mut repaired = spiked.clone();
         assert_eq!(remove(&mut repaired, DEVIATIONS), at);
         for n in at {
@@ -127,7 +127,7 @@ mod tests {
         let constant = vec![1.0; 30];
         for series in [noisy_triangle(), steps, jump, short, constant] {
             let mut after = series.clone();
-            assert_eq!(remove(&mut after, DEVIATIONS), []);
+            assert_eq!(remove(&mut after, DEVIATIONS), [0; 0]);
             assert_eq!(after, series);
         }
     }

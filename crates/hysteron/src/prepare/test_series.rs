@@ -38,9 +38,9 @@ pub(super) fn two_rates(step: f64) -> Recording {
             input.extend((1..=count).map(|n| start + (target - start) * n as f64 / count as f64));
         }
     }
-    let mut plays = [20.0; 10];
+    let mut plays = [20.0_f64; 10];
     let respond = |&x: &f64| {
-        for (half_width, play) in (1..).zip(&mut plays) {
+        for (half_width, play) in (1_u8..).zip(&mut plays) {
             *play = play.clamp(x - f64::from(half_width), x + f64::from(half_width));
         }
         plays.iter().sum::<f64>() / 10.0

@@ -45,7 +45,7 @@ fn switched_off_nothing_is_done() {
 fn noise_goes_and_its_reversals_with_it() {
     let truth = two_rates(0.25);
     let noisy = with_noise(&truth, 0.3, 0.3);
-    let (prepared, report) = prepare(&noisy, &PrepareOptions::default()).unwrap();
+    let (prepared, _) = prepare(&noisy, &PrepareOptions::default()).unwrap();
     let error = |r: &Recording| smooth::distance(&r.input, &truth.input);
     // White noise over many samples a branch: the filter leaves a fraction.
     assert!(
@@ -57,7 +57,7 @@ fn noise_goes_and_its_reversals_with_it() {
         band::reversals(&prepared.input),
         band::reversals(&truth.input)
     );
-    assert!(report.band.unwrap().false_reversals > 10);
+    assert!(band::reversals(&noisy.input) > 200);
     // And once more: next to nothing is left to do.
     let (again, _) = prepare(&prepared, &PrepareOptions::default()).unwrap();
     let first = smooth::distance(&noisy.input, &prepared.input);
@@ -81,15 +81,27 @@ fn irregular_time_is_resampled_only_for_a_filter() {
     assert_eq!(prepared.len(), clean.len() + 20);
 }
 
-/// The thermocouple of the simulated spring, 1.5 s behind: found and undone from the noisy recording.
+/// The thermocouple of the simulated spring, 1.5 s behind, found and undone from a noisy recording. At one current the lag only
+/// widens the loops, which a static model can too; so the spring is heated faster as well.
 #[test]
 fn the_lag_of_the_rigs_thermocouple_is_found() {
-    let experiment = Experiment {
-        sample_interval_s: 0.1,
-        ..Experiment::default()
-    };
-    let truth = experiment.truth().unwrap();
-    let tau = 1.5;
+    let mut truth: Option<Recording> = None;
+    for current_a in [2.0, 3.0] {
+        let experiment = Experiment {
+            sample_interval_s: 0.1,
+            current_a,
+            ..Experiment::default()
+        };
+        let run = experiment.truth().unwrap();
+        let Some(all) = &mut truth else {
+            truth = Some(run);
+            continue;
+        };
+        all.input.extend(run.input);
+        all.output.extend(run.output);
+        all.time = Some((0..all.input.len()).map(|n| n as f64 * 0.1).collect());
+    }
+    let (truth, tau) = (truth.unwrap(), 1.5);
     let lagging = Recording {
         input: behind_sensor(&truth.input, 0.1, tau),
         ..truth.clone()
@@ -100,6 +112,7 @@ fn the_lag_of_the_rigs_thermocouple_is_found() {
         ..PrepareOptions::default()
     };
     let (prepared, report) = prepare(&noisy, &options).unwrap();
+    println!("{report:?}");
     let found = report.lag.unwrap().undone.unwrap();
     // Corners of the input that low-pass and derivative have rounded.
     assert!((found / tau - 1.0).abs() < 0.25, "{found}");
