@@ -36,8 +36,8 @@ pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
 pub use prepare::{
-    DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Spikes,
-    Step, noise, prepare, rate_dependence,
+    DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
+    Spikes, Step, noise, prepare, rate_dependence,
 };
 pub use recording::{Columns, Origin, Quantity, Recording, Source};
 pub use stream::{Counts, Invert, invert_table, simulate_table};

@@ -18,7 +18,7 @@ mod tests;
 
 pub use noise::noise;
 pub use rate::{RateDependence, rate_dependence};
-pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Spikes};
+pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
 
 use crate::filter::low_pass;
 use crate::recording::range;
@@ -42,7 +42,7 @@ pub enum Step {
 /// | --- | --- | --- | --- |
 /// | `spikes` | auto | how many median absolute deviations make a spike, above 0 | 4; lost signs are given back first |
 /// | `resample` | auto | time between samples, s, above 0 | the median step, only where time is irregular and a filter needs it |
-/// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | what is taken away is as large as the noise; none where that is below 0.05 % of the range |
+/// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | for each series, that at which what is taken away is as large as the noise; none where that is below 0.05 % of the range |
 /// | `lag` | off | time constant of the input's sensor, s, above 0 | `Auto`: that with which a static model fits best, if it fits 10 % better; right only where the material does not depend on rate |
 /// | `band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,7 +152,9 @@ pub fn prepare(
     let step = work.time.as_deref().map(resample::step_of);
     let step = step.filter(|step| *step > 0.0);
 
-    let (low_pass, input_cutoff) = smooth(&mut work, options.low_pass, sigma, noisy, step)?;
+    let low_pass = smooth(&mut work, options.low_pass, sigma, noisy, step)?;
+    let input_filter = low_pass.as_ref().and_then(|filter| filter.input.as_ref());
+    let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
     let lag = undo_lag(&mut work, options.lag, step)?;
 
     // What is left of the noise on the input.
@@ -215,48 +217,37 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
     Ok(Some(taken))
 }
 
-/// Returns, beside the report, the cut-off of the input in cycles a sample.
 fn smooth(
     work: &mut Recording,
     how: Step,
     sigma: [f64; 2],
     noisy: [bool; 2],
     step: Option<f64>,
-) -> Result<(Option<LowPass>, Option<f64>)> {
+) -> Result<Option<LowPass>> {
+    if how == Step::Off {
+        return Ok(None);
+    }
     let rate = step.map_or(1.0, |step| 1.0 / step);
-    let series = [&work.input, &work.output];
-    let mut chosen = match how {
-        Step::Off => return Ok((None, None)),
-        Step::Value(cutoff) => [Some(cutoff / rate); 2],
-        Step::Auto => {
-            let mut cutoffs = [None; 2];
-            for n in [0, 1].into_iter().filter(|n| noisy[*n]) {
-                cutoffs[n] = smooth::cutoff_for(series[n], sigma[n])?;
-            }
-            cutoffs
-        }
-    };
-    // The same for both, so that the loops keep their width: the gentler one.
-    let cutoff = chosen.iter().flatten().copied().reduce(f64::max);
-    chosen
-        .iter_mut()
-        .flatten()
-        .for_each(|own| *own = cutoff.unwrap_or(*own));
-    let mut removed = [0.0; 2];
+    let mut done = [None, None];
     for (n, values) in [&mut work.input, &mut work.output].into_iter().enumerate() {
-        if let Some(own) = chosen[n] {
-            let smoothed = low_pass(values, rate, own * rate)?;
-            removed[n] = smooth::distance(values, &smoothed);
+        let cutoff = match how {
+            Step::Value(cutoff) => Some(cutoff),
+            _ if !noisy[n] => None,
+            _ => smooth::cutoff_for(values, sigma[n])?.map(|cutoff| cutoff * rate),
+        };
+        if let Some(cutoff) = cutoff {
+            let smoothed = low_pass(values, rate, cutoff)?;
+            let removed = smooth::distance(values, &smoothed);
             *values = smoothed;
+            done[n] = Some(Smoothed { cutoff, removed });
         }
     }
-    let report = LowPass {
-        cutoff: cutoff.map(|cutoff| cutoff * rate),
+    let [input, output] = done;
+    Ok(Some(LowPass {
+        input,
+        output,
         in_hertz: step.is_some(),
-        input_removed: removed[0],
-        output_removed: removed[1],
-    };
-    Ok((Some(report), chosen[0]))
+    }))
 }
 
 fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option<SensorLag>> {

@@ -67,14 +67,21 @@ impl Repairs {
 /// The zero-phase low-pass.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LowPass {
-    /// Where its gain is ½; `None` where the noise was too little to ask for it.
-    pub cutoff: Option<f64>,
-    /// Whether `cutoff` is in Hz; otherwise it is in cycles a sample.
+    /// That of the input; `None` where there was too little noise to ask for one.
+    pub input: Option<Smoothed>,
+    /// That of the output.
+    pub output: Option<Smoothed>,
+    /// Whether the cut-offs are in Hz; otherwise they are in cycles a sample.
     pub in_hertz: bool,
-    /// Root mean square of what it took from the input, in its unit; 0 where the input was not filtered.
-    pub input_removed: f64,
-    /// The same of the output.
-    pub output_removed: f64,
+}
+
+/// The low-pass of one series.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Smoothed {
+    /// Where its gain is ½.
+    pub cutoff: f64,
+    /// Root mean square of what it took away, in the unit of the series.
+    pub removed: f64,
 }
 
 /// The lag of the input's sensor.
