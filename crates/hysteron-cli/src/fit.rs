@@ -1,11 +1,14 @@
 //! `hysteron fit`
 
-use crate::{Result, args, print, text};
+use crate::{Result, args, prepare, print, text};
 use hysteron::{Columns, FitOptions, Operator, Recording, Sign, Solver};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
-    let columns = Columns::new(&args.input, &args.output);
+    let columns = Columns {
+        time: args.prepare.time.as_deref(),
+        ..Columns::new(&args.input, &args.output)
+    };
     let same = |a: &std::path::Path| a.canonicalize().ok();
     if same(&args.out).is_some_and(|out| same(&args.data) == Some(out)) {
         return Err(format!(
@@ -24,6 +27,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             quantity.unit.clone_from(unit);
         }
     }
+    let (recording, preparation, rate) = prepare::before_fit(recording, &args.prepare)?;
     let options = FitOptions {
         operator: match args.operator {
             args::Operator::Mkp => Operator::Mkp,
@@ -70,6 +74,8 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
                 "sign": model.sign().factor() as i64,
                 "clipped": clipped,
                 "fit": fit,
+                "preparation": preparation,
+                "rate": rate,
             })
             .to_string(),
         );

@@ -5,6 +5,7 @@ mod demo;
 mod evaluate;
 mod fit;
 mod inspect;
+mod prepare;
 mod progress;
 mod table;
 mod text;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
     });
     let done = match Cli::parse().command {
         Command::Fit(args) => fit::run(&args),
+        Command::Prepare(args) => prepare::run(&args),
         Command::Simulate(args) => table::simulate(&args),
         Command::Invert(args) => table::invert(&args),
         Command::Evaluate(args) => evaluate::run(&args),
