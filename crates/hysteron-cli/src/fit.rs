@@ -1,6 +1,6 @@
 //! `hysteron fit`
 
-use crate::{Result, args, prepare, print, text};
+use crate::{Result, args, keep_apart, prepare, print, text};
 use hysteron::{Columns, FitOptions, Operator, Recording, Sign, Solver};
 use serde_json::json;
 
@@ -9,14 +9,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         time: args.prepare.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
     };
-    let same = |a: &std::path::Path| a.canonicalize().ok();
-    if same(&args.out).is_some_and(|out| same(&args.data) == Some(out)) {
-        return Err(format!(
-            "{}: the model would replace the recording: name another file",
-            args.out.display()
-        )
-        .into());
-    }
+    keep_apart(&args.data, &args.out)?;
     let mut recording = Recording::read_csv(&args.data, columns)?;
     let units = [
         (&args.input_unit, &mut recording.input_quantity),

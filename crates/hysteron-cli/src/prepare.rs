@@ -1,14 +1,14 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
-use crate::{Result, args, print, text};
+use crate::{Result, args, keep_apart, print, text};
 use hysteron::{
     Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
     Smoothed, Step,
 };
 use serde_json::json;
-use std::path::Path;
 
 pub(crate) fn run(args: &args::Prepare) -> Result<()> {
+    keep_apart(&args.data, &args.out)?;
     let columns = Columns {
         time: args.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         0,
         format!(
             "{}: {} samples of {}",
-            shown(&args.out),
+            args.out.display(),
             report.samples,
             report.samples_before
         ),
@@ -77,10 +77,6 @@ fn options(steps: &args::Steps, defaults: PrepareOptions) -> PrepareOptions {
         lag: steps.lag.unwrap_or(defaults.lag),
         band: steps.band.unwrap_or(defaults.band),
     }
-}
-
-fn shown(path: &Path) -> String {
-    path.display().to_string()
 }
 
 /// One line a step.
