@@ -5,6 +5,7 @@
 //! once with time as the clock, once with the length of the path that the input has gone. A residual that time explains and the path does
 //! not comes from rate; one that both explain alike comes from a plane that is too coarse or a start that is not known.
 
+use super::{PrepareOptions, Step, prepare};
 use crate::recording::range;
 use crate::{FitOptions, NOISE, Recording, Result, fit};
 use serde::Serialize;
@@ -42,7 +43,7 @@ impl RateDependence {
     }
 }
 
-/// How much the recording depends on rate; `None` without time, with fewer than 20 samples, or where time
+/// How much the recording, without its spikes, depends on rate; `None` without time, with fewer than 20 samples, or where time
 /// stands still.
 ///
 /// ```
@@ -59,14 +60,19 @@ impl RateDependence {
 /// # Errors
 /// As [`fit`].
 pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> {
-    recording.check()?;
+    // A reading that dropped out is fast as well, but no rate of the material's.
+    let without_spikes = PrepareOptions {
+        spikes: Step::Auto,
+        ..PrepareOptions::all(Step::Off)
+    };
+    let (recording, _) = prepare(recording, &without_spikes)?;
     let Some(time) = &recording.time else {
         return Ok(None);
     };
     if time.len() < FEWEST || time[time.len() - 1] <= time[0] {
         return Ok(None);
     }
-    let model = fit(recording, &FitOptions::default())?;
+    let model = fit(&recording, &FitOptions::default())?;
     let modelled = model.simulate(&recording.input)?;
     let pairs = recording.output.iter().zip(&modelled);
     let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();
