@@ -53,11 +53,10 @@ pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
             .all(|n| off[n].is_some_and(|(_, threshold)| side * (values[n] - outer) > threshold));
         if sticks_out {
             let length = (end - start + 1) as f64;
-            for n in start..end {
-                let part = (n + 1 - start) as f64 / length;
-                values[n] = before + (after - before) * part;
-                replaced.push(n);
+            for (n, value) in (1_u32..).zip(&mut values[start..end]) {
+                *value = before + (after - before) * f64::from(n) / length;
             }
+            replaced.extend(start..end);
         }
         start = end;
     }
