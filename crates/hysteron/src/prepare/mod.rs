@@ -256,7 +256,8 @@ fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option
     }
     let Some(step) = step else {
         return Err(Error::Preparation(
-            "a sensor lag needs a time column: name it, or leave the lag out".into(),
+            "a sensor lag needs a time column in which time passes: name it, or leave the lag out"
+                .into(),
         ));
     };
     let mut report = SensorLag::default();

@@ -113,7 +113,9 @@ fn the_lag_of_the_rigs_thermocouple_is_found() {
         ..PrepareOptions::default()
     };
     let (prepared, report) = prepare(&noisy, &options).unwrap();
-    let found = report.lag.unwrap().undone.unwrap();
+    let lag = report.lag.unwrap();
+    println!("{lag:?}");
+    let found = lag.undone.unwrap();
     // Corners of the input that low-pass and derivative have rounded.
     assert!((found / tau - 1.0).abs() < 0.25, "{found}");
     let error = |r: &Recording| smooth::distance(&r.input, &truth.input);
@@ -123,6 +125,22 @@ fn the_lag_of_the_rigs_thermocouple_is_found() {
         error(&prepared),
         error(&noisy)
     );
+}
+
+#[test]
+fn short_and_constant_recordings_come_through_unchanged() {
+    for count in [1, 2, 5, 12] {
+        for slope in [0.0, 1.0] {
+            let line: Vec<f64> = (0..count).map(|n| f64::from(n) * slope).collect();
+            let mut recording = Recording::new(line.clone(), line).unwrap();
+            let (prepared, _) = prepare(&recording, &PrepareOptions::default()).unwrap();
+            assert_eq!(prepared, recording);
+            recording.time = Some(vec![3.0; recording.len()]);
+            let (prepared, _) = prepare(&recording, &PrepareOptions::default()).unwrap();
+            assert_eq!(prepared, recording);
+            assert_eq!(rate_dependence(&recording).unwrap(), None);
+        }
+    }
 }
 
 #[test]
