@@ -1,6 +1,7 @@
 //! The command line: its forms, defaults and help.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hysteron::Step;
 use std::path::PathBuf;
 
 /// Hysteresis models of actuators: from a recording to a model and its exact inverse.
@@ -25,6 +26,11 @@ pub(crate) enum Command {
         after_help = "Example:\n  hysteron fit run1.csv --input temperature --output displacement -o spring.json"
     )]
     Fit(Fit),
+    /// Ready a recording for a fit: spikes, noise, a sensor's lag, false reversals
+    #[command(
+        after_help = "Example:\n  hysteron prepare run1.csv --input temperature --output displacement --time time -o clean.csv"
+    )]
+    Prepare(Prepare),
     /// Run a model over an input: adds the column `output_model`
     #[command(
         after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
@@ -146,11 +152,69 @@ pub(crate) struct Fit {
     pub(crate) output_unit: Option<String>,
     #[command(flatten)]
     pub(crate) repair: Repair,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareBeforeFit,
     /// Where the model goes
     #[arg(short, value_name = "MODEL")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Prepare {
+    /// The recording
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time in seconds
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    #[command(flatten)]
+    pub(crate) steps: Steps,
+    /// Where the prepared recording goes
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct PrepareBeforeFit {
+    /// Column of time in seconds, for the preparation and the warning that loops depend on rate
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named
+    #[arg(long)]
+    pub(crate) prepare: bool,
+    #[command(flatten)]
+    pub(crate) steps: Steps,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Preparation")]
+pub(crate) struct Steps {
+    /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations make a spike
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) spikes: Option<Step>,
+    /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the step in s
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) resample: Option<Step>,
+    /// Zero-phase low-pass: `auto` (as far as the noise goes), `off`, or the cut-off in Hz, without time in cycles a sample
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) low_pass: Option<Step>,
+    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend on rate), `off` or its time constant in s [default: off]
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) lag: Option<Step>,
+    /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches), `off`, or the band in its unit
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) band: Option<Step>,
 }
 
 #[derive(Args)]
@@ -251,6 +315,17 @@ pub(crate) struct Demo {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) json: Json,
+}
+
+fn parse_step(text: &str) -> Result<Step, String> {
+    match text.trim() {
+        "auto" => Ok(Step::Auto),
+        "off" => Ok(Step::Off),
+        number => match parse_finite(number) {
+            Ok(value) if value >= 0.0 => Ok(Step::Value(value)),
+            _ => Err("`auto`, `off` or a number from zero on is needed".into()),
+        },
+    }
 }
 
 fn parse_finite(text: &str) -> Result<f64, String> {

@@ -30,6 +30,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             quantity.unit.clone_from(unit);
         }
     }
+    let (recording, preparation, rate) = prepare::before_fit(recording, &args.prepare)?;
     let options = FitOptions {
         operator: match args.operator {
             args::Operator::Mkp => Operator::Mkp,
@@ -76,6 +77,8 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
                 "sign": model.sign().factor() as i64,
                 "clipped": clipped,
                 "fit": fit,
+                "preparation": preparation,
+                "rate": rate,
             })
             .to_string(),
         );

@@ -5,6 +5,7 @@ mod demo;
 mod evaluate;
 mod fit;
 mod inspect;
+mod prepare;
 mod progress;
 mod recording;
 mod table;
@@ -14,6 +15,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use std::error::Error;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -26,6 +28,7 @@ fn main() -> ExitCode {
     });
     let done = match Cli::parse().command {
         Command::Fit(args) => fit::run(&args),
+        Command::Prepare(args) => prepare::run(&args),
         Command::Simulate(args) => table::simulate(&args),
         Command::Invert(args) => table::invert(&args),
         Command::Evaluate(args) => evaluate::run(&args),
@@ -52,6 +55,16 @@ fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
         cause = error.source();
     }
     false
+}
+
+/// Refuses to write over the recording that is read.
+fn keep_apart(data: &Path, out: &Path) -> Result<()> {
+    let there = out.canonicalize().ok();
+    if there.is_some() && there == data.canonicalize().ok() {
+        let out = out.display();
+        return Err(format!("{out}: this would replace the recording: name another file").into());
+    }
+    Ok(())
 }
 
 /// Prints to standard output; an error there is returned, not a panic.

@@ -63,6 +63,9 @@ pub enum Error {
     /// The options of a fit contradict each other or the data.
     #[error("fit: {0}")]
     Fit(String),
+    /// A step of the preparation cannot be done as told.
+    #[error("preparation: {0}")]
+    Preparation(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -83,6 +86,7 @@ impl Error {
             Error::Fit(_) => 23,
             Error::Filter(_) => 24,
             Error::Rig(_) => 25,
+            Error::Preparation(_) => 26,
         }
     }
 }

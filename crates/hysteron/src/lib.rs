@@ -2,7 +2,7 @@
 //!
 //! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
 //! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
-//! [`fit`], simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
+//! [`fit`] ([`prepare()`] it before where it is noisy), simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
 //! [`Model::inverse`], judge with [`evaluate`]. *The chapter*, whose equations the docs number, is named in
 //! `hysteron-core`. The real-time core below, `hysteron-core`, runs without
 //! allocation.
@@ -18,6 +18,7 @@ mod metrics;
 mod model;
 mod model_file;
 mod output;
+mod prepare;
 mod recording;
 pub mod rig;
 mod stream;
@@ -39,6 +40,10 @@ pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
+pub use prepare::{
+    DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
+    Spikes, Step, noise, prepare, rate_dependence,
+};
 pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
 pub use stream::{Counts, Invert, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};

@@ -1,0 +1,196 @@
+//! `hysteron prepare`, and the same steps before a fit.
+
+use crate::{Result, args, keep_apart, print, recording, text};
+use hysteron::{
+    Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
+    Smoothed, Step,
+};
+use serde_json::json;
+
+pub(crate) fn run(args: &args::Prepare) -> Result<()> {
+    keep_apart(&args.data, &args.out)?;
+    let columns = Columns {
+        time: args.time.as_deref(),
+        ..Columns::new(&args.input, &args.output)
+    };
+    let recording = recording::read(&args.data, columns, &args.repair)?;
+    let options = options(&args.steps, PrepareOptions::default());
+    let (prepared, report) = hysteron::prepare(&recording, &options)?;
+    let rate = hysteron::rate_dependence(&prepared)?;
+    prepared.write_csv(&args.out)?;
+    if args.json.json {
+        return print(
+            &json!({"table": args.out, "preparation": report, "rate": rate, "rate_dependent": is_material(&rate)})
+                .to_string(),
+        );
+    }
+    let mut lines = lines(&report, &recording);
+    lines.insert(
+        0,
+        format!(
+            "{}: {} samples of {}",
+            args.out.display(),
+            report.samples,
+            report.samples_before
+        ),
+    );
+    lines.extend(rate.as_ref().map(rate_line));
+    print(&lines.join("\n"))
+}
+
+/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to standard error; it is returned for the JSON.
+pub(crate) fn before_fit(
+    recording: Recording,
+    args: &args::PrepareBeforeFit,
+) -> Result<(Recording, Option<Preparation>, Option<RateDependence>)> {
+    let defaults = match args.prepare {
+        true => PrepareOptions::default(),
+        false => PrepareOptions::all(Step::Off),
+    };
+    let options = options(&args.steps, defaults);
+    let (recording, report) = match options == PrepareOptions::all(Step::Off) {
+        true => (recording, None),
+        false => {
+            let (prepared, report) = hysteron::prepare(&recording, &options)?;
+            for line in lines(&report, &recording) {
+                eprintln!("hysteron: {line}");
+            }
+            (prepared, Some(report))
+        }
+    };
+    let rate = hysteron::rate_dependence(&recording)?;
+    if let Some(rate) = rate.as_ref().filter(|rate| rate.is_material()) {
+        eprintln!("hysteron: {}", rate_line(rate));
+    }
+    Ok((recording, report, rate))
+}
+
+fn is_material(rate: &Option<RateDependence>) -> Option<bool> {
+    rate.as_ref().map(RateDependence::is_material)
+}
+
+fn options(steps: &args::Steps, defaults: PrepareOptions) -> PrepareOptions {
+    PrepareOptions {
+        spikes: steps.spikes.unwrap_or(defaults.spikes),
+        resample: steps.resample.unwrap_or(defaults.resample),
+        low_pass: steps.low_pass.unwrap_or(defaults.low_pass),
+        lag: steps.lag.unwrap_or(defaults.lag),
+        band: steps.band.unwrap_or(defaults.band),
+    }
+}
+
+/// One line a step.
+fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
+    let (input, output) = (&recording.input_quantity, &recording.output_quantity);
+    let mut lines = vec![format!(
+        "noise: {} of {}, {} of {}",
+        text::with_unit(report.input_noise, input),
+        input.name,
+        text::with_unit(report.output_noise, output),
+        output.name
+    )];
+    lines.extend(report.spikes.as_ref().map(|spikes| {
+        let of = |repairs: &Repairs, name: &str| match repairs.first.is_empty() {
+            true => format!("none in {name}"),
+            false => format!(
+                "{} in {name} ({} given their sign back), samples {}{}",
+                repairs.spikes + repairs.signs,
+                repairs.signs,
+                repairs
+                    .first
+                    .iter()
+                    .map(usize::to_string)
+                    .collect::<Vec<_>>()
+                    .join(" "),
+                if repairs.spikes + repairs.signs > repairs.first.len() {
+                    " …"
+                } else {
+                    ""
+                }
+            ),
+        };
+        format!(
+            "spikes: {}, {}",
+            of(&spikes.input, &input.name),
+            of(&spikes.output, &output.name)
+        )
+    }));
+    lines.extend(report.resampled.map(|step| {
+        format!(
+            "resampled: every {} s, {} samples of {}",
+            text::number(step),
+            report.samples,
+            report.samples_before
+        )
+    }));
+    lines.extend(
+        report
+            .low_pass
+            .as_ref()
+            .map(|filter| low_pass_line(filter, recording)),
+    );
+    lines.extend(report.lag.as_ref().map(|lag| lag_line(lag, recording)));
+    lines.extend(report.band.as_ref().map(|band| {
+        format!(
+            "dead band: {}, {} false reversals gone, {} samples moved by up to {}",
+            text::with_unit(band.size, input),
+            band.false_reversals,
+            band.samples_changed,
+            text::with_unit(band.largest_change, input)
+        )
+    }));
+    lines
+}
+
+fn low_pass_line(filter: &LowPass, recording: &Recording) -> String {
+    let unit = if filter.in_hertz {
+        "Hz"
+    } else {
+        "cycles a sample"
+    };
+    let series = [
+        (&filter.input, &recording.input_quantity),
+        (&filter.output, &recording.output_quantity),
+    ];
+    let of = |(smoothed, quantity): (&Option<Smoothed>, &hysteron::Quantity)| match smoothed {
+        None => format!("none for {}", quantity.name),
+        Some(smoothed) => format!(
+            "{} at {} {unit} ({} rms taken away)",
+            quantity.name,
+            text::number(smoothed.cutoff),
+            text::with_unit(smoothed.removed, quantity)
+        ),
+    };
+    format!("low-pass: {}", series.map(of).join(", "))
+}
+
+fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
+    let undone = match lag.undone {
+        Some(tau) => format!("{} s undone", text::number(tau)),
+        None => "none undone".into(),
+    };
+    match (lag.estimate, lag.rmse_before, lag.rmse_after) {
+        (Some(tau), Some(before), Some(after)) => format!(
+            "sensor lag: {undone}; with {} s a static model errs by {} rms, without by {}",
+            text::number(tau),
+            text::with_unit(after, &recording.output_quantity),
+            text::with_unit(before, &recording.output_quantity)
+        ),
+        _ => format!("sensor lag: {undone}"),
+    }
+}
+
+fn rate_line(rate: &RateDependence) -> String {
+    format!(
+        "rate: {} % of the output's range, of {} % that a static model misses (R² {:.3} by time, {:.3} by the input's path; {} s){}",
+        text::number(rate.percent),
+        text::number(rate.nrmse_percent),
+        rate.r2_time,
+        rate.r2_path,
+        text::number(rate.time_constant),
+        match rate.is_material() {
+            true => ": the loops depend on rate, which a static model cannot follow",
+            false => "",
+        }
+    )
+}

@@ -1,0 +1,307 @@
+//! From a recording as it was measured to one that a model can be identified from.
+
+mod band;
+mod lag;
+mod noise;
+mod rate;
+mod report;
+mod resample;
+mod sign;
+mod smooth;
+mod spikes;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod test_series;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
+
+pub use noise::noise;
+pub use rate::{RateDependence, rate_dependence};
+pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
+
+use crate::filter::low_pass;
+use crate::recording::range;
+use crate::{Error, NOISE, Recording, Result};
+
+/// What a step of the preparation does.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Step {
+    /// What follows from the data.
+    #[default]
+    Auto,
+    /// Nothing.
+    Off,
+    /// What is given.
+    Value(f64),
+}
+
+/// The steps of [`prepare`], in their order.
+///
+/// | field | default | value | by default |
+/// | --- | --- | --- | --- |
+/// | `spikes` | auto | how many median absolute deviations make a spike, above 0 | 4; lost signs are given back first |
+/// | `resample` | auto | time between samples, s, above 0 | the median step, only where time is irregular and a filter needs it |
+/// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | for each series, that at which what is taken away is as large as the noise; none where that is below 0.05 % of the range |
+/// | `lag` | off | time constant of the input's sensor, s, above 0 | `Auto`: that with which a static model fits best, if it fits 10 % better; right only where the material does not depend on rate |
+/// | `band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrepareOptions {
+    /// Lost signs and isolated spikes.
+    pub spikes: Step,
+    /// Samples at equal steps of time.
+    pub resample: Step,
+    /// Zero-phase low-pass.
+    pub low_pass: Step,
+    /// Lag of the input's sensor.
+    pub lag: Step,
+    /// Dead band for reversals of the input.
+    pub band: Step,
+}
+
+impl Default for PrepareOptions {
+    fn default() -> Self {
+        Self {
+            lag: Step::Off,
+            ..Self::all(Step::Auto)
+        }
+    }
+}
+
+impl PrepareOptions {
+    /// Every step the same.
+    #[must_use]
+    pub fn all(step: Step) -> Self {
+        Self {
+            spikes: step,
+            resample: step,
+            low_pass: step,
+            lag: step,
+            band: step,
+        }
+    }
+
+    fn check(&self) -> Result<()> {
+        let above_zero = [
+            (self.spikes, "the deviations that make a spike"),
+            (self.resample, "the step of resampling"),
+            (self.low_pass, "the cut-off of the low-pass"),
+            (self.lag, "the time constant of the sensor"),
+        ];
+        for (step, name) in above_zero {
+            match step {
+                Step::Value(value) if !(value.is_finite() && value > 0.0) => {
+                    return Err(Error::Preparation(format!(
+                        "{name} must be a number above zero, not {value}"
+                    )));
+                }
+                _ => {}
+            }
+        }
+        match self.band {
+            Step::Value(band) if !(band.is_finite() && band >= 0.0) => Err(Error::Preparation(
+                format!("the dead band must be a number from zero on, not {band}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Prepares a recording for [`crate::fit`]: restores lost signs and removes spikes, resamples and smooths where noise asks for it, undoes a sensor's lag
+/// if told to, and takes false reversals from the input. Says what it did.
+///
+/// A clean recording comes through unchanged, a prepared one almost so. All series of the result have the same length, which only resampling changes.
+///
+/// ```
+/// use hysteron::{PrepareOptions, Recording, prepare};
+/// let mut input: Vec<f64> = (0..300).map(|n| 40.0 * (f64::from(n) * 0.05).sin()).collect();
+/// let output = input.iter().map(|t| 0.5 * t).collect();
+/// input[100] = 0.0; // a reading that was lost
+/// let (prepared, report) = prepare(&Recording::new(input, output)?, &PrepareOptions::default())?;
+/// assert_eq!(report.spikes.map(|spikes| spikes.input.first), Some(vec![101])); // counted from 1
+/// assert!((prepared.input[100] + 38.36).abs() < 0.1);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Preparation`] for a value outside the table of [`PrepareOptions`], or a
+/// lag or a step without time; [`Error::Filter`] for a cut-off that does not fit the samples; those of [`crate::fit`] where a lag is estimated.
+pub fn prepare(
+    recording: &Recording,
+    options: &PrepareOptions,
+) -> Result<(Recording, Preparation)> {
+    recording.check()?;
+    options.check()?;
+    let mut work = recording.clone();
+    let spikes = remove_spikes(&mut work, options.spikes);
+    let sigma = [noise(&work.input), noise(&work.output)];
+    let noisy = [0, 1].map(|n| {
+        let (low, high) = range([&work.input, &work.output][n]);
+        sigma[n] > smooth::NEGLIGIBLE * (high - low)
+    });
+    let filtered = match options.low_pass {
+        Step::Auto => noisy.contains(&true),
+        Step::Off => false,
+        Step::Value(_) => true,
+    };
+    let resampled = resample(
+        &mut work,
+        options.resample,
+        filtered || options.lag != Step::Off,
+    )?;
+    let step = work.time.as_deref().map(resample::step_of);
+    let step = step.filter(|step| *step > 0.0);
+
+    let low_pass = smooth(&mut work, options.low_pass, sigma, noisy, step)?;
+    let input_filter = low_pass.as_ref().and_then(|filter| filter.input.as_ref());
+    let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
+    let lag = undo_lag(&mut work, options.lag, step)?;
+
+    // What is left of the noise on the input.
+    let mut left = sigma[0] * input_cutoff.map_or(1.0, smooth::let_through);
+    let undone = lag.as_ref().and_then(|lag| lag.undone);
+    if let (Some(tau), Some(step)) = (undone, step) {
+        left *= lag::growth(step, tau, input_cutoff.unwrap_or(0.5));
+    }
+    let as_read = input_cutoff.is_none() && undone.is_none();
+    let band = settle(&mut work, options.band, left, as_read);
+    work.check()?;
+    let report = Preparation {
+        samples_before: recording.len(),
+        samples: work.len(),
+        input_noise: sigma[0],
+        output_noise: sigma[1],
+        spikes,
+        resampled,
+        low_pass,
+        lag,
+        band,
+    };
+    Ok((work, report))
+}
+
+fn remove_spikes(work: &mut Recording, step: Step) -> Option<Spikes> {
+    let deviations = match step {
+        Step::Off => return None,
+        Step::Auto => spikes::DEVIATIONS,
+        Step::Value(deviations) => deviations,
+    };
+    let repair = |values: &mut [f64]| {
+        let signs = sign::restore(values);
+        let spikes = spikes::remove(values, deviations);
+        Repairs::new(&signs, &spikes)
+    };
+    Some(Spikes {
+        deviations,
+        input: repair(&mut work.input),
+        output: repair(&mut work.output),
+    })
+}
+
+/// Returns the step that was taken, if any was.
+fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64>> {
+    let taken = match (step, &work.time) {
+        (Step::Value(_), None) => {
+            return Err(Error::Preparation(
+                "resampling needs a time column: name it, or leave the step out".into(),
+            ));
+        }
+        (Step::Value(step), Some(_)) => step,
+        (Step::Auto, Some(time)) if needed && resample::irregular(time) => resample::step_of(time),
+        _ => return Ok(None),
+    };
+    if taken <= 0.0 {
+        return Ok(None); // time stands still throughout
+    }
+    resample::resample(work, taken)?;
+    Ok(Some(taken))
+}
+
+fn smooth(
+    work: &mut Recording,
+    how: Step,
+    sigma: [f64; 2],
+    noisy: [bool; 2],
+    step: Option<f64>,
+) -> Result<Option<LowPass>> {
+    if how == Step::Off {
+        return Ok(None);
+    }
+    let rate = step.map_or(1.0, |step| 1.0 / step);
+    let mut done = [None, None];
+    for (n, values) in [&mut work.input, &mut work.output].into_iter().enumerate() {
+        let cutoff = match how {
+            Step::Value(cutoff) => Some(cutoff),
+            _ if !noisy[n] => None,
+            _ => smooth::cutoff_for(values, sigma[n])?.map(|cutoff| cutoff * rate),
+        };
+        if let Some(cutoff) = cutoff {
+            let smoothed = low_pass(values, rate, cutoff)?;
+            let removed = smooth::distance(values, &smoothed);
+            *values = smoothed;
+            done[n] = Some(Smoothed { cutoff, removed });
+        }
+    }
+    let [input, output] = done;
+    Ok(Some(LowPass {
+        input,
+        output,
+        in_hertz: step.is_some(),
+    }))
+}
+
+fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option<SensorLag>> {
+    if how == Step::Off {
+        return Ok(None);
+    }
+    let Some(step) = step else {
+        return Err(Error::Preparation(
+            "a sensor lag needs a time column in which time passes: name it, or leave the lag out"
+                .into(),
+        ));
+    };
+    let mut report = SensorLag::default();
+    match how {
+        Step::Value(tau) => report.undone = Some(tau),
+        _ => {
+            let found = lag::estimate(work, step)?;
+            let gain = 1.0 - found.rmse_after / found.rmse_before;
+            report.undone = (gain >= lag::WORTHWHILE).then_some(found.tau);
+            report.estimate = Some(found.tau);
+            report.rmse_before = Some(found.rmse_before);
+            report.rmse_after = Some(found.rmse_after);
+        }
+    }
+    if let Some(tau) = report.undone {
+        work.input = lag::undo(&work.input, step, tau)?;
+    }
+    Ok(Some(report))
+}
+
+/// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its values are still those of the meter.
+fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Option<DeadBand> {
+    let size = match how {
+        Step::Off => return None,
+        Step::Value(size) => size,
+        Step::Auto => {
+            // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both sides.
+            let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
+            // A meter that flickers between two readings has not turned.
+            let (low, high) = range(&work.input);
+            let flicker = band::resolution_with_rounding(&work.input);
+            match as_read && flicker <= NOISE * (high - low) {
+                true => reach.max(flicker),
+                false => reach,
+            }
+        }
+    };
+    let before = work.input.clone();
+    band::settle(&mut work.input, size);
+    let pairs = || before.iter().zip(&work.input);
+    Some(DeadBand {
+        size,
+        false_reversals: band::reversals(&before).saturating_sub(band::reversals(&work.input)),
+        samples_changed: pairs().filter(|(a, b)| a != b).count(),
+        largest_change: pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
+    })
+}

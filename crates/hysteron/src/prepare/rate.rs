@@ -1,0 +1,184 @@
+//! Does the material depend on rate?
+//!
+//! Hysteresis as modelled here does not: run the input faster and the loops stay, for only the path of the
+//! input counts, not the clock (Visintin 1994). So what a static model leaves over is explained twice by what lags behind input and modelled output:
+//! once with time as the clock, once with the length of the path that the input has gone. A residual that time explains and the path does
+//! not comes from rate; one that both explain alike comes from a plane that is too coarse or a start that is not known.
+
+use super::{PrepareOptions, Step, prepare};
+use crate::recording::range;
+use crate::{FitOptions, NOISE, Recording, Result, fit};
+use serde::Serialize;
+
+/// Time constants tried on either clock, from the mean step to a tenth of the whole.
+const CONSTANTS: usize = 12;
+
+/// Fewer samples than this say nothing.
+const FEWEST: usize = 20;
+
+/// How much the output depends on the rate of the input, beyond what a static model can follow.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RateDependence {
+    /// Root mean square of what rate alone explains, in percent of the output's range:
+    /// `nrmse_percent · √(r2_time − r2_path)`.
+    pub percent: f64,
+    /// R² of what a static model leaves, explained by lags in time.
+    pub r2_time: f64,
+    /// The same with the path of the input for time.
+    pub r2_path: f64,
+    /// The time constant that explains most, s.
+    pub time_constant: f64,
+    /// Error of the static model (20 levels), in percent of the output's range.
+    pub nrmse_percent: f64,
+}
+
+impl RateDependence {
+    /// Above this, in percent of the range, a static model errs by rate more than noise would make it: [`NOISE`].
+    pub const THRESHOLD: f64 = 100.0 * NOISE;
+
+    /// Whether to warn.
+    #[must_use]
+    pub fn is_material(&self) -> bool {
+        self.percent > Self::THRESHOLD
+    }
+}
+
+/// How much the recording, without its spikes, depends on rate; `None` without time, with fewer than 20 samples, or where time
+/// stands still.
+///
+/// ```
+/// use hysteron::{Recording, rate_dependence};
+/// let input: Vec<f64> = (0..600).map(|n| 50.0 - 30.0 * (f64::from(n * n) * 1e-4).cos()).collect();
+/// let output = input.iter().scan(20.0_f64, |y, x| { *y = y.clamp(x - 2.0, x + 2.0); Some(*y) }).collect();
+/// let mut recording = Recording::new(input, output)?;
+/// recording.time = Some((0..600).map(f64::from).collect());
+/// let rate = rate_dependence(&recording)?.unwrap();
+/// assert!(!rate.is_material());
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`fit`].
+pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> {
+    // A reading that dropped out is fast as well, but no rate of the material's.
+    let without_spikes = PrepareOptions {
+        spikes: Step::Auto,
+        ..PrepareOptions::all(Step::Off)
+    };
+    let (recording, _) = prepare(recording, &without_spikes)?;
+    let Some(time) = &recording.time else {
+        return Ok(None);
+    };
+    if time.len() < FEWEST || time[time.len() - 1] <= time[0] {
+        return Ok(None);
+    }
+    let model = fit(&recording, &FitOptions::default())?;
+    let modelled = model.simulate(&recording.input)?;
+    let pairs = recording.output.iter().zip(&modelled);
+    let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();
+    let path: Vec<f64> = recording
+        .input
+        .iter()
+        .scan((0.0, recording.input[0]), |(length, last), &x| {
+            *length += (x - *last).abs();
+            *last = x;
+            Some(*length)
+        })
+        .collect();
+    let series = [&recording.input, &modelled];
+    let (r2_time, time_constant) = explained(&residual, series, time);
+    let (r2_path, _) = explained(&residual, series, &path);
+    let (low, high) = range(&recording.output);
+    let mean_square = residual.iter().map(|r| r * r).sum::<f64>() / residual.len() as f64;
+    let nrmse_percent = 100.0 * mean_square.sqrt() / (high - low);
+    Ok(Some(RateDependence {
+        percent: nrmse_percent * (r2_time - r2_path).max(0.0).sqrt(),
+        r2_time,
+        r2_path,
+        time_constant,
+        nrmse_percent,
+    }))
+}
+
+/// The largest R², over time constants on `clock`, of `residual` against what first-order lags of the two series are behind by;
+/// and that constant.
+fn explained(residual: &[f64], series: [&Vec<f64>; 2], clock: &[f64]) -> (f64, f64) {
+    let total = clock[clock.len() - 1] - clock[0];
+    let shortest = total / clock.len() as f64;
+    let ratio = (total / 10.0 / shortest).powf(1.0 / (CONSTANTS - 1) as f64);
+    let constants = (0..CONSTANTS).map(|n| shortest * ratio.powi(n as i32));
+    let scores = constants.map(|tau| {
+        let [a, b] = series.map(|values| centred(behind(values, clock, tau)));
+        (r_squared(&centred(residual.to_vec()), &a, &b), tau)
+    });
+    scores.fold(
+        (0.0, shortest),
+        |best, score| {
+            if score.0 > best.0 { score } else { best }
+        },
+    )
+}
+
+/// How far a first-order lag of time constant `tau` is behind: for short ones, `τ dx/dt`.
+fn behind(values: &[f64], clock: &[f64], tau: f64) -> Vec<f64> {
+    let mut lagging = values[0];
+    let mut last = clock[0];
+    let steps = values.iter().zip(clock).map(|(x, &now)| {
+        lagging += (x - lagging) * -(-(now - last) / tau).exp_m1();
+        last = now;
+        x - lagging
+    });
+    steps.collect()
+}
+
+fn centred(mut values: Vec<f64>) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter_mut().for_each(|v| *v -= mean);
+    values
+}
+
+/// The part of the variance of `y` that the best combination of `a` and `b` explains, all of mean zero.
+fn r_squared(y: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let dot = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
+    let (aa, yy) = (dot(a, a), dot(y, y));
+    if yy <= 0.0 {
+        return 0.0;
+    }
+    // Gram-Schmidt: first along a, then along what b adds to it.
+    let along = if aa > 0.0 { dot(a, b) / aa } else { 0.0 };
+    let rest: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - along * a).collect();
+    let first = if aa > 0.0 {
+        dot(a, y).powi(2) / aa
+    } else {
+        0.0
+    };
+    let (bb, rr) = (dot(b, b), dot(&rest, &rest));
+    // What is left of b by rounding says nothing.
+    let second = if rr > 1e-12 * bb {
+        dot(&rest, y).powi(2) / rr
+    } else {
+        0.0
+    };
+    ((first + second) / yy).min(1.0)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::prepare::test_series::{behind_sensor, two_rates};
+
+    #[test]
+    fn a_lag_is_rate_and_hysteresis_is_not() {
+        let step = 0.25;
+        let quasi_static = two_rates(step);
+        let found = rate_dependence(&quasi_static).unwrap().unwrap();
+        assert!(!found.is_material(), "{found:?}");
+        let mut lagging = quasi_static.clone();
+        lagging.output = behind_sensor(&lagging.output, step, 8.0);
+        let found = rate_dependence(&lagging).unwrap().unwrap();
+        assert!(found.is_material(), "{found:?}");
+        lagging.time = None;
+        assert_eq!(rate_dependence(&lagging).unwrap(), None);
+    }
+}

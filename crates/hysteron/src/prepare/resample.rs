@@ -1,0 +1,110 @@
+//! Samples at equal steps of time.
+
+use super::noise::median_of;
+use crate::{Error, Recording, Result};
+
+/// Steps that differ from the median by up to this part of it are equal: a filter does not notice.
+const JITTER: f64 = 0.1;
+
+/// By default, the samples grow at most this many times in number, however short the median step is.
+const GROWTH: f64 = 4.0;
+
+/// More samples than this are a mistyped step.
+const MOST_SAMPLES: f64 = 1e8;
+
+/// The median step, or the average one where that is so much longer that the samples would grow beyond all bounds.
+pub(super) fn step_of(time: &[f64]) -> f64 {
+    let duration = time[time.len() - 1] - time[0];
+    let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
+    median.max(duration / (GROWTH * time.len() as f64))
+}
+
+/// Whether any step differs from the median.
+pub(super) fn irregular(time: &[f64]) -> bool {
+    let steps = || time.windows(2).map(|pair| pair[1] - pair[0]);
+    let median = median_of(steps().collect());
+    steps().any(|step| (step - median).abs() > JITTER * median)
+}
+
+/// All series at every `step` from the first sample on, on straight lines between samples. Of samples at the same time the last counts.
+pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
+    let Some(old) = recording.time.take() else {
+        return Ok(());
+    };
+    let start = old[0];
+    let steps = (old[old.len() - 1] - start) / step;
+    if steps > MOST_SAMPLES {
+        return Err(Error::Preparation(format!(
+            "a step of {step} s makes {steps:.1e} samples: take a longer one"
+        )));
+    }
+    // The last sample stays, though rounding puts it a hair before the end.
+    let count = (steps * (1.0 + 1e-12) + 1e-9).floor() as usize + 1;
+    let time: Vec<f64> = (0..count).map(|n| start + step * n as f64).collect();
+    let at_new_times = |values: &[f64]| -> Vec<f64> {
+        let mut n = 0;
+        let interpolate = |&now: &f64| {
+            while n + 1 < old.len() && old[n + 1] <= now {
+                n += 1;
+            }
+            match old.get(n + 1) {
+                Some(next) => {
+                    let part = ((now - old[n]) / (next - old[n])).clamp(0.0, 1.0);
+                    values[n] + (values[n + 1] - values[n]) * part
+                }
+                None => values[n],
+            }
+        };
+        time.iter().map(interpolate).collect()
+    };
+    recording.input = at_new_times(&recording.input);
+    recording.output = at_new_times(&recording.output);
+    recording.load = recording.load.as_deref().map(at_new_times);
+    recording.time = Some(time);
+    Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_are_filled_by_lines_and_all_series_stay_in_step() {
+        let mut recording =
+            Recording::new(vec![0.0, 1.0, 1.5, 4.0, 5.0], vec![5.0, 4.0, 9.0, 1.0, 0.0]).unwrap();
+        recording.time = Some(vec![10.0, 11.0, 11.0, 14.0, 15.0]);
+        recording.load = Some(vec![2.0; 5]);
+        assert!(irregular(recording.time.as_deref().unwrap()));
+        assert_eq!(step_of(recording.time.as_deref().unwrap()), 1.0);
+        resample(&mut recording, 1.0).unwrap();
+        assert_eq!(
+            recording.time.as_deref().unwrap(),
+            [10.0, 11.0, 12.0, 13.0, 14.0, 15.0]
+        );
+        let third = 2.5 / 3.0;
+        let expected = [0.0, 1.5, 1.5 + third, 1.5 + 2.0 * third, 4.0, 5.0];
+        for (found, expected) in recording.input.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12);
+        }
+        assert_eq!(recording.output[5], 0.0);
+        assert_eq!(recording.load, Some(vec![2.0; 6]));
+        recording.check().unwrap();
+        assert!(matches!(
+            resample(&mut recording, 1e-12),
+            Err(Error::Preparation(_))
+        ));
+    }
+
+    #[test]
+    fn rounded_times_are_regular() {
+        let rounded: Vec<f64> = (0..900)
+            .map(|n| (f64::from(n) * 0.000135 * 1e6).round() / 1e6)
+            .collect();
+        assert!(!irregular(&rounded));
+        // Half the samples at the time of the one before: the median step is zero.
+        let repeated: Vec<f64> = (0..900).map(|n| f64::from(n / 3)).collect();
+        assert!(irregular(&repeated));
+        assert!(step_of(&repeated) > 0.05);
+    }
+}
