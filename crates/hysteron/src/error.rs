@@ -45,6 +45,9 @@ pub enum Error {
     /// The options of a fit contradict each other or the data.
     #[error("fit: {0}")]
     Fit(String),
+    /// No experiment follows from the options.
+    #[error("design: {0}")]
+    Design(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -65,6 +68,7 @@ impl Error {
             Error::Fit(_) => 23,
             Error::Filter(_) => 24,
             Error::Rig(_) => 25,
+            Error::Design(_) => 26,
         }
     }
 }

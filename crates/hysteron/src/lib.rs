@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod design;
 mod error;
 mod evaluate;
 pub mod filter;
@@ -23,13 +24,14 @@ mod stream;
 mod table;
 mod turning;
 
+pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
 pub use hysteron_core::{
     Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
     Status,
 };
-pub use identify::{FitOptions, FitSummary, Solver, fit, plane_of};
+pub use identify::{Excitation, FitOptions, FitSummary, Solver, excitation, fit, plane_of};
 pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};

@@ -1,9 +1,13 @@
 //! Identification: the weights of a model from a recording.
 
 mod cholesky;
+mod excitation;
 mod nnls;
 mod solve;
 mod sparse;
+
+pub(crate) use excitation::Unresolved;
+pub use excitation::{Excitation, excitation};
 
 use crate::recording::range;
 use crate::{Error, Errors, Model, Operator, Plane, Recording, Result, Sign};
@@ -118,16 +122,7 @@ const GRAM_BYTES: u128 = 4 << 30;
 pub fn fit(recording: &Recording, options: &FitOptions) -> Result<Model> {
     recording.check()?;
     let plane = choose_plane(recording, options)?;
-    let bytes = 8 * (plane.operators() as u128).pow(2);
-    if bytes > GRAM_BYTES {
-        return Err(Error::Fit(format!(
-            "{} levels are {} operators, whose Gram matrix takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
-            plane.levels(),
-            plane.operators(),
-            bytes as f64 / f64::from(1 << 30),
-            GRAM_BYTES >> 30
-        )));
-    }
+    check_gram(plane)?;
     if let Some(offset) = options
         .offset
         .filter(|offset| offset.is_nan() || offset.abs() > 1e140)
@@ -168,6 +163,21 @@ pub fn fit(recording: &Recording, options: &FitOptions) -> Result<Model> {
         sign = Sign::Negative;
     }
     finish(recording, options, plane, solution, sign)
+}
+
+/// Whether the Gram matrix of a plane fits into memory.
+fn check_gram(plane: Plane) -> Result<()> {
+    let bytes = 8 * (plane.operators() as u128).pow(2);
+    if bytes > GRAM_BYTES {
+        return Err(Error::Fit(format!(
+            "{} levels are {} operators, whose Gram matrix takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
+            plane.levels(),
+            plane.operators(),
+            bytes as f64 / f64::from(1 << 30),
+            GRAM_BYTES >> 30
+        )));
+    }
+    Ok(())
 }
 
 /// From states in `[0, 1]` to the operator's own outputs, and the errors of the result.
