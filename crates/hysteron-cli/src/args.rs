@@ -44,6 +44,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"
     )]
     Inspect(Inspect),
+    /// Plan a recording: the input profile that determines every operator in the shortest time
+    #[command(
+        after_help = "Examples:\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 -o profile.csv\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv"
+    )]
+    Design(Design),
     /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
     #[command(after_help = "Example:\n  hysteron demo -o demo")]
     Demo(Demo),
@@ -216,6 +221,45 @@ pub(crate) struct Inspect {
     /// Its lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Design {
+    /// Lowest and highest level of the plane; the profile starts one level below the lowest
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: (f64, f64),
+    /// Number of levels K of the plane; it has K(K+1)/2 operators
+    #[arg(long, value_parser = parse_levels)]
+    pub(crate) levels: usize,
+    /// How fast the input can rise, in its unit per second
+    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) heating_rate: f64,
+    /// How fast it can fall
+    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) cooling_rate: f64,
+    /// Longest duration: as many rings as fit, evenly spread [default: all that it takes]
+    #[arg(long, value_name = "MINUTES", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) budget: Option<f64>,
+    /// A recording that exists, repeatable: what it determines is left out
+    #[arg(long, value_name = "RECORDING", requires = "input")]
+    pub(crate) from: Vec<PathBuf>,
+    /// Column of the input in the recordings
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: Option<String>,
+    /// Longest time between samples [default: ten samples a level]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) step: Option<f64>,
+    /// Elementary operator
+    #[arg(long, value_enum, default_value = "mkp")]
+    pub(crate) operator: Operator,
+    /// Where the profile goes, with the columns `time [s]` and `input`
+    #[arg(short, value_name = "PROFILE")]
+    pub(crate) out: PathBuf,
+    /// Draw the plane with what is known of each operator
+    #[arg(long, value_name = "SVG")]
+    pub(crate) figure: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) json: Json,
 }
