@@ -119,10 +119,11 @@ fn a_recording_is_made_complete() {
             let inputs: Vec<&[f64]> = some.iter().map(Vec::as_slice).collect();
             let profile = design(&options, &inputs).unwrap();
             assert_eq!(determined(&profile), 55);
-            assert!(
-                profile.duration_s() < full.duration_s(),
-                "nothing was saved"
-            );
+            assert!(profile.duration_s() <= full.duration_s() + 1e-9);
+            if some[0] == recordings[0] {
+                // A major loop at least.
+                assert!(profile.duration_s() < 0.9 * full.duration_s());
+            }
             // As one recording, the profile carried out after the last of them.
             let mut joined = inputs.clone();
             let appended = [inputs[inputs.len() - 1], &profile.input].concat();
@@ -220,7 +221,7 @@ fn what_cannot_be_is_refused() {
     assert!(says(plain, &[&[0.0, 5.0]]).contains("between 0 and 5"));
     assert!(says(plain, &[&[30.0, 40.0], &[]]).contains("recording 2 of 2"));
     assert!(matches!(
-        design(&plain, &[&[30.0, f64::NAN]]),
+        design(&plain, &[&[30.0, 50.0, f64::NAN]]),
         Err(Error::Core(_))
     ));
 }

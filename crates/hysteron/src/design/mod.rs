@@ -114,7 +114,8 @@ impl Design {
 /// one step of a level for each operator. What the inputs `recorded` so far determine already is left out. With a budget that is too short for it all, as
 /// many rings of the spiral stay as fit, the outermost first and the others evenly spread.
 ///
-/// The proof that no profile turning at levels is shorter stands in `design/spiral.rs`. Relays are passed half a step
+/// The proof that no profile turning at levels is shorter stands in `design/spiral.rs`; what completes recordings is short, not
+/// proven to be the shortest. Relays are passed half a step
 /// beyond their levels, so that they switch whatever the rounding.
 ///
 /// ```
@@ -139,7 +140,7 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     if !recorded.is_empty() {
         known.0 = Unresolved::of(recorded, options.plane, options.operator)?.corners_known();
     }
-    let wanted = spiral::prune(spiral::full(levels), &known);
+    let wanted = spiral::completing(levels, &known);
     let turns = within_budget(options, &wanted)?;
     let mut legs = Vec::new();
     for leg in turns.windows(2) {

@@ -20,8 +20,35 @@ use hysteron_core::{operator_count, operator_index};
 
 /// The turning points of the full spiral, the start at 0 included.
 pub(super) fn full(levels: usize) -> Vec<usize> {
-    let turn = |n: usize| if n % 2 == 0 { n / 2 } else { levels - n / 2 };
-    (0..=levels).map(turn).collect()
+    between(levels, 1)
+}
+
+/// A spiral whose first maximum is `max` and whose first minimum is `min`, from 0 on.
+fn between(max: usize, min: usize) -> Vec<usize> {
+    let turn = |n: usize| match n {
+        0 => 0,
+        n if n % 2 == 0 => min + n / 2 - 1,
+        n => max - n / 2,
+    };
+    (0..max + 2 - min).map(turn).collect()
+}
+
+/// Turning points that show all corners that are not `known`: of the full spiral and the smallest that is enough the
+/// one that is shorter once what is known is left out. Short, not proven to be the shortest.
+pub(super) fn completing(levels: usize, known: &Corners) -> Vec<usize> {
+    let all = operator_count(levels);
+    let mut spirals: Vec<Vec<usize>> = (1..=levels)
+        .flat_map(|max| (1..=max).map(move |min| between(max, min)))
+        .collect();
+    spirals.sort_by_key(|turns| travel(turns));
+    let enough = spirals
+        .into_iter()
+        .find(|turns| known.with(turns).count() == all);
+    let pruned = [enough, Some(full(levels))]
+        .into_iter()
+        .flatten()
+        .map(|turns| prune(turns, known));
+    pruned.min_by_key(|turns| travel(turns)).unwrap_or_default()
 }
 
 /// Which corners `C[p][q]` are known, each at the place of weight `(q + 1, p)`.
@@ -37,18 +64,19 @@ impl Corners {
         self.0.iter().filter(|known| **known).count()
     }
 
-    /// Adds what a leg shows, on a path that closes no loop, and says how many of these were new.
+    /// Adds what a leg shows, on a path that closes no loop, and says how many of these corners were new.
     pub(super) fn add(&mut self, from: usize, to: usize) -> usize {
-        let before = self.count();
+        let mut new = 0;
         for step in from.min(to)..from.max(to) {
             let (p, q) = if from < to {
                 (step + 1, from)
             } else {
                 (from, step)
             };
-            self.0[operator_index(q + 1, p)] = true;
+            let known = &mut self.0[operator_index(q + 1, p)];
+            new += usize::from(!std::mem::replace(known, true));
         }
-        self.count() - before
+        new
     }
 
     fn with(&self, turns: &[usize]) -> Self {
@@ -63,7 +91,7 @@ impl Corners {
 /// `turns` without what shows nothing beyond `known`: whole rings are left out, and what stays is shortened.
 ///
 /// What nested turning points show only shrinks as some are taken out, so one pair at a time finds all that can go.
-pub(super) fn prune(mut turns: Vec<usize>, known: &Corners) -> Vec<usize> {
+fn prune(mut turns: Vec<usize>, known: &Corners) -> Vec<usize> {
     let wanted = known.with(&turns);
     while let Some(shorter) = without_a_pair(&turns)
         .filter(|shorter| known.with(shorter) == wanted)
@@ -119,7 +147,7 @@ fn shortened(turns: &[usize], at: usize) -> Option<Vec<usize>> {
     Some(shorter)
 }
 
-pub(super) fn travel(turns: &[usize]) -> usize {
+fn travel(turns: &[usize]) -> usize {
     turns.windows(2).map(|leg| leg[0].abs_diff(leg[1])).sum()
 }
 
@@ -180,11 +208,12 @@ mod tests {
                 assert!(travel(&turns) <= 3 * levels, "({p}, {q}): {turns:?}");
             }
         }
-        // The major loop and its first-order curves from two levels.
-        let known = nothing.with(&[0, 9, 1]).with(&[0, 5, 1]);
-        let turns = prune(full(levels), &known);
+        // After the major loop a plane of one level less is left.
+        let known = nothing.with(&[0, levels, 1]);
+        let turns = completing(levels, &known);
+        assert_eq!(turns, between(levels - 1, 1));
         assert_eq!(known.with(&turns), all);
-        assert!(travel(&turns) < travel(&full(levels)));
+        assert_eq!(completing(levels, &all), [0]);
     }
 
     #[test]
