@@ -9,6 +9,10 @@ use std::path::Path;
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
     let (min, max) = args.range;
+    let to_stdout = args.out == Path::new("-");
+    if to_stdout && args.json.json {
+        return Err("with --json standard output is for that alone: name a file with -o".into());
+    }
     let options = DesignOptions {
         operator: match args.operator {
             args::Operator::Mkp => Operator::Mkp,
@@ -45,7 +49,12 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     if args.json.json {
         return print(&to_json(&design, profile.map(|path| path.as_path())).to_string());
     }
-    print(&summary(&design, args))
+    let summary = summary(&design, args);
+    if to_stdout {
+        eprintln!("{summary}");
+        return Ok(());
+    }
+    print(&summary)
 }
 
 fn input_of(path: &Path, column: &str) -> Result<Vec<f64>> {
