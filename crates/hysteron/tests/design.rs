@@ -151,9 +151,10 @@ fn nothing_is_left_after_the_profile_itself() {
 #[test]
 fn what_cannot_be_is_refused() {
     let plain = options(10);
-    let says = |options: DesignOptions, recorded: &[&[f64]]| match design(&options, recorded) {
-        Err(Error::Design(problem)) => problem,
-        other => panic!("{other:?}"),
+    let says = |options: DesignOptions, recorded: &[&[f64]]| {
+        let error = design(&options, recorded).unwrap_err();
+        assert!(matches!(error, Error::Design(_)), "{error}");
+        error.to_string()
     };
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let heating = Rates {

@@ -135,12 +135,7 @@ fn shortened(turns: &[usize], at: usize) -> Option<Vec<usize>> {
             moved < *inner
         }
     };
-    if !turns
-        .iter()
-        .skip(at + 1)
-        .take(2)
-        .all(|inner| outside(inner))
-    {
+    if !turns.iter().skip(at + 1).take(2).all(outside) {
         return None;
     }
     shorter[at] = moved;
