@@ -1,43 +1,74 @@
 //! `hysteron fit`
 
-use crate::{Result, args, print, recording, text};
-use hysteron::{Columns, FitOptions, Operator, Sign, Solver};
+use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
+use hysteron::{
+    Candidates, Columns, FitOptions, FitSummary, Model, Preparation, RateDependence, Recording,
+    Sign, Solver, Start, Step,
+};
 use serde_json::json;
 
+/// Replicates of the bootstrap where nothing else is said, as long as that takes a moment only.
+const REPLICATES: usize = 200;
+
+/// Levels from which on it takes longer.
+const MANY_LEVELS: usize = 45;
+
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
-    let columns = Columns::new(&args.input, &args.output);
-    let same = |a: &std::path::Path| a.canonicalize().ok();
-    let replaced = |data: &std::path::PathBuf| same(data) == same(&args.out);
-    if args.out.exists() && args.data.iter().any(replaced) {
-        return Err(format!(
-            "{}: the model would replace the recording: name another file",
-            args.out.display()
-        )
-        .into());
-    }
-    let read = |data: &std::path::PathBuf| recording::read(data, columns, &args.repair);
-    let recordings: Vec<_> = args.data.iter().map(read).collect::<Result<_>>()?;
-    let mut recording = match <[_; 1]>::try_from(recordings) {
-        Ok([recording]) => recording,
-        Err(_) => return Err("a fit takes one recording: name one file".into()),
+    let columns = Columns {
+        time: args.prepare.time.as_deref(),
+        load: args.load.as_deref(),
+        ..Columns::new(&args.input, &args.output)
     };
-    let units = [
-        (&args.input_unit, &mut recording.input_quantity),
-        (&args.output_unit, &mut recording.output_quantity),
-    ];
-    for (unit, quantity) in units {
-        if unit.is_some() {
-            quantity.unit.clone_from(unit);
+    let mut prepared = Vec::new();
+    for data in &args.data {
+        keep_apart(data, &args.out)?;
+        let mut recording = recording::read(data, columns, &args.repair)?;
+        let units = [
+            (&args.input_unit, &mut recording.input_quantity),
+            (&args.output_unit, &mut recording.output_quantity),
+        ];
+        for (unit, quantity) in units {
+            if unit.is_some() {
+                quantity.unit.clone_from(unit);
+            }
         }
+        prepared.push(prepare::before_fit(recording, &args.prepare)?);
     }
-    let (recording, preparation, rate) = prepare::before_fit(recording, &args.prepare)?;
-    let options = FitOptions {
-        operator: match args.operator {
-            args::Operator::Mkp => Operator::Mkp,
-            args::Operator::Kp => Operator::Kp,
-            args::Operator::Relay => Operator::Relay,
-        },
-        levels: args.levels,
+    let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
+    let model = identify(args, &recordings)?;
+    model.write(&args.out)?;
+
+    let plane = model.plane();
+    let inputs = recordings.iter().flat_map(|r| &r.input);
+    let samples: usize = recordings.iter().map(Recording::len).sum();
+    let clipped = inputs.filter(|t| plane.clipped(**t).is_some()).count();
+    if clipped > 0 {
+        eprintln!(
+            "hysteron: {clipped} of {samples} inputs lie outside the active range {} to {} and were taken as its ends: widen --range",
+            text::number(plane.bottom()),
+            text::number(plane.max())
+        );
+    }
+    match (&model.fit, args.json.json) {
+        (None, _) => Ok(()),
+        (Some(fit), true) => print(&to_json(args, &model, fit, clipped, &prepared).to_string()),
+        (Some(fit), false) => print(&to_text(args, &model, fit)),
+    }
+}
+
+fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
+    let (levels, fixed_levels) = match args.levels {
+        args::Levels::Auto => (FitOptions::default().levels, None),
+        args::Levels::Fixed(levels) => (levels, Some(levels)),
+    };
+    let (smooth, fixed_smooth) = match args.smooth {
+        Step::Auto => (0.0, None),
+        Step::Off => (0.0, Some(0.0)),
+        Step::Value(smooth) => (smooth, Some(smooth)),
+    };
+    let mut options = FitOptions {
+        operator: args.operator.into(),
+        levels,
         range: args.range,
         solver: match args.solver {
             args::Solver::Nnls => Solver::Nnls,
@@ -49,53 +80,96 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             args::Sign::Negative => Some(Sign::Negative),
         },
         offset: args.offset,
-    };
-    let model = hysteron::fit(&recording, &options)?;
-    model.write(&args.out)?;
-
-    let plane = model.plane();
-    let inside = |t: &&f64| plane.clipped(**t).is_some();
-    let clipped = recording.input.iter().filter(inside).count();
-    if clipped > 0 {
-        eprintln!(
-            "hysteron: {clipped} of {} inputs lie outside the active range {} to {} and were taken as its ends: widen --range",
-            recording.len(),
-            text::number(plane.bottom()),
-            text::number(plane.max())
-        );
-    }
-    let Some(fit) = &model.fit else {
-        return Ok(());
-    };
-    if args.json.json {
-        return print(
-            &json!({
-                "model": args.out,
-                "operators": plane.operators(),
-                "plane": {"min": plane.min(), "max": plane.max(), "levels": plane.levels()},
-                "offset": model.offset(),
-                "sign": model.sign().factor() as i64,
-                "clipped": clipped,
-                "fit": fit,
-                "preparation": preparation,
-                "rate": rate,
-            })
-            .to_string(),
-        );
-    }
-    let negative = model.weights().iter().filter(|mu| **mu < 0.0).count();
-    print(&format!(
-        "{}: {} samples, {} of {} weights not zero{}\nRMSE {} ({:.2} % of the range), largest error {}",
-        args.out.display(),
-        fit.samples,
-        fit.weights_not_zero,
-        plane.operators(),
-        match negative {
-            0 => String::new(),
-            count => format!(", {count} below zero (no inverse)"),
+        smooth,
+        start: match args.start {
+            args::Start::Off => Start::Off,
+            args::Start::On => Start::On,
+            args::Start::Unknown => Start::Unknown,
         },
-        text::with_unit(fit.rmse, &model.output),
-        fit.nrmse_percent,
-        text::with_unit(fit.max_abs, &model.output),
-    ))
+        load_degree: args.load_degree,
+        bootstrap: 0,
+    };
+    let bar = progress::stages();
+    let watch = |stage: &'static str, done: f64| {
+        progress::stage(&bar, stage, done);
+        Ok(())
+    };
+    let mut validation = None;
+    if fixed_levels.is_none() || fixed_smooth.is_none() {
+        let candidates = Candidates::new(fixed_levels, fixed_smooth);
+        let (chosen, found) = hysteron::cross_validate(recordings, &options, &candidates, &watch)?;
+        options = chosen;
+        validation = Some(found);
+    }
+    let few = options.levels < MANY_LEVELS;
+    options.bootstrap = args.bootstrap.unwrap_or(if few { REPLICATES } else { 0 });
+    let mut model = hysteron::fit_experiment(recordings, &options, &watch)?;
+    if let Some(fit) = &mut model.fit {
+        fit.validation = validation;
+    }
+    bar.finish_and_clear();
+    Ok(model)
+}
+
+type Prepared = (Recording, Option<Preparation>, Option<RateDependence>);
+
+fn to_json(
+    args: &args::Fit,
+    model: &Model,
+    fit: &FitSummary,
+    clipped: usize,
+    prepared: &[Prepared],
+) -> serde_json::Value {
+    let plane = model.plane();
+    let preparation: Vec<_> = prepared.iter().map(|(_, report, _)| report).collect();
+    let rate: Vec<_> = prepared.iter().map(|(_, _, rate)| rate).collect();
+    json!({
+        "model": args.out,
+        "operators": plane.operators(),
+        "plane": {"min": plane.min(), "max": plane.max(), "levels": plane.levels()},
+        "offset": model.offset(),
+        "sign": model.sign().factor() as i64,
+        "clipped": clipped,
+        "fit": fit,
+        "preparation": preparation,
+        "rate": rate,
+    })
+}
+
+fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
+    let negative = model.weights().iter().filter(|mu| **mu < 0.0).count();
+    let mut lines = vec![
+        format!(
+            "{}: {} samples, {} of {} weights not zero{}",
+            args.out.display(),
+            fit.samples,
+            fit.weights_not_zero,
+            model.plane().operators(),
+            match negative {
+                0 => String::new(),
+                count => format!(", {count} below zero (no inverse)"),
+            },
+        ),
+        format!(
+            "RMSE {} ({:.2} % of the range), largest error {}",
+            text::with_unit(fit.rmse, &model.output),
+            fit.nrmse_percent,
+            text::with_unit(fit.max_abs, &model.output),
+        ),
+    ];
+    if let Some(validation) = &fit.validation {
+        lines.push(format!(
+            "{} levels, smoothness {}: {:.2} % of the range on {}branches left out",
+            model.plane().levels(),
+            text::number(fit.smooth),
+            validation.nrmse_percent,
+            if validation.whole_branches {
+                ""
+            } else {
+                "parts of "
+            },
+        ));
+    }
+    lines.extend(text::confidence(fit, model));
+    lines.join("\n")
 }

@@ -2,6 +2,7 @@
 
 mod args;
 mod demo;
+mod design;
 mod evaluate;
 mod fit;
 mod inspect;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Invert(args) => table::invert(&args),
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Design(args) => design::run(&args),
         Command::Demo(args) => demo::run(&args),
     };
     match done {

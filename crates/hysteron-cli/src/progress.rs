@@ -14,3 +14,23 @@ pub(crate) fn bytes_of(path: &Path) -> ProgressBar {
     }
     bar
 }
+
+/// A line that names what is being done and how far it is.
+pub(crate) fn stages() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// `done` from 0 to 1; NaN where only the time passes.
+pub(crate) fn stage(bar: &ProgressBar, stage: &'static str, done: f64) {
+    if bar.message() != stage {
+        bar.set_message(stage);
+    }
+    match done.is_nan() {
+        true => bar.tick(),
+        false => bar.set_position((1000.0 * done) as u64),
+    }
+}

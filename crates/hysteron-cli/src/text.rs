@@ -1,6 +1,6 @@
 //! Numbers and tables as text.
 
-use hysteron::Quantity;
+use hysteron::{Excitation, FitSummary, Model, Quantity};
 
 /// A number with four significant digits.
 pub(crate) fn number(value: f64) -> String {
@@ -43,4 +43,25 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
 /// Cells of a table row.
 pub(crate) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
     cells.iter().map(|cell| (*cell).to_owned()).collect()
+}
+
+/// What the data say of the weights, and what not.
+pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
+    let Some(confidence) = &fit.confidence else {
+        return Vec::new();
+    };
+    let classes = Excitation::ALL.iter().rev().map(|class| {
+        let count = confidence.count(*class);
+        format!("{count} {}", class.words())
+    });
+    vec![
+        format!("operators: {}", classes.collect::<Vec<_>>().join(", ")),
+        format!(
+            "rank {} of {}, condition {}, noise {}",
+            confidence.rank,
+            confidence.unknowns,
+            number(confidence.condition),
+            with_unit(confidence.noise, &model.output)
+        ),
+    ]
 }

@@ -455,8 +455,11 @@ fn bad_models_are_refused_by_field() {
         (change("/weights/7", Value::Null), "field `weights[7]`"),
         (change("/weights/7", "one".into()), "field `weights[7]`"),
         (
+            // The last of that name: the fit before it has weights of its own.
             good.to_string()
-                .replacen("\"weights\":[", "\"weights\":[NaN,", 1),
+                .rsplit_once("\"weights\":[")
+                .map(|(head, tail)| format!("{head}\"weights\":[NaN,{tail}"))
+                .unwrap(),
             "field `weights`",
         ),
         (good.to_string() + "x", "field `.`"),

@@ -25,6 +25,7 @@ mod view;
 
 pub use error::ReportError;
 pub use figure::Figure;
+pub use figures::excitation_map;
 pub use report::Report;
 
 #[cfg(test)]

@@ -66,6 +66,9 @@ pub enum Error {
     /// A step of the preparation cannot be done as told.
     #[error("preparation: {0}")]
     Preparation(String),
+    /// No experiment follows from the options.
+    #[error("design: {0}")]
+    Design(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -87,6 +90,7 @@ impl Error {
             Error::Filter(_) => 24,
             Error::Rig(_) => 25,
             Error::Preparation(_) => 26,
+            Error::Design(_) => 27,
         }
     }
 }

@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod design;
 mod error;
 mod evaluate;
 pub mod filter;
@@ -25,6 +26,7 @@ mod stream;
 mod table;
 mod turning;
 
+pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
 pub use hysteron_core::{
@@ -32,8 +34,8 @@ pub use hysteron_core::{
     Status,
 };
 pub use identify::{
-    Candidates, Confidence, Factor, FitOptions, FitSummary, LeftOut, Score, Solver, Start,
-    Validation, Watch, cross_validate, fit, fit_experiment, left_out, plane_of,
+    Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Score, Solver,
+    Start, Validation, Watch, cross_validate, excitation, fit, fit_experiment, left_out, plane_of,
 };
 pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
 pub use load::{LoadDependence, LoadPart};

@@ -14,6 +14,27 @@ pub struct LoadPart {
     pub weights: Vec<f64>,
 }
 
+impl LoadPart {
+    /// The parts with the factors of the middle of the range.
+    pub(crate) fn at_middle(parts: &[Self]) -> Self {
+        Self::sum(parts, &bernstein(parts.len() - 1, 0.5))
+    }
+
+    fn sum(parts: &[Self], factors: &[f64]) -> Self {
+        let mut sum = Self {
+            offset: 0.0,
+            weights: vec![0.0; parts[0].weights.len()],
+        };
+        for (factor, part) in factors.iter().zip(parts) {
+            sum.offset += factor * part.offset;
+            for (sum, mu) in sum.weights.iter_mut().zip(&part.weights) {
+                *sum += factor * mu;
+            }
+        }
+        sum
+    }
+}
+
 /// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein polynomials of the load
 /// scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those between, and the largest.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,24 +91,6 @@ impl LoadDependence {
     /// # Errors
     /// As [`LoadDependence::factors`].
     pub fn at(&self, load: f64) -> Result<LoadPart> {
-        Ok(self.sum(&self.factors(load)?))
-    }
-
-    pub(crate) fn at_middle(&self) -> LoadPart {
-        self.sum(&bernstein(self.parts.len() - 1, 0.5))
-    }
-
-    fn sum(&self, factors: &[f64]) -> LoadPart {
-        let mut sum = LoadPart {
-            offset: 0.0,
-            weights: vec![0.0; self.parts[0].weights.len()],
-        };
-        for (factor, part) in factors.iter().zip(&self.parts) {
-            sum.offset += factor * part.offset;
-            for (sum, mu) in sum.weights.iter_mut().zip(&part.weights) {
-                *sum += factor * mu;
-            }
-        }
-        sum
+        Ok(LoadPart::sum(&self.parts, &self.factors(load)?))
     }
 }

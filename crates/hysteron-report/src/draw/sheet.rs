@@ -4,7 +4,6 @@ use super::canvas::{Anchor, Canvas, Rect};
 use super::marker::Marker;
 use super::style::{AXIS, FAINT, LABEL, Stroke, TITLE};
 use super::text;
-use crate::figure::Figure;
 
 /// Space around everything.
 pub(crate) const MARGIN: f64 = 14.0;
@@ -37,9 +36,9 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet `width` pixels wide with its title and, at the right, a note.
-    pub(crate) fn new(figure: Figure, width: f64, title: &str, note: Option<&str>) -> Self {
-        let mut canvas = Canvas::new(figure.stem());
+    /// A sheet `width` pixels wide with its title and, at the right, a note; its ids begin with `stem`.
+    pub(crate) fn new(stem: &'static str, width: f64, title: &str, note: Option<&str>) -> Self {
+        let mut canvas = Canvas::new(stem);
         let baseline = MARGIN + 0.8 * TITLE;
         let mut room = width - 2.0 * MARGIN;
         if let Some(note) = note {

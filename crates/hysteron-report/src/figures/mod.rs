@@ -3,10 +3,13 @@
 mod close_up;
 mod discrepancy;
 mod evolution;
+mod excitation_map;
 mod loops;
 mod over_time;
 mod weights_map;
 mod weights_plane;
+
+pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
 
@@ -32,7 +35,12 @@ pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
 
 /// The empty sheet of a figure.
 fn sheet(figure: Figure, view: &View<'_>, width: f64) -> Sheet {
-    Sheet::new(figure, width, &captions::title(figure, view), view.note())
+    Sheet::new(
+        figure.stem(),
+        width,
+        &captions::title(figure, view),
+        view.note(),
+    )
 }
 
 /// The finished figure with its caption as spoken text.

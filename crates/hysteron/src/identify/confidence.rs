@@ -1,26 +1,260 @@
-//! What the data say of the weights, and what not.
+//! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
+//! the output.
 
-use super::Watch;
+use super::excitation::{Excitation, excitation};
+use super::pivoting;
 use super::problem::{Fitted, Problem};
-use crate::Result;
+use super::solve::NormalEquations;
+use super::{Solver, Watch, nnls};
+use crate::{LoadPart, Result};
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+/// With fewer branches than this, parts of branches take their place.
+const ENOUGH_BRANCHES: usize = 16;
+
+/// Part of the variance that factors keep, and how many there are at most.
+const KEPT: f64 = 0.99;
+const FACTORS: usize = 12;
+
+/// Eigenvalues below this part of the largest are what rounding leaves of zero.
+const ROUNDING: f64 = 1e-12;
 
 /// What the data say of the weights, and what not.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct Confidence {
     /// Branches of the input.
     pub branches: usize,
+    /// How many combinations of weights (and initial states, where these are unknown) the data determine at all.
+    pub rank: usize,
+    /// How many there are.
+    pub unknowns: usize,
+    /// Ratio of the best to the worst determined of them, singular values of the centred regressor.
+    pub condition: f64,
+    /// Standard deviation of what the model leaves, in the output's unit.
+    pub noise: f64,
+    /// Replicates of the bootstrap.
+    pub replicates: usize,
+    /// What the input says of each operator, in the order of the weights.
+    pub excitation: Vec<Excitation>,
+    /// Standard error of each weight, in the output's unit; with a load, at the middle of its range.
+    pub standard_error: Vec<f64>,
+    /// Standard error of the offset.
+    pub offset_error: f64,
+    /// The main joint deviations of offset and weights, each one standard deviation long.
+    pub factors: Vec<LoadPart>,
 }
 
-/// x
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Factor {
-    /// x
-    pub offset: f64,
+impl Confidence {
+    /// How many operators are in a class.
+    #[must_use]
+    pub fn count(&self, class: Excitation) -> usize {
+        self.excitation.iter().filter(|e| **e == class).count()
+    }
 }
 
-pub(super) fn of(problem: &Problem, _fitted: &Fitted, _watch: Watch<'_>) -> Result<Confidence> {
-    Ok(Confidence {
-        branches: problem.experiment.branches(),
-    })
+/// Half the width of a 95 % interval in standard errors of a normal distribution.
+pub const INTERVAL: f64 = 1.959_963_984_540_054;
+
+/// By a wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008): what the fit leaves is put back with the
+/// sign of whole branches turned at random, and fitted again. Errors that are alike along a branch, as those of
+/// a model are, then count as what they are. `None` without replicates.
+pub(super) fn of(
+    problem: &Problem,
+    fitted: &Fitted,
+    watch: Watch<'_>,
+) -> Result<Option<Confidence>> {
+    let options = &problem.options;
+    if options.bootstrap == 0 {
+        return Ok(None);
+    }
+    let experiment = &problem.experiment;
+    watch("confidence", 0.0)?;
+    let free = problem.free(None)?;
+    let equations = NormalEquations::new(
+        &problem.regressor,
+        experiment,
+        &free,
+        None,
+        options.smooth,
+        watch,
+    )?;
+    let (rank, condition) = match options.smooth > 0.0 {
+        true => rank(&NormalEquations::new(
+            &problem.regressor,
+            experiment,
+            &free,
+            None,
+            0.0,
+            watch,
+        )?),
+        false => rank(&equations),
+    };
+    let factor = match options.solver {
+        Solver::Ols => Some(equations.factor()?),
+        Solver::Nnls => None,
+    };
+    let solution = &fitted.solution;
+    let samples = solution.residual.len() as f64;
+    let used = solution.x.iter().filter(|x| **x != 0.0).count() + solution.free.len();
+    // Fitted residuals are smaller than the errors behind them.
+    let left = (samples - used.min(rank + solution.free.len()) as f64).max(1.0);
+    let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
+
+    let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
+    let inflated = (samples / left).sqrt();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let replicates: Vec<LoadPart> = (0..options.bootstrap)
+        .into_par_iter()
+        .map(|seed| {
+            let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            watch("confidence", count as f64 / options.bootstrap as f64)?;
+            let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
+            let signs: Vec<f64> = (0..units)
+                .map(|_| {
+                    if rng.next_u32() & 1 == 1 {
+                        inflated
+                    } else {
+                        -inflated
+                    }
+                })
+                .collect();
+            let turned = solution.residual.iter().zip(&unit);
+            let mut noise: Vec<f64> = turned
+                .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
+                .collect();
+            let moved = free.take_off(&mut noise);
+            let x = replicate(&equations, factor.as_ref(), problem, &solution.x, &noise)?;
+            // The free columns follow: those of the noise, and what the columns leave to them.
+            let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
+            let mut left = problem.regressor.forward(experiment, &difference)?;
+            let taken = free.take_off(&mut left);
+            let free_values: Vec<f64> = (0..moved.len())
+                .map(|n| solution.free[n] + moved[n] - taken[n])
+                .collect();
+            Ok(problem.at_middle(&x, &free_values, fitted.sign))
+        })
+        .collect::<Result<_>>()?;
+    let (standard, factors) = spread(&replicates);
+    let inputs: Vec<&[f64]> = experiment
+        .recordings
+        .iter()
+        .map(|range| &experiment.input[range.clone()])
+        .collect();
+    Ok(Some(Confidence {
+        branches: experiment.branches(),
+        rank,
+        unknowns: solution.x.len(),
+        condition,
+        noise: (squares / left).sqrt(),
+        replicates: options.bootstrap,
+        excitation: excitation(&inputs, *problem.regressor.plane(), options.operator)?,
+        standard_error: standard.weights,
+        offset_error: standard.offset,
+        factors,
+    }))
+}
+
+/// Columns for the fitted output with `noise` on it, free columns taken off.
+fn replicate(
+    equations: &NormalEquations<'_>,
+    factor: Option<&Llt<f64>>,
+    problem: &Problem,
+    x: &[f64],
+    noise: &[f64],
+) -> Result<Vec<f64>> {
+    let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
+    let mut right = equations.times(x);
+    // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
+    right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
+    if let Some(factor) = factor {
+        let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
+        return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
+    }
+    let (mut x, exact) = match problem.options.smooth > 0.0 {
+        true => pivoting::minimum(&equations.matrix, &right, x),
+        false => (x.to_vec(), false),
+    };
+    if !exact {
+        nnls::solve(&equations.matrix, &right, &mut x, &|_, _| Ok(()))?;
+    }
+    Ok(x)
+}
+
+/// Rank of the centred regressor, and the ratio of its largest to its smallest singular value.
+fn rank(equations: &NormalEquations<'_>) -> (usize, f64) {
+    let count = equations.matrix.len().isqrt();
+    let element = |i: usize, j: usize| equations.matrix[i * count + j];
+    let matrix = Mat::from_fn(count, count, element);
+    let Ok(values) = matrix.self_adjoint_eigenvalues(Side::Lower) else {
+        return (0, f64::MAX);
+    };
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let above: Vec<f64> = values
+        .into_iter()
+        .map(|value| value - equations.ridge)
+        .filter(|value| *value > ROUNDING * largest)
+        .collect();
+    let smallest = above.iter().copied().fold(f64::INFINITY, f64::min);
+    let condition = if above.is_empty() {
+        1.0
+    } else {
+        (largest / smallest).sqrt()
+    };
+    (above.len(), condition)
+}
+
+/// Standard deviations of the replicates, and their main joint deviations (principal components).
+fn spread(replicates: &[LoadPart]) -> (LoadPart, Vec<LoadPart>) {
+    let count = replicates[0].weights.len() + 1;
+    let value = |part: &LoadPart, n: usize| match n {
+        0 => part.offset,
+        n => part.weights[n - 1],
+    };
+    let many = replicates.len() as f64;
+    let mean: Vec<f64> = (0..count)
+        .map(|n| replicates.iter().map(|r| value(r, n)).sum::<f64>() / many)
+        .collect();
+    let scale = 1.0 / (many - 1.0).max(1.0).sqrt();
+    let deviation = |r: usize, n: usize| scale * (value(&replicates[r], n) - mean[n]);
+    let part = |values: &dyn Fn(usize) -> f64| LoadPart {
+        offset: values(0),
+        weights: (1..count).map(values).collect(),
+    };
+    let variance =
+        |n: usize| -> f64 { (0..replicates.len()).map(|r| deviation(r, n).powi(2)).sum() };
+    let standard = part(&|n| variance(n).sqrt());
+    let matrix = Mat::from_fn(count, replicates.len(), |n, r| deviation(r, n));
+    let Ok(svd) = matrix.thin_svd() else {
+        return (standard, Vec::new());
+    };
+    let sizes: Vec<f64> = (0..svd.S().column_vector().nrows())
+        .map(|k| svd.S().column_vector()[k])
+        .collect();
+    let total: f64 = sizes.iter().map(|s| s * s).sum();
+    let mut kept = 0.0;
+    let mut factors = Vec::new();
+    for (k, size) in sizes.iter().enumerate().take(FACTORS) {
+        if total == 0.0 || kept >= KEPT * total {
+            break;
+        }
+        kept += size * size;
+        factors.push(part(&|n| size * svd.U()[(n, k)]));
+    }
+    // What is left out is spread over those that are kept, so that the band is not too narrow.
+    let stretch = if kept > 0.0 {
+        (total / kept).sqrt()
+    } else {
+        1.0
+    };
+    for factor in &mut factors {
+        factor.offset *= stretch;
+        factor.weights.iter_mut().for_each(|mu| *mu *= stretch);
+    }
+    (standard, factors)
 }

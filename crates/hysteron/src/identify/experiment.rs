@@ -110,6 +110,47 @@ impl Experiment {
         self.branch.last().map_or(0, |last| last + 1)
     }
 
+    /// For each sample kept the unit that it stands or falls with: its branch, or, where there are fewer
+    /// than `enough` branches, a part of one, twice as many at least; how many units there are; and whether they are whole branches.
+    pub(super) fn units(
+        &self,
+        kept: Option<&[f64]>,
+        enough: usize,
+    ) -> (Vec<Option<usize>>, usize, bool) {
+        let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
+        let mut unit = vec![None; self.input.len()];
+        let (mut units, mut last) = (0, None);
+        for (n, &branch) in self.branch.iter().enumerate() {
+            if is_kept(n) {
+                units += usize::from(last != Some(branch));
+                last = Some(branch);
+                unit[n] = Some(units - 1);
+            }
+        }
+        if units >= enough {
+            return (unit, units, true);
+        }
+        let parts = (2 * enough).div_ceil(units.max(1));
+        // By travel of the input, not by samples: these may rest.
+        let mut travel = vec![0.0; units];
+        let mut at = vec![0.0; unit.len()];
+        for n in 0..unit.len() {
+            if let Some(u) = unit[n] {
+                if n > 0 && unit[n - 1] == Some(u) {
+                    travel[u] += (self.input[n] - self.input[n - 1]).abs();
+                }
+                at[n] = travel[u];
+            }
+        }
+        for (unit, at) in unit.iter_mut().zip(at) {
+            if let Some(u) = unit {
+                let part = (parts as f64 * at / travel[*u].max(f64::MIN_POSITIVE)) as usize;
+                *u = *u * parts + part.min(parts - 1);
+            }
+        }
+        (unit, units * parts, false)
+    }
+
     /// The plane of the options, from the range of all inputs where they leave it open.
     pub(super) fn plane(&self, recordings: &[Recording], options: &FitOptions) -> Result<Plane> {
         check_range(recordings, &self.output, |r| &r.output_quantity.name)?;

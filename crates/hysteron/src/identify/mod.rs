@@ -2,6 +2,7 @@
 
 mod cholesky;
 mod confidence;
+mod excitation;
 mod experiment;
 mod free;
 mod nnls;
@@ -15,13 +16,15 @@ mod solve;
 mod sparse;
 mod validate;
 
-pub use confidence::{Confidence, Factor};
+pub use confidence::{Confidence, INTERVAL};
+pub(crate) use excitation::Unresolved;
+pub use excitation::{Excitation, excitation};
 pub(crate) use experiment::bernstein;
 pub use experiment::plane_of;
 pub use options::{FitOptions, FitSummary, Solver, Start};
 pub use validate::{Candidates, LeftOut, Score, Validation, cross_validate, left_out};
 
-use crate::{Errors, LoadDependence, LoadPart, Model, Operator, Recording, Result};
+use crate::{Errors, LoadDependence, LoadPart, Model, Recording, Result};
 use problem::Problem;
 
 /// Told, now and then, what is being done and how far it is from 0 to 1; an error it returns ends the work.
@@ -63,32 +66,12 @@ pub fn fit_experiment(
     let fitted = problem.solve(None, watch)?;
     let plane = *problem.regressor.plane();
     let sign = fitted.sign;
-    let parts: Vec<LoadPart> = problem
-        .regressor
-        .weights(&fitted.solution.x)
-        .into_iter()
-        .enumerate()
-        .map(|(part, mut weights)| {
-            let free = fitted.solution.free.get(part);
-            let mut offset = options
-                .offset
-                .unwrap_or(sign.factor() * free.copied().unwrap_or(0.0));
-            if options.operator != Operator::Mkp {
-                // μ γ = (μ/2) (2γ − 1) + μ/2
-                weights.iter_mut().for_each(|mu| *mu *= 0.5);
-                offset += sign.factor() * weights.iter().sum::<f64>();
-            }
-            LoadPart { offset, weights }
-        })
-        .collect();
+    let parts = problem.load_parts(&fitted.solution.x, &fitted.solution.free, sign);
     let first = &recordings[0];
     let load = problem.experiment.load_range.map(|(min, max)| {
         LoadDependence::new(first.load_quantity.clone(), (min, max), parts.clone())
     });
-    let whole = match &load {
-        Some(load) => load.at_middle(),
-        None => parts[0].clone(),
-    };
+    let whole = LoadPart::at_middle(&parts);
     let mut model = Model::new(options.operator, plane, whole.weights, whole.offset, sign)?;
     model.input = first.input_quantity.clone();
     model.output = first.output_quantity.clone();
@@ -121,7 +104,7 @@ pub fn fit_experiment(
         sha256: first.source.as_ref().map(|s| s.sha256.clone()),
         other_files: recordings[1..].iter().filter_map(path).collect(),
         validation: None,
-        confidence: Some(confidence),
+        confidence,
         other: std::collections::BTreeMap::new(),
     });
     Ok(model)

@@ -27,7 +27,10 @@ pub(super) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
         let mut gradient = b.to_vec();
         for (&n, value) in members.iter().zip(&values) {
             let row = &a[n * count..(n + 1) * count];
-            gradient.iter_mut().zip(row).for_each(|(g, a)| *g -= a * value);
+            gradient
+                .iter_mut()
+                .zip(row)
+                .for_each(|(g, a)| *g -= a * value);
         }
         let slack = 1e-12 * b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
         let wrong_below = (0..count).filter(|&n| !above[n] && gradient[n] > slack);

@@ -5,7 +5,7 @@ use super::free::FreeColumns;
 use super::regressor::Regressor;
 use super::solve::{NormalEquations, STEPS, Solution};
 use super::{FitOptions, Solver, Start, Watch};
-use crate::{Error, Recording, Result, Sign};
+use crate::{Error, LoadPart, Operator, Recording, Result, Sign};
 
 /// Most memory that the Gram matrix may take.
 const GRAM_BYTES: u128 = 4 << 30;
@@ -32,23 +32,12 @@ impl Problem {
             ));
         }
         let plane = experiment.plane(recordings, options)?;
-        let columns = plane.operators() as u128
-            * experiment.parts.len() as u128
-            * if options.start == Start::Unknown {
-                2
-            } else {
-                1
-            };
-        let bytes = 8 * columns.pow(2);
-        if bytes > GRAM_BYTES {
-            return Err(Error::Fit(format!(
-                "{} levels are {} operators, whose Gram matrix takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
-                plane.levels(),
-                plane.operators(),
-                bytes as f64 / f64::from(1 << 30),
-                GRAM_BYTES >> 30
-            )));
-        }
+        let sides = if options.start == Start::Unknown {
+            2
+        } else {
+            1
+        };
+        check_gram(plane.operators() * experiment.parts.len() * sides)?;
         let regressor = Regressor::new(plane, options.operator, &experiment, options.start)?;
         Ok(Self {
             experiment,
@@ -81,6 +70,27 @@ impl Problem {
                 .for_each(|(y, z)| *y += value * z);
         }
         Ok(output)
+    }
+
+    /// Offset and weights for each function of the load, from states in `[0, 1]` to the operator's own outputs.
+    pub(super) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
+        let weights = self.regressor.weights(x).into_iter().enumerate();
+        let part = |(part, mut weights): (usize, Vec<f64>)| {
+            let identified = sign.factor() * free.get(part).copied().unwrap_or(0.0);
+            let mut offset = self.options.offset.unwrap_or(identified);
+            if self.options.operator != Operator::Mkp {
+                // μ γ = (μ/2) (2γ − 1) + μ/2
+                weights.iter_mut().for_each(|mu| *mu *= 0.5);
+                offset += sign.factor() * weights.iter().sum::<f64>();
+            }
+            LoadPart { offset, weights }
+        };
+        weights.map(part).collect()
+    }
+
+    /// Offset and weights, with a load those at the middle of its range.
+    pub(super) fn at_middle(&self, x: &[f64], free: &[f64], sign: Sign) -> LoadPart {
+        LoadPart::at_middle(&self.load_parts(x, free, sign))
     }
 
     /// The best weights over the samples kept (all where `None`).
@@ -142,6 +152,19 @@ impl Problem {
         }
         Ok(fitted)
     }
+}
+
+/// That the Gram matrix of so many columns can be had.
+pub(super) fn check_gram(columns: usize) -> Result<()> {
+    let bytes = 8 * (columns as u128).pow(2);
+    if bytes <= GRAM_BYTES {
+        return Ok(());
+    }
+    Err(Error::Fit(format!(
+        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
+        bytes as f64 / f64::from(1 << 30),
+        GRAM_BYTES >> 30
+    )))
 }
 
 fn check(options: &FitOptions) -> Result<()> {

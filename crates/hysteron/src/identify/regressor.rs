@@ -133,16 +133,6 @@ impl Regressor {
         weights
     }
 
-    /// The share of `weights` that starts on in recording `s`.
-    pub(super) fn started_on(&self, x: &[f64], s: usize) -> Vec<f64> {
-        let mut weights = vec![0.0; self.form.operators()];
-        let on = |(c, _): &(&Column, &f64)| c.from(s) == From::On;
-        for (column, x) in self.columns.iter().zip(x).filter(on) {
-            weights[column.operator] += x;
-        }
-        weights
-    }
-
     /// `A x` at every sample.
     pub(super) fn forward(&self, experiment: &Experiment, x: &[f64]) -> Result<Vec<f64>> {
         let mut output = vec![0.0; experiment.input.len()];

@@ -11,7 +11,7 @@ use super::regressor::Regressor;
 use super::smoothness::Smoothness;
 use super::{Solver, Watch, nnls, pivoting};
 use crate::Result;
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
 /// Ridge relative to the mean of the Gram matrix' diagonal: small beside singular values that matter,
@@ -114,11 +114,7 @@ impl<'a> NormalEquations<'a> {
     ) -> Result<Solution> {
         let count = self.regressor.columns().len();
         let full = match solver {
-            Solver::Ols => {
-                let element = |i: usize, j: usize| self.matrix[i * count + j];
-                let matrix = Mat::from_fn(count, count, element);
-                Some(matrix.llt(Side::Lower).map_err(|_| nnls::not_definite())?)
-            }
+            Solver::Ols => Some(self.factor()?),
             Solver::Nnls => None,
         };
         let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
@@ -156,6 +152,14 @@ impl<'a> NormalEquations<'a> {
             }
         }
         Ok(best)
+    }
+
+    /// The factor of the whole matrix, for weights of either sign.
+    pub(super) fn factor(&self) -> Result<Llt<f64>> {
+        let count = self.regressor.columns().len();
+        let element = |i: usize, j: usize| self.matrix[i * count + j];
+        let matrix = Mat::from_fn(count, count, element);
+        matrix.llt(Side::Lower).map_err(|_| nnls::not_definite())
     }
 
     /// What `x` leaves of `target`, with the best free columns taken off.

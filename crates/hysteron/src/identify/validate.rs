@@ -9,17 +9,14 @@ use crate::{Recording, Result, Solver};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Folds at most.
+/// Folds that errors are told of.
 const FOLDS: usize = 5;
 
-/// x
+/// Folds that a choice is made with.
 const INNER: usize = 10;
 
 /// With fewer branches than this, parts of branches are left out instead.
 const ENOUGH_BRANCHES: usize = 4;
-
-/// How many parts there are then at least.
-const PARTS: usize = 8;
 
 /// What to choose from.
 #[derive(Debug, Clone, PartialEq)]
@@ -181,7 +178,9 @@ fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
     };
     let chosen = (0..scores.len()).filter(as_good).min_by(|a, b| {
         let (a, b) = (scores[*a], scores[*b]);
-        b.smooth.total_cmp(&a.smooth).then(a.rmse.total_cmp(&b.rmse))
+        b.smooth
+            .total_cmp(&a.smooth)
+            .then(a.rmse.total_cmp(&b.rmse))
     });
     chosen.map(|n| scores[n])
 }
@@ -189,42 +188,7 @@ fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
 /// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the folds
 /// are of whole branches.
 fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) {
-    let experiment = &problem.experiment;
-    let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
-    let mut unit = vec![None; experiment.input.len()];
-    let (mut units, mut last) = (0, None);
-    for (n, &branch) in experiment.branch.iter().enumerate() {
-        if is_kept(n) {
-            if last.is_some_and(|last| last != branch) {
-                units += 1;
-            }
-            last = Some(branch);
-            unit[n] = Some(units);
-        }
-    }
-    units += 1;
-    let whole = units >= ENOUGH_BRANCHES;
-    if !whole {
-        // Parts of equal travel, as far as samples allow.
-        let parts = PARTS.div_ceil(units);
-        let mut travel = vec![0.0; units];
-        let mut at = vec![0.0; unit.len()];
-        for n in 0..unit.len() {
-            if let Some(u) = unit[n] {
-                if n > 0 && unit[n - 1] == Some(u) {
-                    travel[u] += (experiment.input[n] - experiment.input[n - 1]).abs();
-                }
-                at[n] = travel[u];
-            }
-        }
-        for (unit, at) in unit.iter_mut().zip(at) {
-            if let Some(u) = unit {
-                let part = (parts as f64 * at / travel[*u].max(f64::MIN_POSITIVE)) as usize;
-                *u = *u * parts + part.min(parts - 1);
-            }
-        }
-        units *= parts;
-    }
+    let (unit, units, whole) = problem.experiment.units(kept, ENOUGH_BRANCHES);
     let count = units.min(INNER);
     let folds = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
     (folds, whole)

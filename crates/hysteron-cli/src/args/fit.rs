@@ -1,0 +1,125 @@
+//! Options of `fit` and `prepare`.
+
+use super::value::*;
+use super::{Json, Repair};
+use clap::Args;
+use hysteron::Step;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(crate) struct Fit {
+    /// The recording; several are one experiment, each from its own initial state
+    #[arg(required = true, value_name = "DATA")]
+    pub(crate) data: Vec<PathBuf>,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Number of levels K of the plane; it has K(K+1)/2 operators. `auto` chooses it by the error on
+    /// branches left out
+    #[arg(long, value_name = "K", default_value = "20", value_parser = parse_levels_or_auto)]
+    pub(crate) levels: Levels,
+    /// Strength of the smoothness across the plane, 1e-9 to 1e-4 as a rule; `auto` chooses it as the levels
+    #[arg(long, value_name = "STRENGTH", default_value = "off", value_parser = parse_step)]
+    pub(crate) smooth: Step,
+    /// Where the operators stand before the first sample
+    #[arg(long, value_enum, default_value = "off")]
+    pub(crate) start: Start,
+    /// Column of the load or stress: the weights become a function of it
+    #[arg(long, value_name = "COL")]
+    pub(crate) load: Option<String>,
+    /// Order of that function
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "load")]
+    pub(crate) load_degree: usize,
+    /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45 levels on 0]
+    #[arg(long, value_name = "N")]
+    pub(crate) bootstrap: Option<usize>,
+    /// Lowest and highest level [default: so that the active range is that of the input]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: Option<(f64, f64)>,
+    /// Elementary operator
+    #[arg(long, value_enum, default_value = "mkp")]
+    pub(crate) operator: Operator,
+    /// How the weights are found
+    #[arg(long, value_enum, default_value = "nnls")]
+    pub(crate) solver: Solver,
+    /// Direction of the output
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) sign: Sign,
+    /// Output with every operator off [default: identified]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
+    pub(crate) offset: Option<f64>,
+    /// Unit of the input [default: from a header like `temperature [degC]`]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) input_unit: Option<String>,
+    /// Unit of the output
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) output_unit: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    #[command(flatten)]
+    pub(crate) prepare: PrepareBeforeFit,
+    /// Where the model goes
+    #[arg(short, value_name = "MODEL")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Prepare {
+    /// The recording
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time in seconds
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    #[command(flatten)]
+    pub(crate) steps: Steps,
+    /// Where the prepared recording goes
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct PrepareBeforeFit {
+    /// Column of time in seconds, for the preparation and the warning that loops depend on rate
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named
+    #[arg(long)]
+    pub(crate) prepare: bool,
+    #[command(flatten)]
+    pub(crate) steps: Steps,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Preparation")]
+pub(crate) struct Steps {
+    /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations make a spike
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) spikes: Option<Step>,
+    /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the step in s
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) resample: Option<Step>,
+    /// Zero-phase low-pass: `auto` (as far as the noise goes), `off`, or the cut-off in Hz, without time in cycles a sample
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) low_pass: Option<Step>,
+    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend on rate), `off` or its time constant in s [default: off]
+    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    pub(crate) lag: Option<Step>,
+    /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches), `off`, or the band in its unit
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) band: Option<Step>,
+}

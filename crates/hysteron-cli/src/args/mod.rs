@@ -1,0 +1,229 @@
+//! The command line: its forms, defaults and help.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+mod fit;
+mod value;
+
+pub(crate) use fit::*;
+pub(crate) use value::*;
+
+/// Hysteresis models of actuators: from a recording to a model and its exact inverse.
+#[derive(Parser)]
+#[command(
+    name = "hysteron",
+    version,
+    arg_required_else_help = true,
+    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs; decimal points or commas;\n\
+                  a row of units; # and % comments), Parquet, or MATLAB files (v5, v7, v7.3). `-` reads CSV from standard input.\n\
+                  Exit codes: 0 done, 1 the work failed, 2 wrong usage."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Identify a model from a recording
+    #[command(
+        after_help = "Example:\n  hysteron fit run1.csv --input temperature --output displacement -o spring.json"
+    )]
+    Fit(Fit),
+    /// Ready a recording for a fit: spikes, noise, a sensor's lag, false reversals
+    #[command(
+        after_help = "Example:\n  hysteron prepare run1.csv --input temperature --output displacement --time time -o clean.csv"
+    )]
+    Prepare(Prepare),
+    /// Run a model over an input: adds the column `output_model`
+    #[command(
+        after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
+    )]
+    Simulate(Simulate),
+    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low, high)
+    #[command(
+        after_help = "Example:\n  hysteron invert spring.json wanted.csv --target displacement -o inputs.csv"
+    )]
+    Invert(Invert),
+    /// Judge a model on a recording: forward and inverse errors, and a report
+    #[command(
+        after_help = "Example:\n  hysteron evaluate spring.json run2.csv --input temperature --output displacement --report report"
+    )]
+    Evaluate(Evaluate),
+    /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
+    #[command(
+        after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"
+    )]
+    Inspect(Inspect),
+    /// Plan a recording: the input profile that determines every operator in the shortest time
+    #[command(
+        after_help = "Examples:\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 -o profile.csv\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv"
+    )]
+    Design(Design),
+    /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
+    #[command(after_help = "Example:\n  hysteron demo -o demo")]
+    Demo(Demo),
+}
+
+#[derive(Args)]
+pub(crate) struct Json {
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Repair {
+    /// Drop rows without a number, sort times that go back, merge repeated ones, and tell of it
+    #[arg(long)]
+    repair: bool,
+}
+
+impl From<&Repair> for hysteron::Repair {
+    fn from(args: &Repair) -> Self {
+        match args.repair {
+            true => Self::Mend,
+            false => Self::Refuse,
+        }
+    }
+}
+
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// A table with the input
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Where the table goes [default: standard output; with --json nowhere]
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Invert {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// A table with the wanted output
+    pub(crate) data: PathBuf,
+    /// Column of the wanted output
+    #[arg(long, value_name = "COL")]
+    pub(crate) target: String,
+    /// What the input does while the target stands still
+    #[arg(long, value_enum, default_value = "hold")]
+    pub(crate) policy: Policy,
+    /// Reversals of the target up to this size are noise and not followed, in its unit
+    /// [default: 0 with `hold`, 1 % of the model's range with `anticipate`]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_band)]
+    pub(crate) band: Option<f64>,
+    /// With `anticipate`: rows to look ahead for the next reversal
+    #[arg(long, value_name = "N", default_value_t = 65_536)]
+    pub(crate) look_ahead: usize,
+    /// Where the table goes [default: standard output; with --json nowhere]
+    #[arg(short, value_name = "OUT")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Evaluate {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// The recording
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time in seconds, for the report's figures
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    /// Write a page and its figures (SVG, PNG) into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Inspect {
+    /// A recording, or a model (*.json)
+    pub(crate) file: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL", requires = "output")]
+    pub(crate) input: Option<String>,
+    /// Column of the output
+    #[arg(long, value_name = "COL", requires = "input")]
+    pub(crate) output: Option<String>,
+    /// Column of time in seconds
+    #[arg(long, value_name = "COL", requires = "input")]
+    pub(crate) time: Option<String>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    /// Levels of the plane on which excited operators are counted
+    #[arg(long, default_value_t = 20, value_parser = parse_levels)]
+    pub(crate) levels: usize,
+    /// Its lowest and highest level [default: so that the active range is that of the input]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: Option<(f64, f64)>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Design {
+    /// Lowest and highest level of the plane; the profile starts one level below the lowest
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) range: (f64, f64),
+    /// Number of levels K of the plane; it has K(K+1)/2 operators
+    #[arg(long, value_parser = parse_levels)]
+    pub(crate) levels: usize,
+    /// How fast the input can rise, in its unit per second
+    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) heating_rate: f64,
+    /// How fast it can fall
+    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) cooling_rate: f64,
+    /// Longest duration: as many rings as fit, evenly spread [default: all that it takes]
+    #[arg(long, value_name = "MINUTES", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) budget: Option<f64>,
+    /// A recording that exists, repeatable: what it determines is left out
+    #[arg(long, value_name = "RECORDING", requires = "input")]
+    pub(crate) from: Vec<PathBuf>,
+    /// Column of the input in the recordings
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: Option<String>,
+    /// Longest time between samples [default: ten samples a level]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_finite, allow_hyphen_values = true)]
+    pub(crate) step: Option<f64>,
+    /// Elementary operator
+    #[arg(long, value_enum, default_value = "mkp")]
+    pub(crate) operator: Operator,
+    /// Where the profile goes, with the columns `time [s]` and `input`
+    #[arg(short, value_name = "PROFILE")]
+    pub(crate) out: PathBuf,
+    /// Draw the plane with what is known of each operator
+    #[arg(long, value_name = "SVG")]
+    pub(crate) figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Demo {
+    /// Folder for the recordings, the model and the report
+    #[arg(short, value_name = "DIR", default_value = "hysteron-demo")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}

@@ -1,0 +1,122 @@
+//! Values of options: what they may be, and what is said where they are not.
+
+use clap::ValueEnum;
+use hysteron::Step;
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Operator {
+    /// Continuous, from 0 to 1
+    Mkp,
+    /// Continuous, from -1 to +1
+    Kp,
+    /// The classical Preisach relay, -1 or +1
+    Relay,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Solver {
+    /// Weights of zero and above: a monotone model, which has an inverse
+    Nnls,
+    /// Plain least squares: any weights, as a rule without an inverse
+    Ols,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Start {
+    /// All off, as after the lowest input
+    Off,
+    /// All on, as after the highest input
+    On,
+    /// Not known: estimated together with the weights
+    Unknown,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Policy {
+    /// The input rests while the target rests
+    Hold,
+    /// The input crosses the dead band as soon as the target is known to reverse
+    Anticipate,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Sign {
+    /// The better one
+    Auto,
+    /// The output rises with the input
+    Positive,
+    /// The output falls as the input rises, as a strain recovered on heating does
+    Negative,
+}
+
+impl From<Operator> for hysteron::Operator {
+    fn from(operator: Operator) -> Self {
+        match operator {
+            Operator::Mkp => Self::Mkp,
+            Operator::Kp => Self::Kp,
+            Operator::Relay => Self::Relay,
+        }
+    }
+}
+
+/// A number of levels, or the choice of one.
+#[derive(Clone, Copy)]
+pub(crate) enum Levels {
+    Auto,
+    Fixed(usize),
+}
+
+pub(super) fn parse_step(text: &str) -> Result<Step, String> {
+    match text.trim() {
+        "auto" => Ok(Step::Auto),
+        "off" => Ok(Step::Off),
+        number => match parse_finite(number) {
+            Ok(value) if value >= 0.0 => Ok(Step::Value(value)),
+            _ => Err("`auto`, `off` or a number from zero on is needed".into()),
+        },
+    }
+}
+
+pub(super) fn parse_finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{text}` is not a finite number")),
+    }
+}
+
+pub(super) fn parse_band(text: &str) -> Result<f64, String> {
+    let band = parse_finite(text)?;
+    if band < 0.0 {
+        return Err("it must not be below zero".into());
+    }
+    Ok(band)
+}
+
+pub(super) fn parse_levels(text: &str) -> Result<usize, String> {
+    let most = hysteron::MAX_LEVELS;
+    match text.parse() {
+        Ok(levels) if (2..=most).contains(&levels) => Ok(levels),
+        _ => Err(format!("a plane has from 2 to {most} levels")),
+    }
+}
+
+pub(super) fn parse_range(text: &str) -> Result<(f64, f64), String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(parse_finite)
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [min, max] if min < max => Ok((min, max)),
+        [_, _] => Err("the first number must be below the second".into()),
+        _ => Err("two numbers with a comma between are needed, such as 20,80".into()),
+    }
+}
+
+pub(super) fn parse_levels_or_auto(text: &str) -> Result<Levels, String> {
+    match text.trim() {
+        "auto" => Ok(Levels::Auto),
+        number => parse_levels(number)
+            .map(Levels::Fixed)
+            .map_err(|error| format!("{error}; or `auto`")),
+    }
+}

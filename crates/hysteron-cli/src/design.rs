@@ -1,0 +1,161 @@
+//! `hysteron design`
+
+use crate::{Result, args, print, text};
+use hysteron::{
+    AtomicFile, Design, DesignOptions, Excitation, Plane, Quantity, Rates, TableReader,
+};
+use serde_json::{Value, json};
+use std::path::Path;
+
+pub(crate) fn run(args: &args::Design) -> Result<()> {
+    let (min, max) = args.range;
+    let to_stdout = args.out == Path::new("-");
+    if to_stdout && args.json.json {
+        return Err("with --json standard output is for that alone: name a file with -o".into());
+    }
+    let options = DesignOptions {
+        operator: args.operator.into(),
+        budget_s: args.budget.map(|minutes| 60.0 * minutes),
+        step_s: args.step,
+        ..DesignOptions::new(
+            Plane::new(min, max, args.levels)?,
+            Rates {
+                heating: args.heating_rate,
+                cooling: args.cooling_rate,
+            },
+        )
+    };
+    let column = args.input.as_deref().unwrap_or("input");
+    let recorded: Vec<Vec<f64>> = args
+        .from
+        .iter()
+        .map(|path| input_of(path, column))
+        .collect::<Result<_>>()?;
+    let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
+    let design = hysteron::design(&options, &inputs)?;
+    let profile = (!design.legs.is_empty()).then_some(&args.out);
+    if let Some(path) = profile {
+        design.write_csv(path)?;
+    }
+    if let Some(path) = &args.figure {
+        let quantity = Quantity::from_column(column);
+        let svg = hysteron_report::excitation_map(&design.plane, &design.excitation, &quantity);
+        AtomicFile::write_all(path, svg.as_bytes())?;
+    }
+    if args.json.json {
+        return print(&to_json(&design, profile.map(|path| path.as_path())).to_string());
+    }
+    let summary = summary(&design, args);
+    if to_stdout {
+        eprintln!("{summary}");
+        return Ok(());
+    }
+    print(&summary)
+}
+
+fn input_of(path: &Path, column: &str) -> Result<Vec<f64>> {
+    let mut table = TableReader::open(path)?;
+    let column = table.column(column)?;
+    let mut input = Vec::new();
+    while table.advance()? {
+        input.push(table.number(column)?);
+    }
+    Ok(input)
+}
+
+fn counts(classes: &[Excitation]) -> [(Excitation, usize); 4] {
+    Excitation::ALL.map(|class| (class, classes.iter().filter(|c| **c == class).count()))
+}
+
+fn to_json(design: &Design, profile: Option<&Path>) -> Value {
+    let excitation = |classes: &Vec<Excitation>| {
+        let mut object = serde_json::Map::new();
+        for (class, count) in counts(classes) {
+            object.insert(
+                json!(class).as_str().unwrap_or_default().to_owned(),
+                json!(count),
+            );
+        }
+        Value::Object(object)
+    };
+    let legs: Vec<Value> = design
+        .legs
+        .iter()
+        .map(|leg| json!({"from": leg.from, "to": leg.to, "new_corners": leg.new_corners}))
+        .collect();
+    json!({
+        "profile": profile,
+        "samples": design.time.len(),
+        "duration_s": design.duration_s(),
+        "full_duration_s": design.full_duration_s,
+        "plane": {"min": design.plane.min(), "max": design.plane.max(), "levels": design.plane.levels()},
+        "operators": design.plane.operators(),
+        "excitation": excitation(&design.excitation),
+        "recorded": design.recorded.as_ref().map(excitation),
+        "corners": design.corners,
+        "classes": design.excitation,
+        "branches": legs,
+    })
+}
+
+fn summary(design: &Design, args: &args::Design) -> String {
+    let count = design.plane.operators();
+    let minutes = |seconds: f64| format!("{} min", text::number(seconds / 60.0));
+    let mut lines = Vec::new();
+    if let Some(recorded) = &design.recorded {
+        lines.push(format!("recorded so far: {}", classes(recorded)));
+    }
+    if design.legs.is_empty() {
+        lines.push(format!(
+            "nothing is missing: the recordings determine all {count} operators, and no profile was written"
+        ));
+        return lines.join("\n");
+    }
+    lines.push(format!(
+        "{}: {}, {} branches, {} samples",
+        args.out.display(),
+        minutes(design.duration_s()),
+        design.legs.len(),
+        design.time.len()
+    ));
+    lines.push(format!("with it: {}", classes(&design.excitation)));
+    lines.push(format!(
+        "{} of {count} corners of the plane are covered ({:.0} %)",
+        design.corners,
+        100.0 * design.corners as f64 / count as f64
+    ));
+    if design.corners < count {
+        lines.push(format!(
+            "all operators would take {}",
+            minutes(design.full_duration_s)
+        ));
+    }
+    if design.recorded.is_some() {
+        lines.push(format!(
+            "measure next, from {} or below with every operator off:",
+            text::number(design.legs[0].from)
+        ));
+        for leg in &design.legs {
+            let way = if leg.to > leg.from { "rise" } else { "fall" };
+            lines.push(format!(
+                "  {way} from {} to {}{}",
+                text::number(leg.from),
+                text::number(leg.to),
+                match leg.new_corners {
+                    0 => "  (nothing new, leads on)",
+                    _ => "",
+                }
+            ));
+        }
+    }
+    lines.join("\n")
+}
+
+/// How many operators are of each class that there is.
+fn classes(classes: &[Excitation]) -> String {
+    let some = counts(classes).into_iter().filter(|(_, count)| *count > 0);
+    let words: Vec<String> = some
+        .map(|(class, count)| format!("{count} {}", class.words()))
+        .collect();
+    words.join(", ")
+}
