@@ -6,12 +6,21 @@ use hysteron_report::Report;
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
-    let model = Model::read(&args.model)?;
+    let mut model = Model::read(&args.model)?;
+    let load = args.load.as_deref();
+    // A number is a load, anything else a column.
+    let column = match load.map(|load| (load, load.parse::<f64>())) {
+        Some((_, Ok(load))) => {
+            model = model.at_load(load)?;
+            None
+        }
+        other => other.map(|(column, _)| column),
+    };
     let columns = Columns {
         input: &args.input,
         output: &args.output,
         time: args.time.as_deref(),
-        load: None,
+        load: column,
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
     let evaluation = hysteron::evaluate(&model, &recording)?;

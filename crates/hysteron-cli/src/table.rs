@@ -6,7 +6,7 @@ use serde_json::json;
 use std::path::Path;
 
 pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
-    let model = Model::read(&args.model)?;
+    let model = args.load.apply(Model::read(&args.model)?)?;
     let what = ["inputs above the plane", "inputs below its active range"];
     through(
         &args.data,
@@ -18,7 +18,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
 }
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
-    let model = Model::read(&args.model)?;
+    let model = args.load.apply(Model::read(&args.model)?)?;
     let how = match args.policy {
         args::Policy::Hold => hysteron::Invert::Hold {
             band: args.band.unwrap_or(0.0),

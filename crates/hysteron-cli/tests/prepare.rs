@@ -99,7 +99,7 @@ fn a_fit_prepares_when_told_to() {
         let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
         (
             json["fit"]["nrmse_percent"].as_f64().unwrap(),
-            json["preparation"].clone(),
+            json["preparation"][0].clone(),
             text(&done.stderr),
         )
     };

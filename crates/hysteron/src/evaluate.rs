@@ -51,6 +51,7 @@ pub struct InverseRun {
 }
 
 /// Runs `model` forward over the measured input, and its inverse over the measured output, from every operator off.
+/// A model that depends on a load follows that of the recording; its inverse is that of a fixed load, [`Model::at_load`].
 ///
 /// # Errors
 /// [`crate::Error::Recording`] for a recording that cannot be worked with.
@@ -58,8 +59,17 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     recording.check()?;
     let mut output_model = vec![0.0; recording.len()];
     let clipped = model.run(&mut model.start(), &recording.input, &mut output_model)?;
+    if model.load.is_some() {
+        let Some(load) = &recording.load else {
+            return Err(crate::Error::Fit(
+                "the model depends on a load: the recording needs it too, or take the model at one load".into(),
+            ));
+        };
+        output_model = model.simulate_under_load(&recording.input, load)?;
+    }
     let forward = compare(&recording.output, &output_model);
     let inverse = match model.inverse() {
+        _ if model.load.is_some() => Err("the load changes: take the model at one load".into()),
         Ok(inverse) => Ok(evaluate_inverse(model, &inverse, recording)?),
         Err(error) => Err(error.to_string()),
     };

@@ -3,7 +3,7 @@
 use crate::identify::FitSummary;
 use crate::output::AtomicFile;
 use crate::recording::Quantity;
-use crate::{Error, Model, Operator, Plane, Result, Sign};
+use crate::{Error, LoadDependence, LoadPart, Model, Operator, Plane, Result, Sign};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -22,6 +22,8 @@ struct File {
     #[serde(default)]
     output: OutputEntry,
     weights: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    load: Option<LoadEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fit: Option<FitSummary>,
 }
@@ -68,6 +70,20 @@ struct OutputEntry {
     unit: Option<String>,
     offset: f64,
     sign: i64,
+}
+
+/// Weights that depend on a load: `weights` and `offset` above are then those at the middle of its range.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+struct LoadEntry {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    min: f64,
+    max: f64,
+    /// For each Bernstein polynomial, from the smallest load on.
+    parts: Vec<LoadPart>,
 }
 
 impl Default for OutputEntry {
@@ -162,6 +178,7 @@ impl Model {
         if let Some(name) = file.output.name {
             model.output.name = name;
         }
+        model.load = file.load.map(|entry| entry.into_load(&model)).transpose()?;
         model.fit = file.fit;
         Ok(model)
     }
@@ -197,6 +214,7 @@ impl Model {
                 sign: self.sign().factor() as i64,
             },
             weights: self.weights().to_vec(),
+            load: self.load.as_ref().map(LoadEntry::of),
             fit: self.fit.clone(),
         };
         // Numbers and strings only: there is nothing that JSON cannot hold.
@@ -209,6 +227,48 @@ impl Model {
     /// [`Error::File`].
     pub fn write(&self, path: &Path) -> Result<()> {
         AtomicFile::write_all(path, self.to_json().as_bytes())
+    }
+}
+
+impl LoadEntry {
+    fn of(load: &LoadDependence) -> Self {
+        let (min, max) = load.range();
+        Self {
+            name: Some(load.quantity.name.clone()),
+            unit: load.quantity.unit.clone(),
+            min,
+            max,
+            parts: load.parts().to_vec(),
+        }
+    }
+
+    fn into_load(self, model: &Model) -> Result<LoadDependence> {
+        let (min, max) = (self.min, self.max);
+        if !(min.is_finite() && max.is_finite() && min < max) {
+            let problem = format!("the range {min} to {max} is not finite and in order");
+            return Err(fault("load", problem));
+        }
+        if self.parts.is_empty() {
+            return Err(fault("load.parts", "there are none".into()));
+        }
+        for (n, part) in self.parts.iter().enumerate() {
+            // What holds for the model's own weights holds for each part's.
+            let (operator, plane) = (model.operator(), *model.plane());
+            Model::new(
+                operator,
+                plane,
+                part.weights.clone(),
+                part.offset,
+                model.sign(),
+            )
+            .map_err(|error| fault(&format!("load.parts[{n}]"), error.to_string()))?;
+        }
+        let name = self.name.unwrap_or_else(|| "load".into());
+        let quantity = Quantity {
+            name,
+            unit: self.unit,
+        };
+        Ok(LoadDependence::new(quantity, (min, max), self.parts))
     }
 }
 

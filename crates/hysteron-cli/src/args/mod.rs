@@ -90,6 +90,31 @@ impl From<&Repair> for hysteron::Repair {
 }
 
 #[derive(Args)]
+pub(crate) struct Load {
+    /// For a model that depends on a load: the load to take it at
+    #[arg(long, value_name = "LOAD", value_parser = parse_finite, allow_hyphen_values = true)]
+    load: Option<f64>,
+}
+
+impl Load {
+    /// The model at that load.
+    pub(crate) fn apply(&self, model: hysteron::Model) -> crate::Result<hysteron::Model> {
+        match (self.load, &model.load) {
+            (Some(load), _) => Ok(model.at_load(load)?),
+            (None, None) => Ok(model),
+            (None, Some(dependence)) => {
+                let (low, high) = dependence.range();
+                let name = &dependence.quantity.name;
+                Err(format!(
+                    "the model depends on `{name}`, from {low} to {high}: name one with --load"
+                )
+                .into())
+            }
+        }
+    }
+}
+
+#[derive(Args)]
 pub(crate) struct Simulate {
     /// The model
     pub(crate) model: PathBuf,
@@ -98,6 +123,8 @@ pub(crate) struct Simulate {
     /// Column of the input
     #[arg(long, value_name = "COL")]
     pub(crate) input: String,
+    #[command(flatten)]
+    pub(crate) load: Load,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
@@ -124,6 +151,8 @@ pub(crate) struct Invert {
     /// With `anticipate`: rows to look ahead for the next reversal
     #[arg(long, value_name = "N", default_value_t = 65_536)]
     pub(crate) look_ahead: usize,
+    #[command(flatten)]
+    pub(crate) load: Load,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
@@ -146,6 +175,9 @@ pub(crate) struct Evaluate {
     /// Column of time in seconds, for the report's figures
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
+    /// For a model that depends on a load: the load to take it at, or the recording's column of it
+    #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
+    pub(crate) load: Option<String>,
     #[command(flatten)]
     pub(crate) repair: Repair,
     /// Write a page and its figures (SVG, PNG) into this folder
