@@ -17,6 +17,9 @@ use serde::{Deserialize, Serialize};
 /// With fewer branches than this, parts of branches take their place.
 const ENOUGH_BRANCHES: usize = 16;
 
+/// Most fits that leave something out: of more units, several are left out together.
+const GROUPS: usize = 40;
+
 /// Part of the variance that factors keep, and how many there are at most.
 const KEPT: f64 = 0.99;
 const FACTORS: usize = 12;
@@ -107,7 +110,7 @@ pub(super) fn of(
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
     let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
-    let inflated = (samples / left).sqrt();
+    let errors = left_out_errors(problem, fitted, &unit, units, watch)?;
     let done = std::sync::atomic::AtomicUsize::new(0);
     let replicates: Vec<LoadPart> = (0..options.bootstrap)
         .into_par_iter()
@@ -116,15 +119,9 @@ pub(super) fn of(
             watch("confidence", count as f64 / options.bootstrap as f64)?;
             let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
             let signs: Vec<f64> = (0..units)
-                .map(|_| {
-                    if rng.next_u32() & 1 == 1 {
-                        inflated
-                    } else {
-                        -inflated
-                    }
-                })
+                .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
                 .collect();
-            let turned = solution.residual.iter().zip(&unit);
+            let turned = errors.iter().zip(&unit);
             let mut noise: Vec<f64> = turned
                 .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
                 .collect();
@@ -140,7 +137,10 @@ pub(super) fn of(
             Ok(problem.at_middle(&x, &free_values, fitted.sign))
         })
         .collect::<Result<_>>()?;
-    let (standard, factors) = spread(&replicates);
+    let (standard, factors) = spread(
+        &replicates,
+        &problem.at_middle(&solution.x, &solution.free, fitted.sign),
+    );
     let inputs: Vec<&[f64]> = experiment
         .recordings
         .iter()
@@ -158,6 +158,50 @@ pub(super) fn of(
         offset_error: standard.offset,
         factors,
     }))
+}
+
+/// The error at each sample of a fit without its unit. A fit bends towards each branch, the more the fewer others
+/// speak of the same weights; these errors do not (the residuals of MacKinnon, Nielsen and Webb 2023).
+fn left_out_errors(
+    problem: &Problem,
+    fitted: &Fitted,
+    unit: &[Option<usize>],
+    units: usize,
+    watch: Watch<'_>,
+) -> Result<Vec<f64>> {
+    let groups = units.min(GROUPS);
+    let target = problem.target(fitted.sign);
+    let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
+        watch("confidence", 0.0)?;
+        let inside = |n: &usize| unit[*n].is_some_and(|unit| unit % groups == group);
+        let kept: Vec<f64> = (0..unit.len()).map(|n| f64::from(!inside(&n))).collect();
+        let free = problem.free(Some(&kept))?;
+        let equations = NormalEquations::new(
+            &problem.regressor,
+            &problem.experiment,
+            &free,
+            Some(&kept),
+            problem.options.smooth,
+            &|_, _| Ok(()),
+        )?;
+        let start = Some(&fitted.solution.x[..]);
+        let solution =
+            equations.solve(&target, problem.options.solver, start, 1, &|_, _| Ok(()))?;
+        let predicted = problem.predict(&solution)?;
+        let errors = (0..unit.len())
+            .filter(inside)
+            .map(|n| (n, target[n] - predicted[n]));
+        Ok(errors.collect())
+    };
+    let all: Vec<Vec<(usize, f64)>> = (0..groups)
+        .into_par_iter()
+        .map(of_group)
+        .collect::<Result<_>>()?;
+    let mut errors = vec![0.0; unit.len()];
+    for (n, error) in all.into_iter().flatten() {
+        errors[n] = error;
+    }
+    Ok(errors)
 }
 
 /// Columns for the fitted output with `noise` on it, free columns taken off.
@@ -209,19 +253,17 @@ fn rank(equations: &NormalEquations<'_>) -> (usize, f64) {
     (above.len(), condition)
 }
 
-/// Standard deviations of the replicates, and their main joint deviations (principal components).
-fn spread(replicates: &[LoadPart]) -> (LoadPart, Vec<LoadPart>) {
-    let count = replicates[0].weights.len() + 1;
+/// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).
+///
+/// From the fit, not from the replicates' mean: where a weight is zero, all of them lie on one side.
+fn spread(replicates: &[LoadPart], fit: &LoadPart) -> (LoadPart, Vec<LoadPart>) {
+    let count = fit.weights.len() + 1;
     let value = |part: &LoadPart, n: usize| match n {
         0 => part.offset,
         n => part.weights[n - 1],
     };
-    let many = replicates.len() as f64;
-    let mean: Vec<f64> = (0..count)
-        .map(|n| replicates.iter().map(|r| value(r, n)).sum::<f64>() / many)
-        .collect();
-    let scale = 1.0 / (many - 1.0).max(1.0).sqrt();
-    let deviation = |r: usize, n: usize| scale * (value(&replicates[r], n) - mean[n]);
+    let scale = 1.0 / (replicates.len() as f64).sqrt();
+    let deviation = |r: usize, n: usize| scale * (value(&replicates[r], n) - value(fit, n));
     let part = |values: &dyn Fn(usize) -> f64| LoadPart {
         offset: values(0),
         weights: (1..count).map(values).collect(),
