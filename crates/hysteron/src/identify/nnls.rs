@@ -123,3 +123,75 @@ pub(super) fn not_definite() -> Error {
             .into(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::pivoting;
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// `Bᵀ B` with `rows` random rows and a ridge; of lower rank where there are fewer rows than columns.
+    fn system(rng: &mut ChaCha8Rng, count: usize, rows: usize, ridge: f64) -> (Vec<f64>, Vec<f64>) {
+        let b: Vec<Vec<f64>> = (0..rows)
+            .map(|_| (0..count).map(|_| rng.random_range(0.0..1.0)).collect())
+            .collect();
+        let y: Vec<f64> = (0..rows).map(|_| rng.random_range(-0.5..1.0)).collect();
+        let mut a = vec![0.0; count * count];
+        for i in 0..count {
+            for j in 0..count {
+                a[i * count + j] = b.iter().map(|row| row[i] * row[j]).sum();
+            }
+            a[i * count + i] += ridge;
+        }
+        let right = (0..count).map(|i| b.iter().zip(&y).map(|(row, y)| row[i] * y).sum());
+        (a, right.collect())
+    }
+
+    /// The largest breach of the conditions of Karush, Kuhn and Tucker, relative to `b`.
+    fn breach(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
+        let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+        let each = a.chunks(b.len()).zip(b).zip(x).map(|((row, b), &own)| {
+            let gradient = b - row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
+            assert!(own >= 0.0);
+            if own > 0.0 {
+                gradient.abs()
+            } else {
+                gradient.max(0.0)
+            }
+        });
+        each.fold(0.0, f64::max) / size
+    }
+
+    #[test]
+    fn both_methods_meet_the_conditions_of_a_minimum_from_any_start() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for round in 0..200 {
+            let count = rng.random_range(1..60);
+            let rows = rng.random_range(1..80);
+            // From well conditioned to what rounding alone makes definite.
+            let ridge = [1e-1, 1e-5, 1e-9][round % 3];
+            let (a, b) = system(&mut rng, count, rows, ridge);
+            // Starts with zeros, tiny numbers and large ones: at the boundary a step may have no length.
+            let start: Vec<f64> = (0..count)
+                .map(|_| [0.0, 0.0, 1e-300, 1e-12, 1.0][rng.random_range(0..5)])
+                .collect();
+            let mut x = start.clone();
+            solve(&a, &b, &mut x, &|_, _| Ok(())).unwrap();
+            // Rounding of 80 products, amplified by factors of the free part.
+            assert!(breach(&a, &b, &x) < 1e-6, "round {round}");
+            let (other, exact) = pivoting::minimum(&a, &b, &start);
+            if exact {
+                assert!(breach(&a, &b, &other) < 1e-6, "round {round}, pivoting");
+            }
+            if ridge > 0.01 {
+                assert!(
+                    exact,
+                    "round {round}: nothing keeps pivoting from its end here"
+                );
+            }
+        }
+    }
+}
