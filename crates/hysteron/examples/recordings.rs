@@ -1,8 +1,12 @@
-//! Fits every recording of a folder and prints `docs/recordings.md`:
+//! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
 //! `cargo run --release -p hysteron --example recordings -- ../shared/data`
 
+#[path = "scipy/mod.rs"]
+mod scipy;
+
 use hysteron::{
-    Columns, FitOptions, FitSummary, Operator, Recording, Repair, Sign, Solver, TableReader, fit,
+    Candidates, Columns, FitOptions, LeftOut, Operator, Recording, Repair, Start, TableReader,
+    left_out, plane_of,
 };
 use std::error::Error;
 use std::path::Path;
@@ -35,58 +39,93 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args()
         .nth(1)
         .ok_or("name the folder of the recordings")?;
-    let folder = Path::new(&folder);
     print!("{}", include_str!("recordings.md"));
     println!(
-        "| recording | input → output | samples | sign | MKP | weights not zero | KP | relay | MKP, least squares |"
+        "| recording | samples, branches | MKP auto | levels, smoothness | MKP, K = 20 | KP | relay | SciPy, K = 20 | auto / best |"
     );
-    println!("| --- | --- | ---: | :---: | ---: | ---: | ---: | ---: | ---: |");
-    let mut names: Vec<String> = std::fs::read_dir(folder)?
+    println!("| --- | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |");
+    let mut names: Vec<String> = std::fs::read_dir(&folder)?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter(|name| name.ends_with(".csv") && name != "MANIFEST.csv")
         .collect();
     names.sort();
     for name in names {
-        let path = folder.join(&name);
+        let path = Path::new(&folder).join(&name);
+        let name = name.trim_end_matches(".csv");
         let table = TableReader::open(&path)?;
         let find = |known: &[&'static str]| {
-            known
-                .iter()
-                .copied()
-                .find(|k| table.header().iter().any(|h| h == k))
+            let mut known = known.iter().copied();
+            known.find(|k| table.header().iter().any(|h| h == k))
         };
-        let (Some(input), Some(output)) = (find(&INPUTS), find(&OUTPUTS)) else {
-            println!("| {name} | no known columns | | | | | | | |");
-            continue;
-        };
-        let columns = Columns::new(input, output);
-        let recording = Recording::read(&path, columns, Repair::Refuse)?.0;
-        let run = |operator, solver| -> Result<(FitSummary, Sign), Box<dyn Error>> {
-            let options = FitOptions {
-                operator,
-                solver,
-                levels: LEVELS,
-                ..FitOptions::default()
-            };
-            let model = fit(&recording, &options)?;
-            let sign = model.sign();
-            Ok((model.fit.ok_or("a fit says how it went")?, sign))
-        };
-        let (mkp, sign) = run(Operator::Mkp, Solver::Nnls)?;
-        let (kp, _) = run(Operator::Kp, Solver::Nnls)?;
-        let (relay, _) = run(Operator::Relay, Solver::Nnls)?;
-        let (least_squares, _) = run(Operator::Mkp, Solver::Ols)?;
-        println!(
-            "| {} | {input} → {output} | {} | {} | {:.3} | {} | {:.3} | {:.3} | {:.3} |",
-            name.trim_end_matches(".csv"),
-            mkp.samples,
-            if sign == Sign::Positive { "+" } else { "−" },
-            mkp.nrmse_percent,
-            mkp.weights_not_zero,
-            kp.nrmse_percent,
-            relay.nrmse_percent,
-            least_squares.nrmse_percent,
-        );
+        match (find(&INPUTS), find(&OUTPUTS)) {
+            (Some(input), Some(output)) => {
+                let columns = Columns::new(input, output);
+                let (recording, _) = Recording::read(&path, columns, Repair::Refuse)?;
+                row(name, recording)?;
+            }
+            _ => println!("| {name} | no known columns | | | | | | | |"),
+        }
     }
+    Ok(())
+}
+
+fn row(name: &str, recording: Recording) -> Result<(), Box<dyn Error>> {
+    eprintln!("{name}");
+    let (_, (low, high)) = recording.ranges();
+    let recordings = [recording];
+    let run = |operator, start, candidates: Option<&Candidates>| {
+        let options = FitOptions {
+            operator,
+            start,
+            levels: LEVELS,
+            ..FitOptions::default()
+        };
+        left_out(&recordings, &options, candidates, &|_, _| Ok(()))
+    };
+    let auto = run(
+        Operator::Mkp,
+        Start::Unknown,
+        Some(&Candidates::new(None, None)),
+    )?;
+    let fixed = [Operator::Mkp, Operator::Kp, Operator::Relay]
+        .map(|operator| run(operator, Start::Off, None));
+    let [mkp, kp, relay] = fixed;
+    let (mkp, kp, relay) = (mkp?, kp?, relay?);
+    let scipy = scipy::run(
+        &recordings[0],
+        plane_of(&recordings[0], LEVELS)?,
+        Some(&mkp.fold),
+    )?;
+    let percent = |rmse: f64| 100.0 * rmse / (high - low);
+    let scipy = scipy.map(|found| (percent(found.training_rmse), percent(found.left_out_rmse)));
+    let others = [mkp.nrmse_percent, kp.nrmse_percent, relay.nrmse_percent];
+    let best = others
+        .into_iter()
+        .chain(scipy.map(|(_, left_out)| left_out))
+        .fold(auto.nrmse_percent, f64::min);
+    let cell = |found: &LeftOut| {
+        format!(
+            "{:.3}, {:.3}",
+            found.training_nrmse_percent, found.nrmse_percent
+        )
+    };
+    let mut levels: Vec<usize> = auto.chosen.iter().map(|(levels, _)| *levels).collect();
+    let mut smooth: Vec<f64> = auto.chosen.iter().map(|(_, smooth)| *smooth).collect();
+    levels.sort_unstable();
+    smooth.sort_by(f64::total_cmp);
+    let middle = levels.len() / 2;
+    println!(
+        "| {name} | {}, {} | {} | {}, {:.0e} | {} | {} | {} | {} | {:.2} |",
+        recordings[0].len(),
+        auto.branches,
+        cell(&auto),
+        levels[middle],
+        smooth[middle],
+        cell(&mkp),
+        cell(&kp),
+        cell(&relay),
+        scipy.map_or("not installed".into(), |(t, l)| format!("{t:.3}, {l:.3}")),
+        auto.nrmse_percent / best,
+    );
     Ok(())
 }

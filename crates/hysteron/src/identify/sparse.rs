@@ -236,15 +236,21 @@ impl BranchSums {
 }
 
 fn transpose_sums(levels: usize, w: &mut [f64]) {
+    // Row `j` holds the places of operators `(1, j)` to `(j, j)`.
+    let mut rest = &mut w[..];
     for j in 1..=levels {
-        for i in 2..=j {
-            w[operator_index(i, j)] += w[operator_index(i - 1, j)];
+        let (row, below) = rest.split_at_mut(j);
+        let mut sum = 0.0;
+        for element in row {
+            sum += *element;
+            *element = sum;
         }
+        rest = below;
     }
     for j in (1..levels).rev() {
-        for i in 1..=j {
-            w[operator_index(i, j)] += w[operator_index(i, j + 1)];
-        }
+        let (rows, below) = w.split_at_mut(operator_index(1, j + 1));
+        let row = &mut rows[operator_index(1, j)..];
+        row.iter_mut().zip(below).for_each(|(a, b)| *a += *b);
     }
 }
 

@@ -249,6 +249,8 @@ pub struct LeftOut {
     pub nrmse_percent: f64,
     /// The same over the samples that were fitted, all folds together.
     pub training_nrmse_percent: f64,
+    /// Branches of the input.
+    pub branches: usize,
     /// Levels and smoothness of each fold.
     pub chosen: Vec<(usize, f64)>,
 }
@@ -311,6 +313,7 @@ pub fn left_out(
     Ok(LeftOut {
         nrmse_percent: percent(squares, samples),
         training_nrmse_percent: percent(training, samples * (count - 1) as f64),
+        branches: problem.experiment.branches(),
         fold,
         predicted,
         chosen,

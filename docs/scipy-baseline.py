@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Identification the plain way, to compare with: the dense regressor from the definition, and SciPy's NNLS.
+
+Reads one JSON object {"min", "max", "levels", "input", "output", "fold"} from standard input; `fold` (a number a
+sample, or null) names what is left out together. Prints one JSON object: errors in the output's unit, the squared error at
+the optimum of a fit of everything, and the seconds that the regressor and that fit took. Needs NumPy and SciPy.
+"""
+import json
+import sys
+import time
+
+import numpy as np
+from scipy.optimize import nnls
+
+
+def regressor(minimum, maximum, levels, samples):
+    """The states of all MKP operators at every sample, from all off: equation (5), operator by operator."""
+    step = (maximum - minimum) / (levels - 1)
+    j, i = np.tril_indices(levels)  # row by row: j = 1…K, i = 1…j
+    x = np.clip((np.asarray(samples) - minimum) / step + 1.0, 0.0, levels)
+    phi = np.empty((len(x), len(i)))
+    gamma = np.zeros(len(i))
+    for n, position in enumerate(x):
+        ridge = np.clip(position - np.arange(levels), 0.0, 1.0)
+        gamma = np.maximum(ridge[j], np.minimum(gamma, ridge[i]))
+        phi[n] = gamma
+    return phi
+
+
+def fit(phi, y):
+    """Weights from zero on and a free offset, with the better sign of the output."""
+    ones = np.ones((len(y), 1))
+    matrix = np.hstack([phi, ones, -ones])
+    best = None
+    for sign in (1.0, -1.0):
+        x, norm = nnls(matrix, sign * y, maxiter=30 * matrix.shape[1])
+        if best is None or norm < best[0]:
+            best = (norm, sign, x)
+    _, sign, x = best
+    return lambda rows: sign * (rows @ x[:-2] + x[-2] - x[-1])
+
+
+def main():
+    job = json.load(sys.stdin)
+    y = np.asarray(job["output"])
+    start = time.perf_counter()
+    phi = regressor(job["min"], job["max"], job["levels"], job["input"])
+    built = time.perf_counter()
+    model = fit(phi, y)
+    done = time.perf_counter()
+    result = {
+        "squares": float(np.sum((y - model(phi)) ** 2)),
+        "seconds_regressor": built - start,
+        "seconds_fit": done - built,
+    }
+    if job.get("fold") is not None:
+        fold = np.asarray(job["fold"])
+        training, predicted = 0.0, np.empty_like(y)
+        for f in np.unique(fold):
+            inside = fold == f
+            model = fit(phi[~inside], y[~inside])
+            training += np.sum((y[~inside] - model(phi[~inside])) ** 2)
+            predicted[inside] = model(phi[inside])
+        count = len(np.unique(fold))
+        result["training_rmse"] = float(np.sqrt(training / len(y) / (count - 1)))
+        result["left_out_rmse"] = float(np.sqrt(np.mean((y - predicted) ** 2)))
+    json.dump(result, sys.stdout)
+
+
+main()
