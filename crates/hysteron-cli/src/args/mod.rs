@@ -98,6 +98,9 @@ pub(crate) struct Simulate {
     /// Column of the input
     #[arg(long, value_name = "COL")]
     pub(crate) input: String,
+    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
+    #[arg(long)]
+    pub(crate) band: bool,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
