@@ -162,7 +162,10 @@ fn model(args: &args::Inspect) -> Result<()> {
         lines.push(least_certain(confidence, &model));
     }
     if let Some(load) = &summary.load {
-        let unit = load.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+        let unit = load
+            .unit
+            .as_ref()
+            .map_or(String::new(), |unit| format!(" {unit}"));
         lines.push(format!(
             "weights of order {} in the {}, {} to {}{unit}",
             load.order,
@@ -180,7 +183,10 @@ fn model(args: &args::Inspect) -> Result<()> {
 fn least_certain(confidence: &ConfidenceSummary, model: &Model) -> String {
     let uncertain = |w: &Uncertain| {
         let (weight, error) = (text::number(w.weight), text::number(w.standard_error));
-        vec![format!("  i = {}, j = {}", w.i, w.j), format!("{weight} ± {error}")]
+        vec![
+            format!("  i = {}, j = {}", w.i, w.j),
+            format!("{weight} ± {error}"),
+        ]
     };
     let rows: Vec<_> = confidence.least_certain.iter().map(uncertain).collect();
     let unit = model.output.unit.as_ref();
@@ -207,7 +213,11 @@ fn left_out(validation: &Validation, model: &Model) -> String {
     format!(
         "RMSE{} on {}branches left out, {} folds\n{}",
         unit.map_or(String::new(), |unit| format!(" in {unit}")),
-        if validation.whole_branches { "" } else { "parts of " },
+        if validation.whole_branches {
+            ""
+        } else {
+            "parts of "
+        },
         validation.folds,
         text::table(&rows)
     )
