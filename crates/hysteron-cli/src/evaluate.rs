@@ -47,6 +47,9 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
 /// The JSON of an evaluation: `forward` and `inverse` with the same four measures each.
 pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
     let mut object = json!({"forward": evaluation.forward, "clipped": evaluation.clipped});
+    if let Some(band) = &evaluation.band {
+        object["band_coverage_percent"] = json!(band.coverage_percent);
+    }
     match &evaluation.inverse {
         Ok(inverse) => {
             let parts = |run: &InverseRun| json!({"all": run.all, "moving": run.moving, "dead_band": run.dead_band, "out_of_reach": run.out_of_reach});
@@ -87,6 +90,12 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
         }
     }
     let mut result = text::table(&rows);
+    if let Some(band) = &evaluation.band {
+        result += &format!(
+            "\n{:.1} % of the samples inside the 95 % band",
+            band.coverage_percent
+        );
+    }
     if let Err(reason) = &evaluation.inverse {
         result += &format!("\nno inverse: {reason}");
     }

@@ -1,7 +1,9 @@
 //! `hysteron inspect`
 
 use crate::{Result, args, print, recording, text};
-use hysteron::{Columns, Model, Plane, RecordingSummary, TableReader};
+use hysteron::{
+    Columns, ConfidenceSummary, Model, Plane, RecordingSummary, TableReader, Uncertain, Validation,
+};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Inspect) -> Result<()> {
@@ -20,47 +22,24 @@ pub(crate) fn run(args: &args::Inspect) -> Result<()> {
 
 /// The columns, for whoever does not know their names yet.
 fn columns(args: &args::Inspect) -> Result<()> {
-    let mut table = TableReader::open(&args.file)?;
-    let names = table.header().to_vec();
-    let columns: Vec<_> = table.columns().collect();
-    let empty = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
-    let mut ranges = vec![empty; columns.len()];
-    let mut rows = 0_u64;
-    while table.advance()? {
-        rows += 1;
-        for (range, &column) in ranges.iter_mut().zip(&columns) {
-            match table.value(column) {
-                Some(value) => *range = (range.0.min(value), range.1.max(value), range.2),
-                None => range.2 += 1,
-            }
-        }
-    }
+    let summary = hysteron::inspect_table(&mut TableReader::open(&args.file)?)?;
     if args.json.json {
-        let columns: Vec<_> = names
-            .iter()
-            .zip(&ranges)
-            .map(|(name, &(min, max, bad))| {
-                // A column without any number has no range; JSON has no infinity.
-                let range = (min <= max).then_some((min, max));
-                json!({"name": name, "min": range.map(|r| r.0), "max": range.map(|r| r.1), "not_numbers": bad})
-            })
-            .collect();
-        return print(&json!({"rows": rows, "columns": columns}).to_string());
+        return print(&json!(summary).to_string());
     }
     let mut lines = vec![text::row(["column", "smallest", "largest", "not numbers"])];
-    for (name, &(min, max, bad)) in names.iter().zip(&ranges) {
-        let [min, max] = [min, max].map(|v| {
-            if v.is_finite() {
-                text::number(v)
-            } else {
-                "–".into()
-            }
-        });
-        lines.push(vec![name.clone(), min, max, bad.to_string()]);
+    for column in &summary.columns {
+        let [min, max] = [column.min, column.max].map(|v| v.map_or("–".into(), text::number));
+        lines.push(vec![
+            column.name.clone(),
+            min,
+            max,
+            column.not_numbers.to_string(),
+        ]);
     }
     print(&format!(
-        "{}: {rows} rows\n{}\nName --input and --output for reversals and excitation.",
+        "{}: {} rows\n{}\nName --input and --output for reversals and excitation.",
         args.file.display(),
+        summary.rows,
         text::table(&lines)
     ))
 }
@@ -177,6 +156,69 @@ fn model(args: &args::Inspect) -> Result<()> {
             fit.nrmse_percent,
             text::with_unit(fit.max_abs, &model.output)
         ));
+        lines.extend(text::confidence(fit, &model));
+    }
+    if let Some(confidence) = &summary.confidence {
+        lines.push(least_certain(confidence, &model));
+    }
+    if let Some(load) = &summary.load {
+        let unit = load
+            .unit
+            .as_ref()
+            .map_or(String::new(), |unit| format!(" {unit}"));
+        lines.push(format!(
+            "weights of order {} in the {}, {} to {}{unit}",
+            load.order,
+            load.name,
+            text::number(load.min),
+            text::number(load.max),
+        ));
+    }
+    if let Some(validation) = model.fit.as_ref().and_then(|fit| fit.validation.as_ref()) {
+        lines.push(left_out(validation, &model));
     }
     print(&lines.join("\n"))
+}
+
+fn least_certain(confidence: &ConfidenceSummary, model: &Model) -> String {
+    let uncertain = |w: &Uncertain| {
+        let (weight, error) = (text::number(w.weight), text::number(w.standard_error));
+        vec![
+            format!("  i = {}, j = {}", w.i, w.j),
+            format!("{weight} ± {error}"),
+        ]
+    };
+    let rows: Vec<_> = confidence.least_certain.iter().map(uncertain).collect();
+    let unit = model.output.unit.as_ref();
+    format!(
+        "least certain weights{}, ± one standard error of {} replicates; offset ± {}\n{}",
+        unit.map_or(String::new(), |unit| format!(" in {unit}")),
+        confidence.replicates,
+        text::with_unit(confidence.offset_error, &model.output),
+        text::table(&rows)
+    )
+}
+
+/// The cross-validation as a table of levels and smoothness.
+fn left_out(validation: &Validation, model: &Model) -> String {
+    let (levels, smooth, errors) = validation.table();
+    let mut rows = vec![vec!["  smoothness".to_owned()]];
+    rows[0].extend(levels.iter().map(|levels| format!("{levels} levels")));
+    for (n, smooth) in smooth.iter().enumerate() {
+        let error = |row: &Vec<Option<f64>>| row[n].map_or("–".into(), text::number);
+        let name = vec![format!("  {smooth:e}")];
+        rows.push(name.into_iter().chain(errors.iter().map(error)).collect());
+    }
+    let unit = model.output.unit.as_ref();
+    format!(
+        "RMSE{} on {}branches left out, {} folds\n{}",
+        unit.map_or(String::new(), |unit| format!(" in {unit}")),
+        if validation.whole_branches {
+            ""
+        } else {
+            "parts of "
+        },
+        validation.folds,
+        text::table(&rows)
+    )
 }

@@ -7,13 +7,22 @@ use std::path::Path;
 
 pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     let model = args.load.apply(Model::read(&args.model)?)?;
+    let band = match args.band {
+        false => None,
+        true => Some(model.band()?.ok_or_else(|| {
+            let model = args.model.display();
+            format!("{model}: the model does not say how certain it is: fit it again with --bootstrap 200")
+        })?),
+    };
     let what = ["inputs above the plane", "inputs below its active range"];
     through(
         &args.data,
         args.out.as_deref(),
         args.json.json,
         what,
-        |table, out, progress| hysteron::simulate_table(&model, table, &args.input, out, progress),
+        |table, out, progress| {
+            hysteron::simulate_table(&model, table, &args.input, band.as_ref(), out, progress)
+        },
     )
 }
 

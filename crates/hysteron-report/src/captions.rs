@@ -1,7 +1,7 @@
 //! Titles and captions: what each figure shows, with its numbers.
 
 use crate::figure::Figure;
-use crate::figures::dead_band_shown;
+use crate::figures::{classes_counted, dead_band_shown};
 use crate::number::{count, significant};
 use crate::quantity::Labelled;
 use crate::view::View;
@@ -11,6 +11,13 @@ use hysteron::Errors;
 pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
     let (input, output) = (&view.input.name, &view.output.name);
     let title = match figure {
+        Figure::LoadLoops => match view.source.load() {
+            Some(load) => format!("major loops by {}", load.quantity.name),
+            None => String::new(),
+        },
+        Figure::Excitation => "What is known of each operator".into(),
+        Figure::StandardErrors => "Standard errors of the weights".into(),
+        Figure::CrossValidation => "Levels and smoothness by cross-validation".into(),
         Figure::PlaneEvolution => "Evolution of the plane".into(),
         Figure::WeightsPlane => "Weights on the plane".into(),
         Figure::WeightsMap => "Size of the weights".into(),
@@ -28,6 +35,10 @@ pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
 pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
     let (input, output, recorded) = (&view.input.name, &view.output.name, view.recorded());
     let caption = match figure {
+        Figure::LoadLoops => load_loops(view),
+        Figure::Excitation => excitation(view),
+        Figure::StandardErrors => standard_errors(view),
+        Figure::CrossValidation => cross_validation(view),
         Figure::PlaneEvolution => format!(
             "Operator states on the plane at telling moments of the {input}. The dashed line is the present {input}: rising, it \
              switches operators on below it; falling, it switches them off to its right."
@@ -40,9 +51,10 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
         ),
         Figure::WeightsMap => "The weights μ over the plane; the darker, the larger.".into(),
         Figure::OutputTime => format!(
-            "Modelled {output} and {recorded} {output}: {} over {} samples.",
+            "Modelled {output} and {recorded} {output}: {} over {} samples.{}",
             rmse_and_max(&view.evaluation.forward, &view.output),
             count(view.evaluation.forward.samples),
+            band(view),
         ),
         Figure::Loops => format!(
             "Modelled and {recorded} {output} over {recorded} {input}: major and minor loops."
@@ -71,6 +83,70 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
     } else {
         caption
     }
+}
+
+fn load_loops(view: &View<'_>) -> String {
+    let Some(load) = view.source.load() else {
+        return String::new();
+    };
+    format!(
+        "One model, whose weights depend on the {}: the whole loop at the smallest, the middle and the largest that it was \
+         identified at.",
+        load.quantity.name
+    )
+}
+
+fn excitation(view: &View<'_>) -> String {
+    let Some(confidence) = view.confidence() else {
+        return String::new();
+    };
+    format!(
+        "What the {} that was fitted says of each operator: {}.",
+        view.input.name,
+        classes_counted(&confidence.excitation)
+    )
+}
+
+fn standard_errors(view: &View<'_>) -> String {
+    let Some(confidence) = view.confidence() else {
+        return String::new();
+    };
+    let largest = confidence
+        .standard_error
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
+    format!(
+        "Standard errors of the weights, from {} replicates of a bootstrap over branches; the largest is {}. Weights that are held at \
+         zero in every replicate have none.",
+        count(confidence.replicates),
+        view.output.value(largest)
+    )
+}
+
+fn cross_validation(view: &View<'_>) -> String {
+    let Some(validation) = view.validation() else {
+        return String::new();
+    };
+    format!(
+        "Error on {}branches left out, in {} folds. Chosen is the smoothest that is no worse than the best by more than one standard \
+         error over the folds: {}, {} of the range.",
+        if validation.whole_branches {
+            ""
+        } else {
+            "parts of "
+        },
+        validation.folds,
+        view.output.value(validation.rmse),
+        percent(validation.nrmse_percent),
+    )
+}
+
+fn band(view: &View<'_>) -> String {
+    view.band().map_or(String::new(), |band| {
+        let inside = percent(band.coverage_percent);
+        format!(" {inside} of them lie inside the 95\u{a0}% band.")
+    })
 }
 
 /// `RMSE 0.12 mm, max 0.45 mm`.

@@ -38,6 +38,73 @@ fn extremes(column: &[Point]) -> Vec<Point> {
     kept.into_iter().map(|k| column[k]).collect()
 }
 
+/// Width of the columns that a band is drawn in: finer than its light tint shows.
+pub(crate) const COLUMN: f64 = 0.5;
+
+/// For a band between two edges at the same x, between `left` and `right`: of each column of pixels the
+/// stretches `[x, top, bottom]` that it covers, so that a million samples take no more than the picture has room for.
+pub(crate) fn covered(
+    edges: impl Iterator<Item = (Point, Point)>,
+    left: f64,
+    right: f64,
+) -> Vec<[f64; 3]> {
+    let count = ((right - left) / COLUMN).ceil().max(1.0) as usize;
+    let mut columns: Vec<Vec<[f64; 2]>> = vec![Vec::new(); count];
+    let column = |x: f64| (((x - left) / COLUMN).max(0.0) as usize).min(count - 1);
+    let mut before: Option<[f64; 3]> = None;
+    for (a, b) in edges {
+        if !(a[0].is_finite() && a[1].is_finite() && b[1].is_finite()) {
+            before = None;
+            continue;
+        }
+        let now = [a[0], a[1].min(b[1]), a[1].max(b[1])];
+        let from = before.unwrap_or(now);
+        let (first, last) = (column(from[0].min(now[0])), column(from[0].max(now[0])));
+        for (n, stretches) in columns.iter_mut().enumerate().take(last + 1).skip(first) {
+            // The part of the way from one sample to the next that lies in this column.
+            let share = |x: f64| {
+                let way = now[0] - from[0];
+                let share = if way == 0.0 { 1.0 } else { (x - from[0]) / way };
+                share.clamp(0.0, 1.0)
+            };
+            let x = left + n as f64 * COLUMN;
+            let at = |share: f64, edge: usize| from[edge] + share * (now[edge] - from[edge]);
+            let ends = [share(x), share(x + COLUMN)];
+            let top = at(ends[0], 1).min(at(ends[1], 1));
+            let bottom = at(ends[0], 2).max(at(ends[1], 2));
+            stretches.push([top, bottom]);
+            if stretches.len() > 64 {
+                merge(stretches);
+            }
+        }
+        before = Some(now);
+    }
+    let of_column = |(n, mut stretches): (usize, Vec<[f64; 2]>)| {
+        merge(&mut stretches);
+        let x = left + n as f64 * COLUMN;
+        stretches
+            .into_iter()
+            .map(move |[top, bottom]| [x, top, bottom])
+    };
+    columns
+        .into_iter()
+        .enumerate()
+        .flat_map(of_column)
+        .collect()
+}
+
+/// Stretches that touch become one.
+fn merge(stretches: &mut Vec<[f64; 2]>) {
+    stretches.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    stretches.dedup_by(|next, kept| {
+        let touch = next[0] <= kept[1] + COLUMN;
+        if touch {
+            kept[1] = kept[1].max(next[1]);
+        }
+        touch
+    });
+}
+
 /// For curves that are no function of x: drop points closer than half a pixel to the last one kept, except the extremes.
 pub(crate) fn loops(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let thinned: Vec<Vec<Point>> = pieces(points).iter().map(|piece| thin(piece)).collect();
@@ -146,6 +213,37 @@ mod tests {
         let drawn = columns([[0.0, 0.0], [1.0, f64::NAN], [2.0, 0.0]].into_iter());
         assert_eq!(drawn, [vec![[0.0, 0.0]], vec![[2.0, 0.0]]]);
         assert!(columns([[f64::NAN, 0.0]].into_iter()).is_empty());
+    }
+
+    #[test]
+    fn a_band_covers_what_lies_between_its_edges_and_stays_small() {
+        // Steps of three pixels between heights, and back over the same place further down.
+        let there = (0..=10).map(|k| [3.0 * f64::from(k), 50.0 + f64::from(k)]);
+        let back = (0..=10).rev().map(|k| [3.0 * f64::from(k), 200.0]);
+        let edges = there.chain(back).map(|[x, y]| ([x, y + 2.0], [x, y - 2.0]));
+        let covered = covered(edges, 0.0, 40.0);
+        let at = |x: f64| {
+            covered
+                .iter()
+                .filter(move |c| c[0] == x)
+                .map(|c| [c[1], c[2]])
+        };
+        // Between samples 3 and 4, at x = 10.5 to 11: heights 53.5 to 53.67, give or take 2.
+        let found: Vec<[f64; 2]> = at(10.5).collect();
+        let expected = [[51.5, 50.0 + 11.0 / 3.0 + 2.0], [198.0, 202.0]];
+        assert_eq!(found.len(), 2);
+        for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+        }
+        assert_eq!(at(35.0).count(), 0);
+        let million = (0..1_000_000).map(|k| (f64::from(k) * 0.037).sin_cos());
+        let edges = million.map(|(s, c)| {
+            (
+                [300.0 + 200.0 * c, 201.0 + 150.0 * s],
+                [300.0 + 200.0 * c, 199.0 + 150.0 * s],
+            )
+        });
+        assert!(super::covered(edges, 0.0, 600.0).len() < 2000);
     }
 
     #[test]

@@ -2,16 +2,24 @@
 
 use std::fmt;
 
-/// A figure of a report, named after what it shows and numbered after the chapter's figure that it stands beside.
+/// A figure of a report, named after what it shows and, where it stands beside a figure of the chapter, numbered after that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Figure {
+    /// Fig. 2: major loops at the smallest, the middle and the largest load.
+    LoadLoops,
     /// Fig. 6: operator states on the plane at a few instants of the recording.
     PlaneEvolution,
     /// Fig. 8(a): which weights are not zero.
     WeightsPlane,
     /// Fig. 8(b): how large the weights are.
     WeightsMap,
+    /// What the recording fitted says of each operator.
+    Excitation,
+    /// Standard errors of the weights.
+    StandardErrors,
+    /// Errors on left-out branches by levels and smoothness.
+    CrossValidation,
     /// Fig. 10: modelled and measured output over time.
     OutputTime,
     /// Fig. 11: modelled and measured output over input.
@@ -28,9 +36,13 @@ pub enum Figure {
 
 impl Figure {
     /// Every figure, in the order of the page: the fitted weights, both tests, then the memory behind them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::WeightsPlane,
         Self::WeightsMap,
+        Self::LoadLoops,
+        Self::Excitation,
+        Self::StandardErrors,
+        Self::CrossValidation,
         Self::OutputTime,
         Self::Loops,
         Self::OutputDiscrepancy,
@@ -43,6 +55,10 @@ impl Figure {
     /// File name without extension, for example `fig10-output-time`.
     pub fn stem(self) -> &'static str {
         match self {
+            Self::LoadLoops => "fig02-load-loops",
+            Self::Excitation => "excitation",
+            Self::StandardErrors => "standard-errors",
+            Self::CrossValidation => "cross-validation",
             Self::PlaneEvolution => "fig06-plane-evolution",
             Self::WeightsPlane => "fig08a-weights-plane",
             Self::WeightsMap => "fig08b-weights-map",
@@ -55,9 +71,10 @@ impl Figure {
         }
     }
 
-    /// Number of the chapter's figure, for example `8(a)`.
-    pub fn chapter_number(self) -> &'static str {
-        match self {
+    /// Number of the chapter's figure, for example `8(a)`, where there is one.
+    pub fn chapter_number(self) -> Option<&'static str> {
+        Some(match self {
+            Self::LoadLoops => "2",
             Self::PlaneEvolution => "6",
             Self::WeightsPlane => "8(a)",
             Self::WeightsMap => "8(b)",
@@ -67,7 +84,8 @@ impl Figure {
             Self::InputTime => "13",
             Self::InputDiscrepancy => "14",
             Self::DeadBand => "15",
-        }
+            Self::Excitation | Self::StandardErrors | Self::CrossValidation => return None,
+        })
     }
 
     /// Whether the figure shows the inverse model, and so is absent where there is none.

@@ -2,16 +2,30 @@
 
 use crate::captions::{caption, percent, title};
 use crate::figure::Figure;
+use crate::figures::classes_counted;
 use crate::number::{count, significant};
 use crate::view::View;
-use hysteron::Errors;
+use hysteron::{Confidence, Errors};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
 
 /// The sections of the page and their figures; figures in one group stand side by side where there is room.
-const SECTIONS: [(&str, &[&[Figure]]); 4] = [
-    ("The model", &[&[Figure::WeightsPlane, Figure::WeightsMap]]),
+const SECTIONS: [(&str, &[&[Figure]]); 5] = [
+    (
+        "The model",
+        &[
+            &[Figure::WeightsPlane, Figure::WeightsMap],
+            &[Figure::LoadLoops],
+        ],
+    ),
+    (
+        "Confidence: what the data said",
+        &[
+            &[Figure::Excitation, Figure::StandardErrors],
+            &[Figure::CrossValidation],
+        ],
+    ),
     (
         "Forward: output from input",
         &[
@@ -82,7 +96,23 @@ fn facts(view: &View<'_>) -> Markup {
                 }
             }
             tr { th scope="row" { "Weights not zero" } td { (count(source.weights_not_zero())) " of " (count(weights)) } }
+            @if let Some(confidence) = view.confidence() { (certainty(confidence, view)) }
         } }
+    }
+}
+
+/// What the data fitted said of the weights, a row each.
+fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
+    html! {
+        tr { th scope="row" { "Operators" } td { (classes_counted(&confidence.excitation)) } }
+        tr {
+            th scope="row" { "Rank" }
+            td { (count(confidence.rank)) " of " (count(confidence.unknowns)) ", condition " (significant(confidence.condition, 3)) }
+        }
+        tr { th scope="row" { "Noise" } td { (view.output.value(confidence.noise)) " (standard deviation of what the fit leaves)" } }
+        @if let Some(band) = view.band() {
+            tr { th scope="row" { "95\u{a0}% band" } td { (percent(band.coverage_percent)) " of this recording inside" } }
+        }
     }
 }
 
@@ -138,6 +168,16 @@ fn section(
     let no_dead_band = view
         .inverse()
         .is_some_and(|inverse| !inverse.moving.contains(&false));
+    let none = || {
+        groups
+            .iter()
+            .copied()
+            .flatten()
+            .all(|f| drawn.iter().all(|(d, _)| d != f))
+    };
+    if !inverse && none() {
+        return html! {};
+    }
     html! {
         section {
             h2 { (name) }
@@ -165,7 +205,9 @@ fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, String)]) -> Marku
             div.wide { @if let Some((_, svg)) = drawn.get(number) { (PreEscaped(svg)) } }
             figcaption {
                 b { "Figure " (number + 1) ". " (title(figure, view)) "." } " " (caption(figure, view)) " "
-                span.beside { "Beside Fig. " (figure.chapter_number()) " of the chapter." }
+                @if let Some(number) = figure.chapter_number() {
+                    span.beside { "Beside Fig. " (number) " of the chapter." }
+                }
             }
         }
     }

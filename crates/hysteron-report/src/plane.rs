@@ -44,6 +44,11 @@ impl Half {
         Self::new(source, source.weights())
     }
 
+    /// A value for each operator, in the order of the weights.
+    pub(crate) fn of_values(source: Source<'_>, values: &[f64]) -> Self {
+        Self::new(source, values)
+    }
+
     /// The operator states after the inputs `history`.
     pub(crate) fn of_states(source: Source<'_>, history: &[f64]) -> Self {
         Self::new(source, &source.states(history))
@@ -85,6 +90,12 @@ impl Half {
 
     pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> {
         self.cells.iter().copied()
+    }
+
+    /// Pixels of a cell: left, top, and its width, which is its height.
+    pub(crate) fn place(&self, panel: &Panel, cell: &Cell) -> [f64; 3] {
+        let [x, y] = panel.point(cell.alpha - 0.5 * self.pitch, cell.beta + 0.5 * self.pitch);
+        [x, y, panel.px(cell.alpha + 0.5 * self.pitch) - x]
     }
 
     /// Whether all cells hold the same value.

@@ -25,8 +25,9 @@ pub struct Report<'a> {
 impl Report<'_> {
     /// Writes `index.html` and, for each figure, `figNN-name.svg` and `figNN-name.png` into `dir`, which is made if absent.
     ///
-    /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page says why, and files of
-    /// theirs that an earlier report left in `dir` are removed. Each file appears complete or not at all.
+    /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page says why. Figures of
+    /// confidence, cross-validation and load need a model that has them. Files of missing figures
+    /// that an earlier report left in `dir` are removed. Each file appears complete or not at all.
     ///
     /// Returns the paths written, the page first.
     ///
@@ -82,6 +83,9 @@ impl Report<'_> {
             ("recording.output", self.recording.output.len()),
             ("output_model", self.evaluation.output_model.len()),
         ];
+        if let Some(band) = &self.evaluation.band {
+            lengths.push(("band.half_width", band.half_width.len()));
+        }
         if let Ok(inverse) = &self.evaluation.inverse {
             lengths.extend([
                 ("inverse.moving", inverse.moving.len()),

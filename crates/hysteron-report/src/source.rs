@@ -1,7 +1,6 @@
 //! The only place that touches the model: what the figures need of it, in their terms.
 
-use hysteron::Model;
-use hysteron::Quantity;
+use hysteron::{FitSummary, LoadDependence, Model, Plane, Quantity};
 
 /// A model's plane, weights and operator states on the half `α ≤ β`.
 #[derive(Clone, Copy)]
@@ -12,6 +11,21 @@ pub(crate) struct Source<'a> {
 impl<'a> Source<'a> {
     pub(crate) fn new(model: &'a Model) -> Self {
         Self { model }
+    }
+
+    /// The plane.
+    pub(crate) fn plane(self) -> &'a Plane {
+        self.model.plane()
+    }
+
+    /// How the model was obtained, where it was identified.
+    pub(crate) fn fit(self) -> Option<&'a FitSummary> {
+        self.model.fit.as_ref()
+    }
+
+    /// How the weights depend on a load, where they do.
+    pub(crate) fn load(self) -> Option<&'a LoadDependence> {
+        self.model.load.as_ref()
     }
 
     /// `T_min`.
@@ -56,6 +70,15 @@ impl<'a> Source<'a> {
         self.model
             .operator_states(history)
             .unwrap_or_else(|_| off())
+    }
+
+    /// The outputs for `input` at `load`, from every operator off; `None` for a load out of range.
+    pub(crate) fn at_load(self, load: f64, input: &[f64]) -> Option<Vec<f64>> {
+        let part = self.load()?.at(load).ok()?;
+        let model = self.model;
+        let (operator, sign) = (model.operator(), model.sign());
+        let at_load = Model::new(operator, *self.plane(), part.weights, part.offset, sign);
+        at_load.ok()?.simulate(input).ok()
     }
 
     /// What the model's input is.

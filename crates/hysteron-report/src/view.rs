@@ -3,7 +3,7 @@
 use crate::quantity::Labelled;
 use crate::report::Report;
 use crate::source::Source;
-use hysteron::{Evaluation, InverseEvaluation};
+use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
 use hysteron::{Origin, Recording};
 use std::borrow::Cow;
 
@@ -55,6 +55,31 @@ impl<'a> View<'a> {
 
     pub(crate) fn inverse(&self) -> Option<&'a InverseEvaluation> {
         self.evaluation.inverse.as_ref().ok()
+    }
+
+    /// What the recording fitted says of the weights, where the model tells.
+    pub(crate) fn confidence(&self) -> Option<&'a Confidence> {
+        self.source.fit()?.confidence.as_ref()
+    }
+
+    /// How levels and smoothness were chosen, where the model tells.
+    pub(crate) fn validation(&self) -> Option<&'a Validation> {
+        let validation = self.source.fit()?.validation.as_ref();
+        validation.filter(|validation| !validation.scores.is_empty())
+    }
+
+    pub(crate) fn band(&self) -> Option<&'a BandEvaluation> {
+        self.evaluation.band.as_ref()
+    }
+
+    /// Lower and upper edge of the prediction band.
+    pub(crate) fn band_edges(&self) -> Option<[Vec<f64>; 2]> {
+        let band = self.band()?;
+        let edge = |sign: f64| {
+            let modelled = self.evaluation.output_model.iter().zip(&band.half_width);
+            modelled.map(|(y, half)| y + sign * half).collect()
+        };
+        Some([edge(-1.0), edge(1.0)])
     }
 
     pub(crate) fn simulated(&self) -> bool {

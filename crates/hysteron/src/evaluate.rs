@@ -2,7 +2,7 @@
 
 use crate::recording::range;
 use crate::turning::{Turning, headings};
-use crate::{Errors, Inverse, Model, Policy, Recording, Result, Status};
+use crate::{BandEvaluation, Errors, Inverse, Model, Policy, Recording, Result, Status};
 
 /// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
 pub const NOISE: f64 = 0.01;
@@ -20,6 +20,8 @@ pub struct Evaluation {
     pub forward: Errors,
     /// How many inputs lay outside the plane.
     pub clipped: usize,
+    /// The prediction band; `None` for a model without confidence.
+    pub band: Option<BandEvaluation>,
     /// The inverse test, or why there is none (for example weights below zero).
     pub inverse: std::result::Result<InverseEvaluation, String>,
 }
@@ -74,6 +76,7 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
         Err(error) => Err(error.to_string()),
     };
     Ok(Evaluation {
+        band: BandEvaluation::of(model, recording, &output_model)?,
         output_model,
         forward,
         clipped: clipped.low + clipped.high,

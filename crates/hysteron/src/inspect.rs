@@ -1,8 +1,14 @@
-//! What is in a recording or a model.
+//! What is in a table, a recording or a model.
+
+mod columns;
+mod model;
+
+pub use columns::{ColumnSummary, TableSummary, inspect_table};
+pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
 
 use crate::evaluate::NOISE;
 use crate::recording::{gaps, range};
-use crate::{Model, Plane, Recording, Result, Turning};
+use crate::{Plane, Recording, Result, Turning};
 use hysteron_core::ridge;
 use serde::Serialize;
 
@@ -124,59 +130,5 @@ fn sampling(time: &[f64]) -> Option<Sampling> {
         longest_step_before_sample: longest + 1,
         gaps: gaps.len(),
         repeated: (1..time.len()).filter(|&n| step(n) == 0.0).count(),
-    })
-}
-
-/// What is in a model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelSummary {
-    /// Levels of the plane.
-    pub levels: usize,
-    /// Lowest and highest level.
-    pub plane: (f64, f64),
-    /// Distance between levels.
-    pub step: f64,
-    /// Number of operators.
-    pub operators: usize,
-    /// Weights that are not zero.
-    pub weights_not_zero: usize,
-    /// Weights below zero: with any, there is no inverse.
-    pub weights_below_zero: usize,
-    /// Output with every operator off, and with every operator on.
-    pub output: (f64, f64),
-    /// Widest loop: the largest difference between the falling and the rising major branch, in the output's unit.
-    pub widest_loop: f64,
-    /// The input at which it is.
-    pub widest_loop_at: f64,
-}
-
-/// Summarises `model`.
-///
-/// # Errors
-/// None on a model made by this crate.
-pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
-    let plane = model.plane();
-    let levels = plane.levels();
-    // The major branches bend only at the levels.
-    let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
-    let rising = model.simulate(&ladder)?;
-    let mut falling = vec![0.0; ladder.len()];
-    let down: Vec<f64> = ladder.iter().rev().copied().collect();
-    model.run(&mut model.saturated(), &down, &mut falling)?;
-    falling.reverse();
-    let gap = |k: &usize| (falling[*k] - rising[*k]).abs();
-    let widest = (0..=levels)
-        .max_by(|a, b| gap(a).total_cmp(&gap(b)))
-        .unwrap_or(0);
-    Ok(ModelSummary {
-        levels,
-        plane: (plane.min(), plane.max()),
-        step: plane.step(),
-        operators: plane.operators(),
-        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
-        weights_below_zero: model.weights().iter().filter(|mu| **mu < 0.0).count(),
-        output: model.output_range(),
-        widest_loop: gap(&widest),
-        widest_loop_at: ladder[widest],
     })
 }

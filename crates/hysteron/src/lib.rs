@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod band;
 mod design;
 mod error;
 mod evaluate;
@@ -26,6 +27,7 @@ mod stream;
 mod table;
 mod turning;
 
+pub use band::{Band, BandEvaluation};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
@@ -37,7 +39,10 @@ pub use identify::{
     Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Score, Solver,
     Start, Validation, Watch, cross_validate, excitation, fit, fit_experiment, left_out, plane_of,
 };
-pub use inspect::{ModelSummary, RecordingSummary, Series, inspect_model, inspect_recording};
+pub use inspect::{
+    ColumnSummary, ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series,
+    TableSummary, Uncertain, inspect_model, inspect_recording, inspect_table,
+};
 pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};

@@ -2,7 +2,9 @@
 
 use crate::table::Row;
 use crate::turning::Headings;
-use crate::{Direction, Inverse, Model, Policy, Result, State, Status, TableReader, TableWriter};
+use crate::{
+    Band, Direction, Inverse, Model, Policy, Result, State, Status, TableReader, TableWriter,
+};
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -18,7 +20,7 @@ pub struct Counts {
 }
 
 /// Copies `table` to `out` with a column `output_model`, the model's output for column `input`, from
-/// every operator off. `progress` is told the bytes read.
+/// every operator off; with a `band`, with `output_low` and `output_high` too. `progress` is told the bytes read.
 ///
 /// # Errors
 /// [`crate::Error::File`], [`crate::Error::Recording`] with line and column.
@@ -26,20 +28,32 @@ pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
     input: &str,
+    band: Option<&Band>,
     out: Option<&mut TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let column = table.column(input)?;
-    let mut sink = Sink::start(table, out, &["output_model"])?;
+    let names = ["output_model", "output_low", "output_high"];
+    let mut sink = Sink::start(table, out, &names[..if band.is_some() { 3 } else { 1 }])?;
     let mut state = model.start();
+    let mut band = band.map(|band| (band, band.start()));
     while table.advance()? {
-        let step = model.step(&mut state, table.number(column)?)?;
+        let input = table.number(column)?;
+        let step = model.step(&mut state, input)?;
         match step.clipped {
             None => {}
             Some(crate::Clipped::Low) => sink.counts.low += 1,
             Some(crate::Clipped::High) => sink.counts.high += 1,
         }
-        sink.write(table.row(), &[&step.output.to_string()])?;
+        let output = step.output.to_string();
+        match &mut band {
+            None => sink.write(table.row(), &[&output])?,
+            Some((band, states)) => {
+                let half = band.step(states, input)?;
+                let [low, high] = [step.output - half, step.output + half].map(|y| y.to_string());
+                sink.write(table.row(), &[&output, &low, &high])?;
+            }
+        }
         progress(table.bytes_read());
     }
     Ok(sink.counts)

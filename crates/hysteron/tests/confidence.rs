@@ -122,7 +122,7 @@ fn an_unknown_start_costs_little() {
             model.run(&mut state, &input, &mut output).unwrap();
             let output = noisy(&output, 0.01, &mut rng);
             let recording = Recording::new(input, output).unwrap();
-            let mut error = |start| {
+            let error = |start| {
                 let options = FitOptions {
                     levels: LEVELS,
                     range: Some((20.0, 80.0)),

@@ -125,6 +125,9 @@ pub(crate) struct Simulate {
     pub(crate) input: String,
     #[command(flatten)]
     pub(crate) load: Load,
+    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
+    #[arg(long)]
+    pub(crate) band: bool,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,

@@ -54,6 +54,11 @@ impl Span {
         }
     }
 
+    /// The same from `low` on.
+    pub(crate) fn from(self, low: f64) -> Self {
+        Self { low, ..self }
+    }
+
     /// The smallest range that holds both.
     pub(crate) fn with(self, value: f64) -> Self {
         Self {
@@ -70,6 +75,8 @@ pub(crate) struct Axis {
     pub(crate) span: Span,
     /// Tick labels are in units of `10^exponent`.
     exponent: i32,
+    /// In place of numbers, a name at each of 0, 1, 2 and so on.
+    names: Vec<String>,
 }
 
 /// Where a tick stands and what it says.
@@ -90,6 +97,16 @@ impl Axis {
             quantity: quantity.clone(),
             span,
             exponent,
+            names: Vec::new(),
+        }
+    }
+
+    /// An axis with `names` at 0, 1, 2 and so on.
+    pub(crate) fn named(quantity: &Labelled, names: Vec<String>) -> Self {
+        let high = names.len() as f64 - 0.5;
+        Self {
+            names,
+            ..Self::new(quantity, Span { low: -0.5, high })
         }
     }
 
@@ -118,6 +135,13 @@ impl Axis {
     /// The finest ticks at steps of 1, 2 or 5 · 10ⁿ that are at least `room` pixels apart.
     fn ticks(&self, length: f64, room: impl Fn(&[Tick]) -> f64) -> Vec<Tick> {
         let range = self.span.high - self.span.low;
+        if !self.names.is_empty() {
+            let tick = |(n, name): (usize, &String)| Tick {
+                value: n as f64,
+                label: name.clone(),
+            };
+            return self.names.iter().enumerate().map(tick).collect();
+        }
         let finest = magnitude(range) - 2;
         for exponent in finest..finest + 5 {
             for leading in [1.0, 2.0, 5.0] {

@@ -1,7 +1,7 @@
 //! A pair of axes and what is drawn between them.
 
 use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Rect};
+use super::canvas::{Anchor, Canvas, Rect, rect_data};
 use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
 use super::text;
 use crate::decimate;
@@ -96,6 +96,31 @@ impl Panel {
             );
         }
         // The shade covers the grid and the axis line's inner half: draw them again.
+        self.grid(canvas);
+        self.frame(canvas);
+    }
+
+    /// A filled band between the curves `low` and `high`.
+    pub(crate) fn band(
+        &self,
+        canvas: &mut Canvas,
+        xs: &[f64],
+        [low, high]: &[Vec<f64>; 2],
+        fill: &str,
+    ) {
+        let edges = self.points(xs, low).zip(self.points(xs, high));
+        let d: String = decimate::covered(edges, self.area.x, self.area.right())
+            .into_iter()
+            .map(|[x, top, bottom]| {
+                rect_data(Rect {
+                    x,
+                    y: top,
+                    width: decimate::COLUMN,
+                    height: bottom - top,
+                })
+            })
+            .collect();
+        canvas.clipped(self.area, |canvas| canvas.path(&d, Some(fill), None));
         self.grid(canvas);
         self.frame(canvas);
     }

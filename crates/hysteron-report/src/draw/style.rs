@@ -52,6 +52,8 @@ pub(crate) const GUIDE: Stroke = Stroke {
 
 /// Samples in the dead band.
 pub(crate) const SHADE: &str = "#e4e7ec";
+/// Where the output is expected, around what the model says: a tint of its colour.
+pub(crate) const BAND: &str = "#fbd9c0";
 /// Text.
 pub(crate) const INK: &str = "#1b2128";
 /// Text of less weight.

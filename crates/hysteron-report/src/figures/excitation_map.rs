@@ -1,11 +1,14 @@
 //! The plane coloured by what recordings say of each operator.
 
+use super::finish;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Rect, rect_data};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::Stroke;
+use crate::figure::Figure;
 use crate::quantity::Labelled;
+use crate::view::View;
 use hysteron::{Excitation, Plane, Quantity};
 
 const STEM: &str = "excitation-map";
@@ -27,7 +30,34 @@ fn colour(class: Excitation) -> &'static str {
 #[must_use]
 pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -> String {
     let input = Labelled::first([input, input], "input");
-    let mut sheet = Sheet::new(STEM, WIDTH, "What is known of each operator", None);
+    let sheet = Sheet::new(STEM, WIDTH, "What is known of each operator", None);
+    let (sheet, height) = draw(sheet, plane, classes, &input);
+    sheet.finish(
+        height,
+        &format!("Operators on the plane: {}.", counts(classes)),
+    )
+}
+
+/// The same for the recording that a model was fitted to, where its file tells.
+pub(super) fn of_model(view: &View<'_>) -> Option<String> {
+    let confidence = view.confidence()?;
+    let sheet = super::sheet(Figure::Excitation, view, WIDTH);
+    let classes = &confidence.excitation;
+    let (sheet, height) = draw(sheet, view.source.plane(), classes, &view.input);
+    Some(finish(Figure::Excitation, view, sheet, height))
+}
+
+/// How many operators are in each class, in words.
+pub(crate) fn counts(classes: &[Excitation]) -> String {
+    let words = Excitation::ALL.map(|class| {
+        let count = classes.iter().filter(|c| **c == class).count();
+        format!("{count} {}", class.words())
+    });
+    words.join(", ")
+}
+
+/// Legend and plane; returns the height of the figure with it.
+fn draw(mut sheet: Sheet, plane: &Plane, classes: &[Excitation], input: &Labelled) -> (Sheet, f64) {
     let count = |class| classes.iter().filter(|c| **c == class).count();
     let keys = Excitation::ALL.map(|class| {
         let words = format!("{}: {}", class.words(), count(class));
@@ -40,7 +70,7 @@ pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -
         low: plane.min() - 1.6 * half,
         high: plane.max() + 1.6 * half,
     };
-    let [alpha, beta] = ["α", "β"].map(|symbol| Axis::new(&threshold(symbol, &input), span));
+    let [alpha, beta] = ["α", "β"].map(|symbol| Axis::new(&threshold(symbol, input), span));
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left;
     let area = Rect {
@@ -72,13 +102,7 @@ pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -
     for (class, path) in cells.iter().filter(|(_, path)| !path.is_empty()) {
         sheet.canvas.path(path, Some(colour(*class)), Some(&seam));
     }
-    let label = Excitation::ALL
-        .map(|class| format!("{} {}", count(class), class.words()))
-        .join(", ");
-    sheet.finish(
-        area.bottom() + BELOW + 4.0,
-        &format!("Operators on the plane: {label}."),
-    )
+    (sheet, area.bottom() + BELOW + 4.0)
 }
 
 #[cfg(test)]

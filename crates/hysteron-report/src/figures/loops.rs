@@ -1,11 +1,12 @@
 //! Fig. 11: output over input, modelled and measured.
 
+use super::over_time::measured_and_modelled;
 use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
-use crate::draw::style::{MEASURED, MODELLED};
+use crate::draw::sheet::MARGIN;
+use crate::draw::style::{BAND, MEASURED, MODELLED};
 use crate::figure::Figure;
 use crate::view::View;
 
@@ -14,19 +15,18 @@ const PLOT_HEIGHT: f64 = 420.0;
 
 pub(super) fn svg(view: &View<'_>) -> String {
     let mut sheet = sheet(Figure::Loops, view, WIDTH);
-    sheet.legend(&[
-        Key::Line(MEASURED, view.recorded().into()),
-        Key::Line(MODELLED, "modelled".into()),
-    ]);
+    sheet.legend(&measured_and_modelled(view));
     let (input, output, modelled) = (
         &view.recording.input,
         &view.recording.output,
         &view.evaluation.output_model,
     );
+    let band = view.band_edges();
+    let edges = band.iter().flatten().flatten();
     let x = Axis::new(&view.input, Span::of(input).padded(0.03));
     let y = Axis::new(
         &view.output,
-        Span::of(output.iter().chain(modelled)).padded(0.04),
+        Span::of(output.iter().chain(modelled).chain(edges)).padded(0.04),
     );
     let left = MARGIN + left_of(&y, PLOT_HEIGHT);
     let area = Rect {
@@ -36,6 +36,9 @@ pub(super) fn svg(view: &View<'_>) -> String {
         height: PLOT_HEIGHT,
     };
     let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    if let Some(band) = &band {
+        panel.band(&mut sheet.canvas, input, band, BAND);
+    }
     panel.loops(&mut sheet.canvas, input, output, &MEASURED);
     panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
     finish(Figure::Loops, view, sheet, area.bottom() + BELOW + 4.0)

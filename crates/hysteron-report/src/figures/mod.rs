@@ -1,17 +1,21 @@
 //! One file per kind of figure.
 
 mod close_up;
+mod cross_validation;
 mod discrepancy;
 mod evolution;
 mod excitation_map;
+mod load_loops;
 mod loops;
 mod over_time;
+mod standard_errors;
 mod weights_map;
 mod weights_plane;
 
 pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
+pub(crate) use excitation_map::counts as classes_counted;
 
 use crate::captions;
 use crate::draw::sheet::Sheet;
@@ -24,6 +28,10 @@ pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
         Figure::PlaneEvolution => Some(evolution::svg(view)),
         Figure::WeightsPlane => Some(weights_plane::svg(view)),
         Figure::WeightsMap => Some(weights_map::svg(view)),
+        Figure::LoadLoops => load_loops::svg(view),
+        Figure::Excitation => excitation_map::of_model(view),
+        Figure::StandardErrors => standard_errors::svg(view),
+        Figure::CrossValidation => cross_validation::svg(view),
         Figure::OutputTime => Some(over_time::output(view)),
         Figure::Loops => Some(loops::svg(view)),
         Figure::OutputDiscrepancy => Some(discrepancy::output(view)),

@@ -6,7 +6,7 @@ use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
-use crate::draw::style::{ANTICIPATE, MEASURED, MODELLED, SHADE, Stroke};
+use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
 use crate::figure::Figure;
 use crate::quantity::Labelled;
 use crate::view::View;
@@ -23,10 +23,7 @@ pub(super) struct Curve<'a> {
 
 pub(super) fn output(view: &View<'_>) -> String {
     let mut sheet = sheet(Figure::OutputTime, view, WIDTH);
-    sheet.legend(&[
-        Key::Line(MEASURED, view.recorded().into()),
-        Key::Line(MODELLED, "modelled".into()),
-    ]);
+    sheet.legend(&measured_and_modelled(view));
     let curves = [
         Curve {
             values: &view.recording.output,
@@ -37,17 +34,28 @@ pub(super) fn output(view: &View<'_>) -> String {
             stroke: MODELLED,
         },
     ];
-    let span = Span::of(curves.iter().flat_map(|curve| curve.values)).padded(0.04);
-    let height = plot(
-        &mut sheet,
-        view,
-        Axis::new(&view.output, span),
-        &curves,
-        &[],
-        PLOT_HEIGHT,
-    )
-    .1;
+    let band = view.band_edges();
+    let edges = band.iter().flatten().flatten();
+    let span = Span::of(curves.iter().flat_map(|curve| curve.values).chain(edges)).padded(0.04);
+    let y = Axis::new(&view.output, span);
+    let (panel, height) = frame(&mut sheet, view, y, PLOT_HEIGHT);
+    if let Some(band) = &band {
+        panel.band(&mut sheet.canvas, &view.time, band, BAND);
+    }
+    draw(&mut sheet, view, &panel, &curves);
     finish(Figure::OutputTime, view, sheet, height)
+}
+
+/// Legend of both outputs, and of the band where there is one.
+pub(super) fn measured_and_modelled(view: &View<'_>) -> Vec<Key> {
+    let mut keys = vec![
+        Key::Line(MEASURED, view.recorded().into()),
+        Key::Line(MODELLED, "modelled".into()),
+    ];
+    if view.band().is_some() {
+        keys.push(Key::Area(BAND, "95 % band".into()));
+    }
+    keys
 }
 
 pub(super) fn input(view: &View<'_>) -> Option<String> {
@@ -104,6 +112,17 @@ pub(super) fn plot(
     moving: &[bool],
     height: f64,
 ) -> (Panel, f64) {
+    let (panel, height) = frame(sheet, view, y, height);
+    panel.shade(
+        &mut sheet.canvas,
+        stretches(moving).iter().map(|stretch| view.extent(stretch)),
+    );
+    draw(sheet, view, &panel, curves);
+    (panel, height)
+}
+
+/// An empty panel over all of the recording's time, and the height of the figure.
+fn frame(sheet: &mut Sheet, view: &View<'_>, y: Axis, height: f64) -> (Panel, f64) {
     let left = MARGIN + left_of(&y, height);
     let area = Rect {
         x: left,
@@ -113,14 +132,13 @@ pub(super) fn plot(
     };
     let x = time_axis(&view.time_label, Span::of(view.time.iter()));
     let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
-    panel.shade(
-        &mut sheet.canvas,
-        stretches(moving).iter().map(|stretch| view.extent(stretch)),
-    );
+    (panel, area.bottom() + BELOW + 4.0)
+}
+
+fn draw(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, curves: &[Curve<'_>]) {
     for curve in curves {
         panel.curve(&mut sheet.canvas, &view.time, curve.values, &curve.stroke);
     }
-    (panel, area.bottom() + BELOW + 4.0)
 }
 
 /// Time runs from edge to edge.

@@ -4,16 +4,16 @@ use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Canvas, Rect, Short, rect_data};
 use crate::draw::colour::of_share;
-use crate::draw::panel::{BELOW, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::panel::{BELOW, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{AXIS, LABEL, Stroke, TICK};
 use crate::draw::text;
 use crate::figure::Figure;
-use crate::plane::{Half, axes};
+use crate::plane::{Cell, Half, axes};
 use crate::view::View;
 use std::fmt::Write;
 
-const WIDTH: f64 = 600.0;
+pub(super) const WIDTH: f64 = 600.0;
 const BAR: f64 = 16.0;
 const SHADES: usize = 96;
 
@@ -44,36 +44,10 @@ pub(super) fn svg(view: &View<'_>) -> String {
     }
     sheet.legend(&keys);
 
-    let [alpha, beta] = axes(view);
-    let left = MARGIN + left_of(&beta, WIDTH);
-    let bar_room = BAR + 18.0 + left_of(&scale, WIDTH);
-    let side = WIDTH - MARGIN - left - bar_room;
-    let area = Rect {
-        x: left,
-        y: sheet.top,
-        width: side,
-        height: side,
-    };
-    let panel = half.panel(&mut sheet.canvas, area, alpha, beta, false);
+    let (panel, bottom) = plot(&mut sheet, view, &half, |cell| cell.sum, &scale, largest);
     let mut minus = String::new();
     for cell in half.cells() {
-        let [x, y] = panel.point(cell.alpha - 0.5 * half.pitch, cell.beta + 0.5 * half.pitch);
-        let width = panel.px(cell.alpha + 0.5 * half.pitch) - x;
-        let share = if largest > 0.0 {
-            cell.sum / largest
-        } else {
-            0.0
-        };
-        // A hair wider than the cell, or the seams between cells shine through.
-        sheet.canvas.rect(
-            Rect {
-                x,
-                y,
-                width: width + 0.3,
-                height: width + 0.3,
-            },
-            &of_share(share),
-        );
+        let [x, y, width] = half.place(&panel, &cell);
         if cell.sum < -view.source.zero() && width > 4.0 {
             let _ = write!(
                 minus,
@@ -87,17 +61,54 @@ pub(super) fn svg(view: &View<'_>) -> String {
     sheet
         .canvas
         .path(&minus, None, Some(&Stroke::solid("#1b2128", 1.0)));
-    colour_bar(
-        &mut sheet.canvas,
-        Rect {
-            x: area.right() + 18.0,
-            width: BAR,
-            ..area
-        },
-        &scale,
-        largest,
-    );
-    finish(Figure::WeightsMap, view, sheet, area.bottom() + BELOW + 4.0)
+    finish(Figure::WeightsMap, view, sheet, bottom)
+}
+
+/// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`; returns the panel and
+/// the height of the figure.
+pub(super) fn plot(
+    sheet: &mut Sheet,
+    view: &View<'_>,
+    half: &Half,
+    value: impl Fn(&Cell) -> f64,
+    scale: &Axis,
+    largest: f64,
+) -> (Panel, f64) {
+    let [alpha, beta] = axes(view);
+    let left = MARGIN + left_of(&beta, WIDTH);
+    let bar_room = BAR + 18.0 + left_of(scale, WIDTH);
+    let side = WIDTH - MARGIN - left - bar_room;
+    let area = Rect {
+        x: left,
+        y: sheet.top,
+        width: side,
+        height: side,
+    };
+    let panel = half.panel(&mut sheet.canvas, area, alpha, beta, false);
+    for cell in half.cells() {
+        let [x, y, width] = half.place(&panel, &cell);
+        let share = if largest > 0.0 {
+            value(&cell) / largest
+        } else {
+            0.0
+        };
+        // A hair wider than the cell, or the seams between cells shine through.
+        let (width, height) = (width + 0.3, width + 0.3);
+        let area = Rect {
+            x,
+            y,
+            width,
+            height,
+        };
+        sheet.canvas.rect(area, &of_share(share));
+    }
+    let bar = Rect {
+        x: area.right() + 18.0,
+        width: BAR,
+        ..area
+    };
+    colour_bar(&mut sheet.canvas, bar, scale, largest);
+    (panel, area.bottom() + BELOW + 4.0)
 }
 
 fn colour_bar(canvas: &mut Canvas, area: Rect, scale: &Axis, largest: f64) {

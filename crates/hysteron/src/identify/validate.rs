@@ -69,6 +69,27 @@ pub struct Validation {
     pub scores: Vec<Score>,
 }
 
+impl Validation {
+    /// The scores as a table: the numbers of levels and the strengths of the smoothness tried, each ascending, and for
+    /// each number of levels the error at each strength, `None` where it was not tried.
+    #[must_use]
+    pub fn table(&self) -> (Vec<usize>, Vec<f64>, Vec<Vec<Option<f64>>>) {
+        let mut levels: Vec<usize> = self.scores.iter().map(|score| score.levels).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let mut smooth: Vec<f64> = self.scores.iter().map(|score| score.smooth).collect();
+        smooth.sort_by(f64::total_cmp);
+        smooth.dedup();
+        let error = |levels: usize, smooth: f64| {
+            let tried = |score: &&Score| score.levels == levels && score.smooth == smooth;
+            self.scores.iter().find(tried).map(|score| score.rmse)
+        };
+        let row = |&k: &usize| smooth.iter().map(|&s| error(k, s)).collect();
+        let rows = levels.iter().map(row).collect();
+        (levels, smooth, rows)
+    }
+}
+
 /// Chooses levels and smoothness by the error on left-out branches. Returns the options with the choice
 /// made, and how it came about.
 ///

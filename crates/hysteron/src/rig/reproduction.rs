@@ -9,6 +9,9 @@ pub const LEVELS: usize = 20;
 /// Its lowest and highest level in °C (Table 2).
 pub const RANGE_DEGC: (f64, f64) = (20.0, 80.0);
 
+/// Replicates for standard errors and band: enough for their second digit.
+const REPLICATES: usize = 200;
+
 /// The chapter's experiment, simulated, with what comes of it.
 #[derive(Debug, Clone)]
 pub struct Reproduction {
@@ -34,6 +37,7 @@ impl Reproduction {
         let options = FitOptions {
             levels: LEVELS,
             range: Some(RANGE_DEGC),
+            bootstrap: REPLICATES,
             ..FitOptions::default()
         };
         let model = fit(&prepared[0], &options)?;

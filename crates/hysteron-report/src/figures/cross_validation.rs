@@ -1,0 +1,117 @@
+//! How levels and smoothness were chosen: the error on left-out branches, a line for each number of levels.
+
+use super::{finish, sheet};
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
+use crate::draw::marker::Marker;
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::style::Stroke;
+use crate::figure::Figure;
+use crate::number::{magnitude, power_of_ten, significant};
+use crate::quantity::Labelled;
+use crate::view::View;
+
+const WIDTH: f64 = 620.0;
+const PLOT_HEIGHT: f64 = 340.0;
+
+/// Errors beyond this many times the best are cut off: they would press the others together.
+const SHOWN: f64 = 6.0;
+
+/// From few levels to many: ever darker, and different in their dashes.
+const LINES: [Stroke; 7] = [
+    dashed("#b9c2cc", "2 4"),
+    dashed("#e0a15e", "9 4"),
+    dashed("#7cb5cf", ""),
+    dashed("#d9682d", "2 4"),
+    dashed("#3a86b4", "9 4"),
+    dashed("#a53e0f", ""),
+    dashed("#0f2f63", "12 4 2 4"),
+];
+
+const fn dashed(colour: &'static str, dash: &'static str) -> Stroke {
+    Stroke {
+        colour,
+        width: 2.0,
+        dash,
+    }
+}
+
+pub(super) fn svg(view: &View<'_>) -> Option<String> {
+    let (levels, smooth, errors) = view.validation()?.table();
+    let of_levels = |k: usize| format!("{k} levels");
+    let lines: Vec<(String, Vec<Option<f64>>)> = match smooth.len() {
+        // With one strength only, the levels take its place below.
+        1 => vec![("error left out".into(), errors.concat())],
+        _ => levels.iter().copied().map(of_levels).zip(errors).collect(),
+    };
+    let (name, labels): (&str, Vec<String>) = match smooth.len() {
+        1 => ("levels K", levels.iter().map(usize::to_string).collect()),
+        _ => (
+            "strength of the smoothness",
+            smooth.iter().copied().map(strength).collect(),
+        ),
+    };
+    let all = || lines.iter().flat_map(|(_, errors)| errors).flatten();
+    let best = all().copied().fold(f64::INFINITY, f64::min);
+    let shown = all().filter(|error| **error <= SHOWN * best);
+    let error = view.output.renamed("RMSE left out");
+    let y = Axis::new(&error, Span::of(shown).with(0.0).padded(0.05).from(0.0));
+    let name = Labelled {
+        name: name.into(),
+        unit: None,
+    };
+    let x = Axis::named(&name, labels);
+
+    let mut sheet = sheet(Figure::CrossValidation, view, WIDTH);
+    let stroke = |n: usize| match lines.len() {
+        1 => LINES[LINES.len() - 2],
+        _ => LINES[n % LINES.len()],
+    };
+    let mut keys: Vec<Key> = lines
+        .iter()
+        .enumerate()
+        .map(|(n, (name, _))| Key::Line(stroke(n), name.clone()))
+        .collect();
+    keys.push(Key::Marker(Marker::Disc, "chosen".into(), ""));
+    sheet.legend(&keys);
+    let left = MARGIN + left_of(&y, PLOT_HEIGHT);
+    let area = Rect {
+        x: left,
+        y: sheet.top,
+        width: WIDTH - MARGIN - left,
+        height: PLOT_HEIGHT,
+    };
+    let panel = Panel::draw(&mut sheet.canvas, area, x, y, Labels { x: true, y: true });
+    for (n, (_, errors)) in lines.iter().enumerate() {
+        let xs: Vec<f64> = (0..errors.len()).map(|n| n as f64).collect();
+        // What was not tried breaks the line.
+        let ys: Vec<f64> = errors.iter().map(|e| e.unwrap_or(f64::NAN)).collect();
+        panel.curve(&mut sheet.canvas, &xs, &ys, &stroke(n));
+    }
+    // The choice is what the model has: the one-standard-error rule takes a smoother one than the best.
+    let fitted = view.source.fit()?.smooth;
+    let row = levels.iter().position(|k| *k == view.source.levels());
+    let column = smooth.iter().position(|s| *s == fitted);
+    if let (Some(row), Some(column)) = (row, column) {
+        let (line, place) = if smooth.len() == 1 {
+            (0, row)
+        } else {
+            (row, column)
+        };
+        if let Some(error) = lines[line].1[place] {
+            let at = panel.point(place as f64, error);
+            Marker::Disc.draw(&mut sheet.canvas, [at], 5.0);
+        }
+    }
+    let height = area.bottom() + BELOW + 4.0;
+    Some(finish(Figure::CrossValidation, view, sheet, height))
+}
+
+/// `10⁻⁸` where it is one.
+fn strength(value: f64) -> String {
+    if value > 0.0 && (value / 10_f64.powi(value.log10().round() as i32) - 1.0).abs() < 1e-9 {
+        return power_of_ten(magnitude(value * 1.000_001));
+    }
+    significant(value, 2)
+}

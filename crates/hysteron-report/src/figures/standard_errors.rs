@@ -1,0 +1,77 @@
+//! How uncertain the weights are: standard errors over the plane, relative to the largest weight.
+
+use super::weights_map::{WIDTH, plot};
+use super::{finish, sheet};
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Short;
+use crate::draw::sheet::Key;
+use crate::draw::style::Stroke;
+use crate::figure::Figure;
+use crate::plane::Half;
+use crate::quantity::Labelled;
+use crate::view::View;
+use hysteron::Excitation;
+use std::fmt::Write;
+
+/// Cells that the data say nothing of.
+const UNKNOWN: Stroke = Stroke::solid("#6b7480", 1.0);
+
+pub(super) fn svg(view: &View<'_>) -> Option<String> {
+    let confidence = view.confidence()?;
+    let of = view.source.weights().iter();
+    let largest = of.fold(0.0, |largest: f64, mu| largest.max(mu.abs()));
+    let percent = |error: &f64| {
+        if largest > 0.0 {
+            100.0 * error / largest
+        } else {
+            0.0
+        }
+    };
+    let errors: Vec<f64> = confidence.standard_error.iter().map(percent).collect();
+    // The error of a block of operators is not the sum of theirs: the largest stands for it.
+    let half = Half::of_values(view.source, &errors);
+    let high = half
+        .cells()
+        .fold(0.0, |high: f64, cell| high.max(cell.largest));
+    let label = Labelled {
+        name: "standard error, of the largest weight".into(),
+        unit: Some("%".into()),
+    };
+    let high = if high > 0.0 { high } else { 1.0 };
+    let scale = Axis::new(&label, Span { low: 0.0, high });
+
+    let mut sheet = sheet(Figure::StandardErrors, view, WIDTH);
+    let excitation = confidence.excitation.iter();
+    let unknown: Vec<f64> = excitation
+        .map(|class| f64::from(u8::from(*class == Excitation::Never)))
+        .collect();
+    let mut keys = Vec::new();
+    if unknown.contains(&1.0) {
+        keys.push(Key::Text(
+            "cells with / : never excited, no error known".into(),
+        ));
+    }
+    keys.extend(half.remark().map(Key::Text));
+    if keys.is_empty() {
+        keys.push(Key::Text(String::new()));
+    }
+    sheet.legend(&keys);
+    let (panel, bottom) = plot(&mut sheet, view, &half, |cell| cell.largest, &scale, high);
+    let mut slashes = String::new();
+    for cell in Half::of_values(view.source, &unknown).cells() {
+        if cell.sum == 0.0 || cell.mean() < 1.0 {
+            continue;
+        }
+        let [x, y, width] = half.place(&panel, &cell);
+        let _ = write!(
+            slashes,
+            "M{} {}l{} -{}",
+            Short(x + 0.25 * width),
+            Short(y + 0.75 * width),
+            Short(0.5 * width),
+            Short(0.5 * width)
+        );
+    }
+    sheet.canvas.path(&slashes, None, Some(&UNKNOWN));
+    Some(finish(Figure::StandardErrors, view, sheet, bottom))
+}

@@ -1,0 +1,157 @@
+//! What is in a model.
+
+use crate::{Confidence, Excitation, Model, Result};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What is in a model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelSummary {
+    /// Levels of the plane.
+    pub levels: usize,
+    /// Lowest and highest level.
+    pub plane: (f64, f64),
+    /// Distance between levels.
+    pub step: f64,
+    /// Number of operators.
+    pub operators: usize,
+    /// Weights that are not zero.
+    pub weights_not_zero: usize,
+    /// Weights below zero: with any, there is no inverse.
+    pub weights_below_zero: usize,
+    /// Output with every operator off, and with every operator on.
+    pub output: (f64, f64),
+    /// Widest loop: the largest difference between the falling and the rising major branch, in the output's unit.
+    pub widest_loop: f64,
+    /// The input at which it is.
+    pub widest_loop_at: f64,
+    /// The load that the weights depend on, where they do.
+    pub load: Option<LoadSummary>,
+    /// What the data said of the weights, where the fit asked.
+    pub confidence: Option<ConfidenceSummary>,
+}
+
+/// The load that the weights of a model depend on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoadSummary {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Smallest load that the model was identified at.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+    /// Order of the weights as a function of it.
+    pub order: usize,
+}
+
+/// What the data said of the weights: [`Confidence`] in short.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConfidenceSummary {
+    /// Operators in each class, from the least known to the best.
+    pub excitation: BTreeMap<Excitation, usize>,
+    /// Combinations of weights that the data determine.
+    pub rank: usize,
+    /// How many there are.
+    pub unknowns: usize,
+    /// Ratio of the best to the worst determined of them.
+    pub condition: f64,
+    /// Standard deviation of what the model leaves, in the output's unit.
+    pub noise: f64,
+    /// Replicates of the bootstrap.
+    pub replicates: usize,
+    /// Standard error of the offset.
+    pub offset_error: f64,
+    /// The weights with the largest standard errors, the largest first.
+    pub least_certain: Vec<Uncertain>,
+}
+
+/// A weight and its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Uncertain {
+    /// Level of `α`, from 1.
+    pub i: usize,
+    /// Level of `β`, from `i`.
+    pub j: usize,
+    /// The weight `μ_ij`.
+    pub weight: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// How many of the least certain weights are named.
+const NAMED: usize = 5;
+
+impl ConfidenceSummary {
+    fn new(model: &Model, confidence: &Confidence) -> Self {
+        let rows = (1..=model.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
+        let weights = model.weights().iter().zip(&confidence.standard_error);
+        let mut least_certain: Vec<Uncertain> = rows
+            .zip(weights)
+            .map(|((i, j), (&weight, &standard_error))| Uncertain {
+                i,
+                j,
+                weight,
+                standard_error,
+            })
+            .collect();
+        least_certain.sort_by(|a, b| b.standard_error.total_cmp(&a.standard_error));
+        least_certain.truncate(NAMED);
+        Self {
+            excitation: Excitation::ALL
+                .map(|class| (class, confidence.count(class)))
+                .into(),
+            rank: confidence.rank,
+            unknowns: confidence.unknowns,
+            condition: confidence.condition,
+            noise: confidence.noise,
+            replicates: confidence.replicates,
+            offset_error: confidence.offset_error,
+            least_certain,
+        }
+    }
+}
+
+/// Summarises `model`.
+///
+/// # Errors
+/// None on a model made by this crate.
+pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
+    let plane = model.plane();
+    let levels = plane.levels();
+    // The major branches bend only at the levels.
+    let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
+    let rising = model.simulate(&ladder)?;
+    let mut falling = vec![0.0; ladder.len()];
+    let down: Vec<f64> = ladder.iter().rev().copied().collect();
+    model.run(&mut model.saturated(), &down, &mut falling)?;
+    falling.reverse();
+    let gap = |k: &usize| (falling[*k] - rising[*k]).abs();
+    let widest = (0..=levels)
+        .max_by(|a, b| gap(a).total_cmp(&gap(b)))
+        .unwrap_or(0);
+    Ok(ModelSummary {
+        levels,
+        plane: (plane.min(), plane.max()),
+        step: plane.step(),
+        operators: plane.operators(),
+        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        weights_below_zero: model.weights().iter().filter(|mu| **mu < 0.0).count(),
+        output: model.output_range(),
+        widest_loop: gap(&widest),
+        widest_loop_at: ladder[widest],
+        load: model.load.as_ref().map(|load| LoadSummary {
+            name: load.quantity.name.clone(),
+            unit: load.quantity.unit.clone(),
+            min: load.range().0,
+            max: load.range().1,
+            order: load.parts().len().saturating_sub(1),
+        }),
+        confidence: model
+            .fit
+            .as_ref()
+            .and_then(|fit| fit.confidence.as_ref())
+            .map(|confidence| ConfidenceSummary::new(model, confidence)),
+    })
+}
