@@ -23,7 +23,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         load: column,
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
-    let evaluation = hysteron::evaluate(&model, &recording)?;
+    let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
     if let Some(folder) = &args.report {
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let report = Report {

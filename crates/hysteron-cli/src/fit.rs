@@ -3,7 +3,7 @@
 use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
 use hysteron::{
     Candidates, Columns, FitOptions, FitSummary, Model, Preparation, RateDependence, Recording,
-    Sign, Solver, Start, Step,
+    Sign, Solver, Step,
 };
 use serde_json::json;
 
@@ -49,6 +49,16 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             text::number(plane.max())
         );
     }
+    for recording in &recordings {
+        let against = hysteron::way_against_input(recording, model.sign())?;
+        if matches!(args.solver, args::Solver::Nnls) && against > hysteron::AGAINST_INPUT {
+            eprintln!(
+                "hysteron: on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow: \
+                 a butterfly loop needs --solver ols, several loads --load, a drive that heats --thermal",
+                100.0 * against
+            );
+        }
+    }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => print(&to_json(args, &model, fit, clipped, &prepared).to_string()),
@@ -81,11 +91,7 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         },
         offset: args.offset,
         smooth,
-        start: match args.start {
-            args::Start::Off => Start::Off,
-            args::Start::On => Start::On,
-            args::Start::Unknown => Start::Unknown,
-        },
+        start: args.start.into(),
         load_degree: args.load_degree,
         bootstrap: 0,
     };

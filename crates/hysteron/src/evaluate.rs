@@ -1,8 +1,11 @@
 //! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
 
+use crate::identify::simulate_from_unknown;
 use crate::recording::range;
 use crate::turning::{Turning, headings};
-use crate::{BandEvaluation, Errors, Inverse, Model, Policy, Recording, Result, Status};
+use crate::{
+    BandEvaluation, Errors, Inverse, Model, Policy, Recording, Result, Start, State, Status,
+};
 
 /// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
 pub const NOISE: f64 = 0.01;
@@ -58,9 +61,37 @@ pub struct InverseRun {
 /// # Errors
 /// [`crate::Error::Recording`] for a recording that cannot be worked with.
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
+    evaluate_from(model, recording, Start::Off)
+}
+
+/// As [`evaluate`], from another start. With one that is unknown, the forward test takes the start that explains the
+/// recording best; the inverse sets out from all off or all on, whichever is nearer.
+///
+/// # Errors
+/// As [`evaluate`]; [`crate::Error::Fit`] for a start that is not off with a load.
+pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
     recording.check()?;
     let mut output_model = vec![0.0; recording.len()];
-    let clipped = model.run(&mut model.start(), &recording.input, &mut output_model)?;
+    let run = |mut state, output: &mut Vec<f64>| model.run(&mut state, &recording.input, output);
+    let mut begin = model.start();
+    let clipped = run(begin.clone(), &mut output_model)?;
+    if start != Start::Off {
+        if model.load.is_some() {
+            return Err(crate::Error::Fit(
+                "with a load that changes, a recording has to start with every operator off".into(),
+            ));
+        }
+        let mut from_on = vec![0.0; recording.len()];
+        run(model.saturated(), &mut from_on)?;
+        let rmse = |output: &[f64]| compare(&recording.output, output).rmse;
+        if start == Start::On || rmse(&from_on) < rmse(&output_model) {
+            begin = model.saturated();
+        }
+        output_model = match start {
+            Start::On => from_on,
+            _ => simulate_from_unknown(model, recording)?,
+        };
+    }
     if model.load.is_some() {
         let Some(load) = &recording.load else {
             return Err(crate::Error::Fit(
@@ -72,7 +103,7 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     let forward = compare(&recording.output, &output_model);
     let inverse = match model.inverse() {
         _ if model.load.is_some() => Err("the load changes: take the model at one load".into()),
-        Ok(inverse) => Ok(evaluate_inverse(model, &inverse, recording)?),
+        Ok(inverse) => Ok(evaluate_inverse(&inverse, &begin, recording)?),
         Err(error) => Err(error.to_string()),
     };
     Ok(Evaluation {
@@ -85,8 +116,8 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 }
 
 fn evaluate_inverse(
-    model: &Model,
     inverse: &Inverse<'_>,
+    begin: &State,
     recording: &Recording,
 ) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
@@ -94,7 +125,7 @@ fn evaluate_inverse(
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
     let headings = headings(&recording.output, tolerance);
     let run = |policy: &dyn Fn(usize) -> Policy<f64>| -> Result<InverseRun> {
-        let mut state = model.start();
+        let mut state = begin.clone();
         let mut input_model = Vec::with_capacity(recording.len());
         let mut out_of_reach = 0;
         for (n, &target) in recording.output.iter().enumerate() {

@@ -19,6 +19,7 @@ mod load;
 mod metrics;
 mod model;
 mod model_file;
+mod monotone;
 mod output;
 mod prepare;
 mod recording;
@@ -30,7 +31,7 @@ mod turning;
 pub use band::{Band, BandEvaluation};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
-pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate};
+pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate, evaluate_from};
 pub use hysteron_core::{
     Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
     Status,
@@ -46,6 +47,7 @@ pub use inspect::{
 pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Inverse, Model, Sign, State};
+pub use monotone::{AGAINST_INPUT, way_against_input};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Excitation, FitOptions, INTERVAL, Model, Operator, Plane, Recording, Sign, Start, fit,
-    fit_experiment,
+    Excitation, FitOptions, INTERVAL, Model, Operator, Plane, Recording, Sign, Start,
+    evaluate_from, fit, fit_experiment,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -130,6 +130,13 @@ fn an_unknown_start_costs_little() {
                     ..FitOptions::default()
                 };
                 let found = fit(&recording, &options).unwrap();
+                // With the weights given, the start that explains the recording best is no worse than that of the fit.
+                let again = evaluate_from(&found, &recording, start).unwrap().forward;
+                let fitted = found.fit.as_ref().unwrap().rmse;
+                assert!(
+                    again.rmse <= fitted * (1.0 + 1e-6),
+                    "{start:?}: {again:?}, {fitted}"
+                );
                 error_elsewhere(&found, &model, &mut ChaCha8Rng::seed_from_u64(seed))
             };
             known_start += error(truth) / 40.0;

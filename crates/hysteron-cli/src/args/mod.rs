@@ -178,6 +178,9 @@ pub(crate) struct Evaluate {
     /// Column of time in seconds, for the report's figures
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
+    /// Where the operators stand before the first sample
+    #[arg(long, value_enum, default_value = "off")]
+    pub(crate) start: Start,
     /// For a model that depends on a load: the load to take it at, or the recording's column of it
     #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
     pub(crate) load: Option<String>,

@@ -49,6 +49,16 @@ pub(crate) enum Sign {
     Negative,
 }
 
+impl From<Start> for hysteron::Start {
+    fn from(start: Start) -> Self {
+        match start {
+            Start::Off => Self::Off,
+            Start::On => Self::On,
+            Start::Unknown => Self::Unknown,
+        }
+    }
+}
+
 impl From<Operator> for hysteron::Operator {
     fn from(operator: Operator) -> Self {
         match operator {

@@ -5,6 +5,7 @@ mod confidence;
 mod excitation;
 mod experiment;
 mod free;
+mod initial;
 mod nnls;
 mod options;
 mod pivoting;
@@ -21,6 +22,7 @@ pub(crate) use excitation::Unresolved;
 pub use excitation::{Excitation, excitation};
 pub(crate) use experiment::bernstein;
 pub use experiment::plane_of;
+pub(crate) use initial::simulate_from_unknown;
 pub use options::{FitOptions, FitSummary, Solver, Start};
 pub use validate::{Candidates, LeftOut, Score, Validation, cross_validate, left_out};
 

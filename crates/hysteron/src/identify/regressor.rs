@@ -9,6 +9,7 @@
 //! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
 
 use super::experiment::Experiment;
+use super::initial::OPEN;
 use super::sparse::{From, SparseForm};
 use super::{Start, Watch};
 use crate::{Operator, Plane, Result};
@@ -16,9 +17,6 @@ use std::ops::Range;
 
 /// Most recordings in one experiment: a pattern of starts has a bit for each.
 pub(super) const MOST_RECORDINGS: usize = 64;
-
-/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
-const OPEN: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Column {
@@ -89,19 +87,11 @@ impl Regressor {
 
     /// For each operator, in which recordings the first sample leaves its state open.
     fn undetermined(&self, experiment: &Experiment) -> Result<Vec<u64>> {
-        let levels = self.form.plane().levels();
         let mut open = vec![0; self.form.operators()];
         for (s, range) in experiment.recordings.iter().enumerate() {
-            let first = experiment.input[range.start];
-            let mut off = self.form.rows(From::Off)?;
-            let mut on = self.form.rows(From::On)?;
-            off.leaves_branch(first)?;
-            on.leaves_branch(first)?;
-            let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-            for (open, (i, j)) in open.iter_mut().zip(operators) {
-                if on.state().gamma(i, j)? > off.state().gamma(i, j)? + OPEN {
-                    *open |= 1 << s;
-                }
+            let parts = self.form.open(experiment.input[range.start])?;
+            for (open, part) in open.iter_mut().zip(parts) {
+                *open |= u64::from(part > OPEN) << s;
             }
         }
         Ok(open)

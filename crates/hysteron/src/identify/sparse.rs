@@ -62,6 +62,18 @@ impl SparseForm {
         Rows::new(&self.blank, &self.place, from)
     }
 
+    /// How much of each operator the first sample leaves open: its state from on less that from off.
+    pub(super) fn open(&self, first: f64) -> Result<Vec<f64>> {
+        let levels = self.plane.levels();
+        let (mut off, mut on) = (self.rows(From::Off)?, self.rows(From::On)?);
+        off.leaves_branch(first)?;
+        on.leaves_branch(first)?;
+        let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
+        operators
+            .map(|(i, j)| Ok(on.state().gamma(i, j)? - off.state().gamma(i, j)?))
+            .collect()
+    }
+
     /// `Φ μ`: a run of the forward model, `O(n + K²)`.
     pub(super) fn forward(&self, weights: &[f64], input: &[f64], from: From) -> Result<Vec<f64>> {
         let table = vec![0.0; table_len(self.plane.levels())];
