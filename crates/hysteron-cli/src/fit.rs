@@ -59,6 +59,14 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             );
         }
     }
+    if let (Some(fit), args::Start::Off) = (&model.fit, args.start)
+        && fit.open_at_start > 0
+    {
+        eprintln!(
+            "hysteron: the first input leaves {} operators open, which are taken as off: if it does not follow on the lowest input, use --start unknown",
+            fit.open_at_start
+        );
+    }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => print(&to_json(args, &model, fit, clipped, &prepared).to_string()),

@@ -94,6 +94,7 @@ pub fn fit_experiment(
         solver: options.solver,
         smooth: options.smooth,
         start: options.start,
+        open_at_start: problem.regressor.open_at_start,
         samples: errors.samples,
         rmse: errors.rmse,
         max_abs: errors.max_abs,

@@ -95,6 +95,8 @@ pub struct FitSummary {
     pub smooth: f64,
     /// Where the operators were taken to stand before each recording.
     pub start: Start,
+    /// Operators that the first sample of a recording leaves open: on or off there by `start` alone.
+    pub open_at_start: usize,
     /// Samples fitted.
     pub samples: usize,
     /// Root mean squared error over them, in the output's unit.

@@ -52,6 +52,8 @@ pub(super) struct Regressor {
     /// the start is known.
     open: Vec<u64>,
     columns: Vec<Column>,
+    /// Operators whose state the first sample of some recording leaves open.
+    pub(super) open_at_start: usize,
 }
 
 impl Regressor {
@@ -65,6 +67,7 @@ impl Regressor {
         let mut regressor = Self {
             form,
             open: Vec::new(),
+            open_at_start: 0,
             columns: Vec::new(),
         };
         let on = if start == Start::On { u64::MAX } else { 0 };
@@ -73,8 +76,9 @@ impl Regressor {
             |on| move |part| (0..operators).map(move |operator| Column { part, operator, on });
         let parts = 0..experiment.parts.len();
         regressor.columns = parts.clone().flat_map(all(on)).collect();
+        let open = regressor.undetermined(experiment)?;
+        regressor.open_at_start = open.iter().filter(|on| **on != 0).count();
         if start == Start::Unknown {
-            let open = regressor.undetermined(experiment)?;
             let on = |part| {
                 let some = open.iter().enumerate().filter(|(_, on)| **on != 0);
                 some.map(move |(operator, &on)| Column { part, operator, on })
