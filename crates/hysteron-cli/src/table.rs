@@ -13,7 +13,10 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         args.out.as_deref(),
         args.json.json,
         what,
-        |table, out, progress| hysteron::simulate_table(&model, table, &args.input, out, progress),
+        |table, out, progress| {
+            let time = args.time.as_deref();
+            hysteron::simulate_table(&model, table, &args.input, time, out, progress)
+        },
     )
 }
 

@@ -53,11 +53,13 @@ pub struct InverseRun {
 /// Runs `model` forward over the measured input, and its inverse over the measured output, from every operator off.
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+/// [`crate::Error::Recording`] for a recording that cannot be worked with; [`crate::Error::Thermal`] for one without time
+/// where the model has a thermal body.
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     recording.check()?;
+    let seen = model.behind_body(recording)?;
     let mut output_model = vec![0.0; recording.len()];
-    let clipped = model.run(&mut model.start(), &recording.input, &mut output_model)?;
+    let clipped = model.run(&mut model.start(), &seen.input, &mut output_model)?;
     let forward = compare(&recording.output, &output_model);
     let inverse = match model.inverse() {
         Ok(inverse) => Ok(evaluate_inverse(model, &inverse, recording)?),

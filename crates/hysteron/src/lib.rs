@@ -24,6 +24,7 @@ mod recording;
 pub mod rig;
 mod stream;
 mod table;
+mod thermal;
 mod turning;
 
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
@@ -49,6 +50,7 @@ pub use prepare::{
 pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
 pub use stream::{Counts, Invert, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
+pub use thermal::{FirstOrder, ThermalState, fit_thermal};
 pub use turning::{Headings, Turning, headings};
 
 /// The discrete Preisach plane, equation (3).

@@ -56,6 +56,9 @@ pub struct Model {
     pub output: Quantity,
     /// How offset and weights depend on a load, where they do; the model itself is then that of the middle of its range.
     pub load: Option<crate::LoadDependence>,
+    /// The thermal body in front of the operators, where there is one. Input is then what drives the body, and the
+    /// operators follow its temperature: that is what plane, [`Model::step`] and [`Model::run`] speak of. See [`Model::behind_body`].
+    pub thermal: Option<crate::FirstOrder>,
     /// How the model was obtained, where it was identified.
     pub fit: Option<FitSummary>,
 }
@@ -104,6 +107,7 @@ impl Model {
             input: Quantity::named("input"),
             output: Quantity::named("output"),
             load: None,
+            thermal: None,
             fit: None,
         })
     }
@@ -206,8 +210,11 @@ impl Model {
     /// The inverse of this model.
     ///
     /// # Errors
-    /// [`Error::Core`] naming the first weights below zero, if there are any.
+    /// [`Error::Core`] naming the first weights below zero, if there are any; [`Error::Thermal`] for a model with a thermal body.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
+        if self.thermal.is_some() {
+            return Err(crate::thermal::no_inverse());
+        }
         Ok(Inverse {
             model: self,
             core: self.core.inverse()?,

@@ -3,7 +3,7 @@
 use crate::identify::FitSummary;
 use crate::output::AtomicFile;
 use crate::recording::Quantity;
-use crate::{Error, Model, Operator, Plane, Result, Sign};
+use crate::{Error, FirstOrder, Model, Operator, Plane, Result, Sign};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -22,6 +22,8 @@ struct File {
     #[serde(default)]
     output: OutputEntry,
     weights: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    thermal: Option<ThermalEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fit: Option<FitSummary>,
 }
@@ -68,6 +70,29 @@ struct OutputEntry {
     unit: Option<String>,
     offset: f64,
     sign: i64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    tag = "kind",
+    rename_all = "kebab-case",
+    expecting = "an object in braces"
+)]
+enum ThermalEntry {
+    FirstOrder(FirstOrder),
+}
+
+impl ThermalEntry {
+    fn check(self) -> Result<FirstOrder> {
+        let Self::FirstOrder(body) = self;
+        match body.fault() {
+            None => Ok(body),
+            Some((field, value)) => Err(fault(
+                &format!("thermal.{field}"),
+                format!("{value} is not a finite number above zero"),
+            )),
+        }
+    }
 }
 
 impl Default for OutputEntry {
@@ -162,6 +187,7 @@ impl Model {
         if let Some(name) = file.output.name {
             model.output.name = name;
         }
+        model.thermal = file.thermal.map(ThermalEntry::check).transpose()?;
         model.fit = file.fit;
         Ok(model)
     }
@@ -197,6 +223,7 @@ impl Model {
                 sign: self.sign().factor() as i64,
             },
             weights: self.weights().to_vec(),
+            thermal: self.thermal.map(ThermalEntry::FirstOrder),
             fit: self.fit.clone(),
         };
         // Numbers and strings only: there is nothing that JSON cannot hold.

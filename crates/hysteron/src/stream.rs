@@ -1,8 +1,12 @@
 //! Simulation and inversion of tables row by row: memory does not grow with the file.
 
-use crate::table::Row;
+use crate::table::{Column, Row};
+use crate::thermal::needs_time;
 use crate::turning::Headings;
-use crate::{Direction, Inverse, Model, Policy, Result, State, Status, TableReader, TableWriter};
+use crate::{
+    Direction, FirstOrder, Inverse, Model, Policy, Result, State, Status, TableReader, TableWriter,
+    ThermalState,
+};
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -18,22 +22,29 @@ pub struct Counts {
 }
 
 /// Copies `table` to `out` with a column `output_model`, the model's output for column `input`, from
-/// every operator off. `progress` is told the bytes read.
+/// every operator off. `progress` is told the bytes read. A model with a thermal body needs the column of `time` in seconds.
 ///
 /// # Errors
-/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column.
+/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column; [`crate::Error::Thermal`] for a model with a
+/// thermal body without `time`.
 pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
     input: &str,
+    time: Option<&str>,
     out: Option<&mut TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let column = table.column(input)?;
+    let mut heating = Heating::new(model, table, time)?;
     let mut sink = Sink::start(table, out, &["output_model"])?;
     let mut state = model.start();
     while table.advance()? {
-        let step = model.step(&mut state, table.number(column)?)?;
+        let mut input = table.number(column)?;
+        if let Some(heating) = &mut heating {
+            input = heating.step(table, input)?;
+        }
+        let step = model.step(&mut state, input)?;
         match step.clipped {
             None => {}
             Some(crate::Clipped::Low) => sink.counts.low += 1,
@@ -43,6 +54,37 @@ pub fn simulate_table(
         progress(table.bytes_read());
     }
     Ok(sink.counts)
+}
+
+/// A model's thermal body on its way through a table.
+struct Heating {
+    body: FirstOrder,
+    time: Column,
+    state: Option<ThermalState>,
+}
+
+impl Heating {
+    fn new(model: &Model, table: &mut TableReader, time: Option<&str>) -> Result<Option<Self>> {
+        let Some(body) = model.thermal else {
+            return Ok(None);
+        };
+        let time = table.column(time.ok_or_else(needs_time)?)?;
+        Ok(Some(Self {
+            body,
+            time,
+            state: None,
+        }))
+    }
+
+    /// The temperature at the current row of the table.
+    fn step(&mut self, table: &TableReader, drive: f64) -> Result<f64> {
+        let time = table.number(self.time)?;
+        let rest = || self.body.at_rest(time, drive);
+        let state = self.state.get_or_insert_with(rest);
+        self.body
+            .step(state, time, drive)
+            .map_err(|error| table.fault(Some(self.time), error.to_string()))
+    }
 }
 
 /// How a table of targets is inverted.

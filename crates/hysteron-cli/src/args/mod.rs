@@ -98,6 +98,9 @@ pub(crate) struct Simulate {
     /// Column of the input
     #[arg(long, value_name = "COL")]
     pub(crate) input: String,
+    /// Column of time in seconds, for a model with a thermal body
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
@@ -143,7 +146,7 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds, for the report's figures
+    /// Column of time in seconds, for the report's figures and for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     #[command(flatten)]
