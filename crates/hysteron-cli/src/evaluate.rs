@@ -20,7 +20,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         let report = Report {
             title: &title,
             model: &model,
-            recording: &recording,
+            recording: &*model.behind_body(&recording)?,
             evaluation: &evaluation,
         };
         report.write(folder)?;

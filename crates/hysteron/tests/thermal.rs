@@ -46,7 +46,7 @@ fn a_known_body_is_found_again_through_noise() {
     let (time, input) = drive();
     let heated = BODY.respond(&time, &input).unwrap();
     let clean = truth().simulate(&heated).unwrap();
-    let range = clean.iter().fold(0.0_f64, |m, y| m.max(y - clean[0]));
+    let range = clean.iter().copied().fold(f64::MIN, f64::max) - clean[0]; // it starts lowest
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let noise = Normal::new(0.0, 0.01 * range).unwrap();
     let output = clean.iter().map(|y| y + noise.sample(&mut rng)).collect();
@@ -93,35 +93,126 @@ fn ramp_and_step_of_a_measured_wire_validate_each_other() {
     let (Some(ramp), Some(step)) = (ramp, step) else {
         return;
     };
-    for levels in [8, 10, 12, 15, 20, 30] {
-        let options = FitOptions {
-            levels,
-            ..FitOptions::default()
+    let options = FitOptions::default();
+    // Fitted on the other one, the static model errs by 39 % and 32 % of the range.
+    for (fitted, held_out) in [(&ramp, &step), (&step, &ramp)] {
+        let percent = |model: &Model| {
+            let error = evaluate(model, held_out).unwrap().forward;
+            error.nrmse_percent.unwrap()
         };
-        for (fitted, held_out) in [(&ramp, &step), (&step, &ramp)] {
-            let percent = |model: &Model| {
-                let error = evaluate(model, held_out).unwrap().forward;
-                error.nrmse_percent.unwrap()
-            };
-            let plain = percent(&fit(fitted, &options).unwrap());
-            let started = std::time::Instant::now();
-            let model =
-                fit_thermal(std::slice::from_ref(fitted), &options, &|_, _| Ok(())).unwrap();
-            println!(
-                "K = {levels}: static {plain:.1}, thermal {:.1} % {:?} {:?} {:?} {:?}",
-                percent(&model),
-                model.thermal,
-                model.fit.as_ref().unwrap().nrmse_percent,
-                model.fit.as_ref().unwrap().other,
-                started.elapsed()
-            );
-        }
-        let model = fit_thermal(&[ramp.clone(), step.clone()], &options, &|_, _| Ok(())).unwrap();
+        let plain = percent(&fit(fitted, &options).unwrap());
+        let model = fit_thermal(std::slice::from_ref(fitted), &options, &|_, _| Ok(())).unwrap();
+        let heated = percent(&model);
         println!(
-            "K = {levels}: both {:?} {:?} {:?}",
-            model.thermal,
-            model.fit.as_ref().unwrap().nrmse_percent,
-            model.fit.as_ref().unwrap().other
+            "held out: static {plain:.2} %, {heated:.2} % with {:?}",
+            model.thermal
         );
+        // With 8 to 30 levels the factor was 3.8 to 5.4.
+        assert!(heated < plain / 3.0);
     }
+    let both = [ramp, step];
+    let model = fit_thermal(&both, &options, &|_, _| Ok(())).unwrap();
+    let body = model.thermal.unwrap();
+    let percent = model.fit.as_ref().unwrap().nrmse_percent;
+    println!("both fitted: {percent:.2} % with {body:?}");
+    // Ramp and step together tell heating and cooling apart, and one body serves both about as well as each its own (1 %).
+    assert!(body.tau_heating > 1.2 * body.tau_cooling && percent < 2.0);
+}
+
+#[test]
+fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
+    let (time, input) = drive();
+    let one: usize = 1400; // the ramp up and down
+    let heated = BODY.respond(&time[..one], &input[..one]).unwrap();
+    let output = truth().simulate(&heated).unwrap();
+    let mut recording = Recording::new(input[..one].to_vec(), output).unwrap();
+    recording.time = Some(time[..one].to_vec());
+    let options = FitOptions {
+        levels: 10,
+        ..FitOptions::default()
+    };
+    let model = fit_thermal(&[recording], &options, &|_, _| Ok(())).unwrap();
+    let body = model.thermal.unwrap();
+    println!("{body:?}, {:?}", model.fit.as_ref().unwrap().nrmse_percent);
+    assert_eq!(body.tau_heating, body.tau_cooling);
+    assert_eq!(model.fit.unwrap().other["thermal"]["told_apart"], false);
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused() {
+    let recording = Recording::new(vec![0.0, 1.0, 0.0], vec![0.0, 1.0, 0.5]).unwrap();
+    let fault = |recording: &Recording| {
+        let fitted = fit_thermal(&[recording.clone()], &FitOptions::default(), &|_, _| Ok(()));
+        fitted.unwrap_err().to_string()
+    };
+    assert!(fault(&recording).contains("column of time"));
+    let still = Recording {
+        time: Some(vec![3.0; 3]),
+        ..recording
+    };
+    assert!(fault(&still).contains("time does not pass"));
+}
+
+#[test]
+fn the_file_keeps_the_body_and_refuses_one_that_cannot_be() {
+    let model = truth();
+    let text = model.to_json();
+    assert_eq!(Model::from_json(&text).unwrap(), model);
+    let body = r#""thermal":{"kind":"first-order","gain":1.0,"tau_heating":3.0,"tau_cooling":6.0}"#;
+    assert!(text.contains(body), "{text}");
+    for (from, to, fault) in [
+        (
+            "\"tau_heating\":3.0",
+            "\"tau_heating\":0",
+            "`thermal.tau_heating`: 0 is not",
+        ),
+        (
+            "\"tau_cooling\":6.0",
+            "\"tau_cooling\":-1",
+            "`thermal.tau_cooling`: -1 is not",
+        ),
+        ("\"gain\":1.0,", "", "missing field `gain`"),
+        (
+            "first-order",
+            "second-order",
+            "unknown variant `second-order`",
+        ),
+        (
+            "\"gain\":1.0",
+            "\"gain\":1.0,\"delay\":1",
+            "unknown field `delay`",
+        ),
+    ] {
+        let error = Model::from_json(&text.replace(from, to))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(fault), "{error}");
+    }
+}
+
+#[test]
+fn a_body_has_no_inverse_and_needs_time() {
+    let model = truth();
+    assert!(
+        model
+            .inverse()
+            .unwrap_err()
+            .to_string()
+            .contains("not the drive")
+    );
+    let mut recording = Recording::new(vec![0.0, 1.0, 1.0], vec![0.0, 1.0, 2.0]).unwrap();
+    assert!(
+        evaluate(&model, &recording)
+            .unwrap_err()
+            .to_string()
+            .contains("column of time")
+    );
+    recording.time = Some(vec![0.0, 1.0, 5.0]);
+    let evaluation = evaluate(&model, &recording).unwrap();
+    assert!(evaluation.inverse.unwrap_err().contains("not the drive"));
+    // At 1 s the drive has only just come on; at 5 s the body has warmed for 4 s.
+    let warmed = model
+        .simulate(&[0.0, 0.0, 1.0 - (-4.0 / 3.0_f64).exp()])
+        .unwrap();
+    assert_eq!(evaluation.output_model, warmed);
 }

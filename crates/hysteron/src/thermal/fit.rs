@@ -8,6 +8,10 @@ use serde_json::json;
 /// Samples that the search looks at; the last fit sees all.
 const SEARCHED: usize = 2000;
 
+/// Time constants that the longest recording must last: after four of them a body has settled to 2 %. A slower one
+/// cannot be told from a drift.
+const SETTLED: f64 = 4.0;
+
 /// Neighbours on the first grid of time constants differ by this factor.
 const GRID: f64 = 2.0;
 
@@ -25,8 +29,8 @@ const STEPS: usize = 200;
 ///
 /// For given time constants the weights are a closed problem, that of [`fit_experiment`]; the search is over the time
 /// constants only (separable least squares, Golub and Pereyra 1973), on a logarithmic grid and from its best
-/// point by the simplex of Nelder and Mead. They lie between the sampling step and the length of the recordings: a faster body is
-/// always at rest, a slower one never. The plane is by default that of the temperature.
+/// point by the simplex of Nelder and Mead. They lie between the sampling step and a quarter of the longest recording: a faster body is
+/// always at rest, a slower one never comes near it. The plane is by default that of the temperature.
 ///
 /// The weights can make up for a wrong body as long as each branch is driven in one way only. Where the two time constants are not
 /// resolved for that reason, one for both is identified, as a body in unchanging surroundings has; `fit.other["thermal"]` of the model
@@ -66,7 +70,7 @@ struct Search<'a> {
     recordings: &'a [Recording],
     options: FitOptions,
     watch: Watch<'a>,
-    /// Logarithms of the shortest and the longest time constant.
+    /// Logarithms of the shortest and the longest time constant searched.
     bounds: (f64, f64),
     /// Of so many samples one is looked at.
     stride: usize,
@@ -98,17 +102,13 @@ impl<'a> Search<'a> {
                 ..options.clone()
             },
             watch,
-            bounds: (shortest.ln(), longest.ln()),
+            bounds: (shortest.ln(), (longest / SETTLED).max(shortest).ln()),
             stride: samples.div_ceil(SEARCHED),
         })
     }
 
     /// RMSE with the weights that are best behind a body with these logarithms of time constants.
     fn rmse(&self, logarithms: [f64; 2]) -> Result<f64> {
-        let (low, high) = self.bounds;
-        if logarithms.iter().any(|tau| !(low..=high).contains(tau)) {
-            return Ok(f64::INFINITY);
-        }
         (self.watch)("time constants", f64::NAN)?;
         let [tau_heating, tau_cooling] = logarithms.map(f64::exp);
         let body = FirstOrder {
@@ -131,8 +131,11 @@ impl<'a> Search<'a> {
         &self,
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
     ) -> Result<([f64; 2], f64)> {
-        let value = |point: &[f64; N]| self.rmse(logarithms(point));
         let (low, high) = self.bounds;
+        let value = |point: &[f64; N]| match point.iter().all(|tau| (low..=high).contains(tau)) {
+            true => self.rmse(logarithms(point)),
+            false => Ok(f64::INFINITY),
+        };
         let points = 1 + ((high - low) / GRID.ln()) as usize;
         let mut best = ([low; N], f64::INFINITY);
         for number in 0..points.pow(N as u32) {

@@ -140,7 +140,7 @@ impl Model {
 
 pub(crate) fn needs_time() -> Error {
     Error::Thermal(
-        "the model has a thermal body, whose temperature depends on time: name the column of time (--time)".into(),
+        "the model has a thermal body, whose temperature depends on time: name the column of time, as --time of the command does".into(),
     )
 }
 
