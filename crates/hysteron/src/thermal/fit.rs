@@ -45,7 +45,7 @@ pub fn fit_thermal(
 ) -> Result<Model> {
     let search = Search::new(recordings, options, watch)?;
     let (two, least) = search.best(|taus: &[f64; 2]| *taus)?;
-    let told_apart = search.least_beside(&two)? >= RESOLVED * least;
+    let told_apart = search.least_beside(&two)? > RESOLVED * least;
     let [tau_heating, tau_cooling] = match told_apart {
         true => two,
         false => search.best(|[tau]: &[f64; 1]| [*tau; 2])?.0,
@@ -89,7 +89,7 @@ impl<'a> Search<'a> {
             shortest = shortest.min(step);
             longest = longest.max(end - start);
         }
-        if !(shortest > 0.0) {
+        if shortest <= 0.0 {
             return Err(Error::Thermal(
                 "time does not pass in a recording: nothing can be learned of its body".into(),
             ));
