@@ -144,7 +144,11 @@ fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
 fn what_cannot_be_fitted_is_refused() {
     let recording = Recording::new(vec![0.0, 1.0, 0.0], vec![0.0, 1.0, 0.5]).unwrap();
     let fault = |recording: &Recording| {
-        let fitted = fit_thermal(&[recording.clone()], &FitOptions::default(), &|_, _| Ok(()));
+        let fitted = fit_thermal(
+            std::slice::from_ref(recording),
+            &FitOptions::default(),
+            &|_, _| Ok(()),
+        );
         fitted.unwrap_err().to_string()
     };
     assert!(fault(&recording).contains("column of time"));

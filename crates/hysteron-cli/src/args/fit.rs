@@ -33,8 +33,9 @@ pub(crate) struct Fit {
     /// Order of that function
     #[arg(long, value_name = "N", default_value_t = 1, requires = "load")]
     pub(crate) load_degree: usize,
-    /// Put a thermal body in front of the operators and identify it with the weights: for an input that heats, such as a current,
-    /// a voltage or a duty cycle, where the temperature is not known. Needs --time
+    /// Put a thermal body in front of the operators and identify it with the weights: for an input that heats, where the
+    /// temperature is not known. The input is taken as proportional to the power, as a duty cycle is; of a current or a voltage give
+    /// the square. Needs --time
     #[arg(long, value_enum, value_name = "BODY", requires = "time")]
     pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45 levels on 0]

@@ -12,7 +12,8 @@ use std::borrow::Cow;
 /// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and one for cooling.
 ///
 /// `θ` is the temperature above the surroundings. Where no temperature was measured the gain cannot
-/// be identified: it is 1, and `θ` is in units of the drive that holds it at rest.
+/// be identified: it is 1, and `θ` is in units of the drive that holds it at rest. The drive is taken as proportional to the heating
+/// power, as a duty cycle is; of a current or a voltage give the square.
 ///
 /// ```
 /// let body = hysteron::FirstOrder { gain: 1.0, tau_heating: 2.0, tau_cooling: 4.0 };
