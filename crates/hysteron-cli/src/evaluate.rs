@@ -6,21 +6,12 @@ use hysteron_report::Report;
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
-    let mut model = Model::read(&args.model)?;
-    let load = args.load.as_deref();
-    // A number is a load, anything else a column.
-    let column = match load.map(|load| (load, load.parse::<f64>())) {
-        Some((_, Ok(load))) => {
-            model = model.at_load(load)?;
-            None
-        }
-        other => other.map(|(column, _)| column),
-    };
+    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
     let columns = Columns {
         input: &args.input,
         output: &args.output,
         time: args.time.as_deref(),
-        load: column,
+        load: load.as_deref(),
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
     let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
@@ -29,7 +20,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         let report = Report {
             title: &title,
             model: &model,
-            recording: &recording,
+            recording: &*model.behind_body(&recording)?,
             evaluation: &evaluation,
         };
         report.write(folder)?;

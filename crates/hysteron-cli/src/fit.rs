@@ -2,8 +2,8 @@
 
 use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
 use hysteron::{
-    Candidates, Columns, FitOptions, FitSummary, Model, Preparation, RateDependence, Recording,
-    Sign, Solver, Step,
+    Candidates, Columns, FirstOrder, FitOptions, FitSummary, Model, Preparation, RateDependence,
+    Recording, Sign, Solver, Step,
 };
 use serde_json::json;
 
@@ -39,7 +39,9 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     model.write(&args.out)?;
 
     let plane = model.plane();
-    let inputs = recordings.iter().flat_map(|r| &r.input);
+    let seen = recordings.iter().map(|r| model.behind_body(r));
+    let seen = seen.collect::<hysteron::Result<Vec<_>>>()?;
+    let inputs = seen.iter().flat_map(|r| &r.input);
     let samples: usize = recordings.iter().map(Recording::len).sum();
     let clipped = inputs.filter(|t| plane.clipped(**t).is_some()).count();
     if clipped > 0 {
@@ -110,6 +112,11 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
     };
     let mut validation = None;
     if fixed_levels.is_none() || fixed_smooth.is_none() {
+        if args.thermal.is_some() {
+            return Err(
+                "--thermal does not go with `auto`: choose --levels and --smooth yourself".into(),
+            );
+        }
         let candidates = Candidates::new(fixed_levels, fixed_smooth);
         let (chosen, found) = hysteron::cross_validate(recordings, &options, &candidates, &watch)?;
         options = chosen;
@@ -117,7 +124,10 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
     }
     let few = options.levels < MANY_LEVELS;
     options.bootstrap = args.bootstrap.unwrap_or(if few { REPLICATES } else { 0 });
-    let mut model = hysteron::fit_experiment(recordings, &options, &watch)?;
+    let mut model = match args.thermal {
+        None => hysteron::fit_experiment(recordings, &options, &watch)?,
+        Some(args::Thermal::FirstOrder) => hysteron::fit_thermal(recordings, &options, &watch)?,
+    };
     if let Some(fit) = &mut model.fit {
         fit.validation = validation;
     }
@@ -144,6 +154,7 @@ fn to_json(
         "offset": model.offset(),
         "sign": model.sign().factor() as i64,
         "clipped": clipped,
+        "thermal": model.thermal,
         "fit": fit,
         "preparation": preparation,
         "rate": rate,
@@ -184,6 +195,17 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
             },
         ));
     }
+    lines.extend(model.thermal.as_ref().map(thermal_line));
     lines.extend(text::confidence(fit, model));
     lines.join("\n")
+}
+
+fn thermal_line(body: &FirstOrder) -> String {
+    let [heating, cooling] = [body.tau_heating, body.tau_cooling].map(text::number);
+    match body.tau_heating == body.tau_cooling {
+        true => format!(
+            "thermal body: time constant {heating} s; heating and cooling are not told apart, which takes drives of different shape, such as a ramp and a step"
+        ),
+        false => format!("thermal body: time constants {heating} s heating, {cooling} s cooling"),
+    }
 }

@@ -6,7 +6,7 @@ use serde_json::json;
 use std::path::Path;
 
 pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
-    let model = args.load.apply(Model::read(&args.model)?)?;
+    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
     let band = match args.band {
         false => None,
         true => Some(model.band()?.ok_or_else(|| {
@@ -21,13 +21,19 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         args.json.json,
         what,
         |table, out, progress| {
-            hysteron::simulate_table(&model, table, &args.input, band.as_ref(), out, progress)
+            let what = hysteron::Simulate {
+                input: &args.input,
+                time: args.time.as_deref(),
+                load: load.as_deref(),
+                band: band.as_ref(),
+            };
+            hysteron::simulate_table(&model, table, what, out, progress)
         },
     )
 }
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
-    let model = args.load.apply(Model::read(&args.model)?)?;
+    let (model, _) = args.load.apply(Model::read(&args.model)?)?;
     let how = match args.policy {
         args::Policy::Hold => hysteron::Invert::Hold {
             band: args.band.unwrap_or(0.0),

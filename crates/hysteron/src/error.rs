@@ -69,6 +69,9 @@ pub enum Error {
     /// No experiment follows from the options.
     #[error("design: {0}")]
     Design(String),
+    /// A thermal body cannot be run or identified.
+    #[error("thermal body: {0}")]
+    Thermal(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -91,6 +94,7 @@ impl Error {
             Error::Rig(_) => 25,
             Error::Preparation(_) => 26,
             Error::Design(_) => 27,
+            Error::Thermal(_) => 28,
         }
     }
 }

@@ -59,7 +59,8 @@ pub struct InverseRun {
 /// A model that depends on a load follows that of the recording; its inverse is that of a fixed load, [`Model::at_load`].
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+/// [`crate::Error::Recording`] for a recording that cannot be worked with; [`crate::Error::Thermal`] for one without time
+/// where the model has a thermal body.
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     evaluate_from(model, recording, Start::Off)
 }
@@ -71,8 +72,9 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 /// As [`evaluate`]; [`crate::Error::Fit`] for a start that is not off with a load.
 pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
     recording.check()?;
+    let seen = model.behind_body(recording)?;
     let mut output_model = vec![0.0; recording.len()];
-    let run = |mut state, output: &mut Vec<f64>| model.run(&mut state, &recording.input, output);
+    let run = |mut state, output: &mut Vec<f64>| model.run(&mut state, &seen.input, output);
     let mut begin = model.start();
     let clipped = run(begin.clone(), &mut output_model)?;
     if start != Start::Off {
@@ -89,7 +91,7 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         }
         output_model = match start {
             Start::On => from_on,
-            _ => simulate_from_unknown(model, recording)?,
+            _ => simulate_from_unknown(model, &seen)?,
         };
     }
     if model.load.is_some() {
@@ -98,11 +100,10 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
                 "the model depends on a load: the recording needs it too, or take the model at one load".into(),
             ));
         };
-        output_model = model.simulate_under_load(&recording.input, load)?;
+        output_model = model.simulate_under_load(&seen.input, load)?;
     }
     let forward = compare(&recording.output, &output_model);
     let inverse = match model.inverse() {
-        _ if model.load.is_some() => Err("the load changes: take the model at one load".into()),
         Ok(inverse) => Ok(evaluate_inverse(&inverse, &begin, recording)?),
         Err(error) => Err(error.to_string()),
     };

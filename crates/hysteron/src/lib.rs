@@ -26,6 +26,7 @@ mod recording;
 pub mod rig;
 mod stream;
 mod table;
+mod thermal;
 mod turning;
 
 pub use band::{Band, BandEvaluation};
@@ -54,8 +55,9 @@ pub use prepare::{
     Spikes, Step, noise, prepare, rate_dependence,
 };
 pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
-pub use stream::{Counts, Invert, invert_table, simulate_table};
+pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
+pub use thermal::{FirstOrder, ThermalState, fit_thermal};
 pub use turning::{Headings, Turning, headings};
 
 /// The discrete Preisach plane, equation (3).

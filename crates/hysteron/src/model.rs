@@ -56,6 +56,9 @@ pub struct Model {
     pub output: Quantity,
     /// How offset and weights depend on a load, where they do; the model itself is then that of the middle of its range.
     pub load: Option<crate::LoadDependence>,
+    /// The thermal body in front of the operators, where there is one. Input is then what drives the body, and the
+    /// operators follow its temperature: that is what plane, [`Model::step`] and [`Model::run`] speak of. See [`Model::behind_body`].
+    pub thermal: Option<crate::FirstOrder>,
     /// How the model was obtained, where it was identified.
     pub fit: Option<FitSummary>,
 }
@@ -104,6 +107,7 @@ impl Model {
             input: Quantity::named("input"),
             output: Quantity::named("output"),
             load: None,
+            thermal: None,
             fit: None,
         })
     }
@@ -143,6 +147,23 @@ impl Model {
         Ok(model)
     }
 
+    /// The models that the functions of the load are multiplied with; none without a load.
+    pub(crate) fn load_parts(&self) -> Result<Vec<Self>> {
+        let parts = self.load.iter().flat_map(|load| load.parts());
+        let (operator, plane) = (self.operator(), *self.plane());
+        parts
+            .map(|part| {
+                Self::new(
+                    operator,
+                    plane,
+                    part.weights.clone(),
+                    part.offset,
+                    self.sign,
+                )
+            })
+            .collect()
+    }
+
     /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
     ///
     /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
@@ -162,15 +183,7 @@ impl Model {
             .map(|f| dependence.factors(*f))
             .collect::<Result<_>>()?;
         let mut output = vec![0.0; input.len()];
-        for (k, part) in dependence.parts().iter().enumerate() {
-            let (operator, plane) = (self.operator(), *self.plane());
-            let part = Self::new(
-                operator,
-                plane,
-                part.weights.clone(),
-                part.offset,
-                self.sign,
-            )?;
+        for (k, part) in self.load_parts()?.iter().enumerate() {
             let run = part.simulate(input)?;
             for ((y, h), factors) in output.iter_mut().zip(run).zip(&factors) {
                 *y += factors[k] * h;
@@ -259,8 +272,18 @@ impl Model {
     /// The inverse of this model.
     ///
     /// # Errors
-    /// [`Error::Core`] naming the first weights below zero, if there are any.
+    /// [`Error::Core`] naming the first weights below zero, if there are any; [`Error::Thermal`] for a model with a thermal body.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
+        if self.thermal.is_some() {
+            return Err(crate::thermal::no_inverse());
+        }
+        if let Some(load) = &self.load {
+            let (low, high) = load.range();
+            return Err(Error::Fit(format!(
+                "the model depends on the load `{}`, from {low} to {high}: an inverse is that of one load (--load of the command)",
+                load.quantity.name
+            )));
+        }
         Ok(Inverse {
             model: self,
             core: self.core.inverse()?,

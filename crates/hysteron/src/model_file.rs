@@ -3,7 +3,7 @@
 use crate::identify::FitSummary;
 use crate::output::AtomicFile;
 use crate::recording::Quantity;
-use crate::{Error, LoadDependence, LoadPart, Model, Operator, Plane, Result, Sign};
+use crate::{Error, FirstOrder, LoadDependence, LoadPart, Model, Operator, Plane, Result, Sign};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -24,6 +24,8 @@ struct File {
     weights: Vec<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     load: Option<LoadEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    thermal: Option<ThermalEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fit: Option<FitSummary>,
 }
@@ -84,6 +86,29 @@ struct LoadEntry {
     max: f64,
     /// For each Bernstein polynomial, from the smallest load on.
     parts: Vec<LoadPart>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    tag = "kind",
+    rename_all = "kebab-case",
+    expecting = "an object in braces"
+)]
+enum ThermalEntry {
+    FirstOrder(FirstOrder),
+}
+
+impl ThermalEntry {
+    fn check(self) -> Result<FirstOrder> {
+        let Self::FirstOrder(body) = self;
+        match body.fault() {
+            None => Ok(body),
+            Some((field, value)) => Err(fault(
+                &format!("thermal.{field}"),
+                format!("{value} is not a finite number above zero"),
+            )),
+        }
+    }
 }
 
 impl Default for OutputEntry {
@@ -179,6 +204,7 @@ impl Model {
             model.output.name = name;
         }
         model.load = file.load.map(|entry| entry.into_load(&model)).transpose()?;
+        model.thermal = file.thermal.map(ThermalEntry::check).transpose()?;
         model.fit = file.fit;
         Ok(model)
     }
@@ -215,6 +241,7 @@ impl Model {
             },
             weights: self.weights().to_vec(),
             load: self.load.as_ref().map(LoadEntry::of),
+            thermal: self.thermal.map(ThermalEntry::FirstOrder),
             fit: self.fit.clone(),
         };
         // Numbers and strings only: there is nothing that JSON cannot hold.

@@ -1,9 +1,11 @@
 //! Simulation and inversion of tables row by row: memory does not grow with the file.
 
-use crate::table::Row;
+use crate::table::{Column, Row};
+use crate::thermal::needs_time;
 use crate::turning::Headings;
 use crate::{
-    Band, Direction, Inverse, Model, Policy, Result, State, Status, TableReader, TableWriter,
+    Band, Direction, FirstOrder, Inverse, LoadDependence, Model, Policy, Result, State, Status,
+    TableReader, TableWriter, ThermalState,
 };
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -19,27 +21,49 @@ pub struct Counts {
     pub low: u64,
 }
 
-/// Copies `table` to `out` with a column `output_model`, the model's output for column `input`, from
-/// every operator off; with a `band`, with `output_low` and `output_high` too. `progress` is told the bytes read.
+/// What a simulation reads from a table, and what it adds to it.
+#[derive(Debug, Clone, Copy)]
+pub struct Simulate<'a> {
+    /// Column of the input.
+    pub input: &'a str,
+    /// Column of time in seconds, for a model with a thermal body.
+    pub time: Option<&'a str>,
+    /// Column of the load, for a model that depends on one.
+    pub load: Option<&'a str>,
+    /// The band for the columns `output_low` and `output_high`.
+    pub band: Option<&'a Band>,
+}
+
+/// Copies `table` to `out` with a column `output_model`, the model's output, from every operator off; with a
+/// band, with `output_low` and `output_high` too. `progress` is told the bytes read.
 ///
 /// # Errors
-/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column.
+/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column; [`crate::Error::Thermal`] for a model with a
+/// thermal body without time, [`crate::Error::Fit`] for one that depends on a load without its column.
 pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
-    input: &str,
-    band: Option<&Band>,
+    what: Simulate<'_>,
     out: Option<&mut TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let column = table.column(input)?;
+    let column = table.column(what.input)?;
+    let mut heating = Heating::new(model, table, what.time)?;
+    let mut loaded = Loaded::new(model, table, what.load)?;
     let names = ["output_model", "output_low", "output_high"];
-    let mut sink = Sink::start(table, out, &names[..if band.is_some() { 3 } else { 1 }])?;
+    let added = if what.band.is_some() { 3 } else { 1 };
+    let mut sink = Sink::start(table, out, &names[..added])?;
     let mut state = model.start();
-    let mut band = band.map(|band| (band, band.start()));
+    let mut band = what.band.map(|band| (band, band.start()));
     while table.advance()? {
-        let input = table.number(column)?;
-        let step = model.step(&mut state, input)?;
+        let mut input = table.number(column)?;
+        if let Some(heating) = &mut heating {
+            input = heating.step(table, input)?;
+        }
+        let mut step = model.step(&mut state, input)?;
+        if let Some(loaded) = &mut loaded {
+            step.output = loaded.step(table, input)?;
+        }
         match step.clipped {
             None => {}
             Some(crate::Clipped::Low) => sink.counts.low += 1,
@@ -57,6 +81,81 @@ pub fn simulate_table(
         progress(table.bytes_read());
     }
     Ok(sink.counts)
+}
+
+/// A model under a load that changes from row to row: each part of its load dependence runs beside the others.
+struct Loaded<'m> {
+    dependence: &'m LoadDependence,
+    load: Column,
+    parts: Vec<(Model, State)>,
+}
+
+impl<'m> Loaded<'m> {
+    fn new(model: &'m Model, table: &mut TableReader, load: Option<&str>) -> Result<Option<Self>> {
+        let Some(dependence) = &model.load else {
+            return Ok(None);
+        };
+        let Some(load) = load else {
+            return Err(crate::Error::Fit(format!(
+                "the model depends on the load `{}`: name its column, or take the model at one load",
+                dependence.quantity.name
+            )));
+        };
+        let parts = model.load_parts()?.into_iter();
+        Ok(Some(Self {
+            dependence,
+            load: table.column(load)?,
+            parts: parts
+                .map(|part| {
+                    let start = part.start();
+                    (part, start)
+                })
+                .collect(),
+        }))
+    }
+
+    fn step(&mut self, table: &TableReader, input: f64) -> Result<f64> {
+        let factors = self
+            .dependence
+            .factors(table.number(self.load)?)
+            .map_err(|error| table.fault(Some(self.load), error.to_string()))?;
+        let mut output = 0.0;
+        for ((part, state), factor) in self.parts.iter_mut().zip(factors) {
+            output += factor * part.step(state, input)?.output;
+        }
+        Ok(output)
+    }
+}
+
+/// A model's thermal body on its way through a table.
+struct Heating {
+    body: FirstOrder,
+    time: Column,
+    state: Option<ThermalState>,
+}
+
+impl Heating {
+    fn new(model: &Model, table: &mut TableReader, time: Option<&str>) -> Result<Option<Self>> {
+        let Some(body) = model.thermal else {
+            return Ok(None);
+        };
+        let time = table.column(time.ok_or_else(needs_time)?)?;
+        Ok(Some(Self {
+            body,
+            time,
+            state: None,
+        }))
+    }
+
+    /// The temperature at the current row of the table.
+    fn step(&mut self, table: &TableReader, drive: f64) -> Result<f64> {
+        let time = table.number(self.time)?;
+        let rest = || self.body.at_rest(time, drive);
+        let state = self.state.get_or_insert_with(rest);
+        self.body
+            .step(state, time, drive)
+            .map_err(|error| table.fault(Some(self.time), error.to_string()))
+    }
 }
 
 /// How a table of targets is inverted.

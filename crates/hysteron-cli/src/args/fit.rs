@@ -33,6 +33,11 @@ pub(crate) struct Fit {
     /// Order of that function
     #[arg(long, value_name = "N", default_value_t = 1, requires = "load")]
     pub(crate) load_degree: usize,
+    /// Put a thermal body in front of the operators and identify it with the weights: for an input that heats, where the
+    /// temperature is not known. The input is taken as proportional to the power, as a duty cycle is; of a current or a voltage give
+    /// the square. Needs --time
+    #[arg(long, value_enum, value_name = "BODY", requires = "time")]
+    pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45 levels on 0]
     #[arg(long, value_name = "N")]
     pub(crate) bootstrap: Option<usize>,
@@ -94,7 +99,7 @@ pub(crate) struct Prepare {
 
 #[derive(Args)]
 pub(crate) struct PrepareBeforeFit {
-    /// Column of time in seconds, for the preparation and the warning that loops depend on rate
+    /// Column of time in seconds, for the preparation, a thermal body and the warning that loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named

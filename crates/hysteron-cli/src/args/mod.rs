@@ -91,25 +91,21 @@ impl From<&Repair> for hysteron::Repair {
 
 #[derive(Args)]
 pub(crate) struct Load {
-    /// For a model that depends on a load: the load to take it at
-    #[arg(long, value_name = "LOAD", value_parser = parse_finite, allow_hyphen_values = true)]
-    load: Option<f64>,
+    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the column of it
+    #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
+    load: Option<String>,
 }
 
 impl Load {
-    /// The model at that load.
-    pub(crate) fn apply(&self, model: hysteron::Model) -> crate::Result<hysteron::Model> {
-        match (self.load, &model.load) {
-            (Some(load), _) => Ok(model.at_load(load)?),
-            (None, None) => Ok(model),
-            (None, Some(dependence)) => {
-                let (low, high) = dependence.range();
-                let name = &dependence.quantity.name;
-                Err(format!(
-                    "the model depends on `{name}`, from {low} to {high}: name one with --load"
-                )
-                .into())
-            }
+    /// Where it is a number, the model at that load; otherwise the model as it is, and the column.
+    pub(crate) fn apply(
+        &self,
+        model: hysteron::Model,
+    ) -> crate::Result<(hysteron::Model, Option<String>)> {
+        match self.load.as_ref().map(|load| (load, load.parse())) {
+            Some((_, Ok(load))) => Ok((model.at_load(load)?, None)),
+            Some((column, Err(_))) => Ok((model, Some(column.clone()))),
+            None => Ok((model, None)),
         }
     }
 }
@@ -128,6 +124,9 @@ pub(crate) struct Simulate {
     /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
+    /// Column of time in seconds, for a model with a thermal body
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
     /// Where the table goes [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
@@ -175,15 +174,14 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds, for the report's figures
+    /// Column of time in seconds, for the report's figures and for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: Start,
-    /// For a model that depends on a load: the load to take it at, or the recording's column of it
-    #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
-    pub(crate) load: Option<String>,
+    #[command(flatten)]
+    pub(crate) load: Load,
     #[command(flatten)]
     pub(crate) repair: Repair,
     /// Write a page and its figures (SVG, PNG) into this folder

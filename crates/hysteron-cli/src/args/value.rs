@@ -32,6 +32,12 @@ pub(crate) enum Start {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Thermal {
+    /// One heat capacity, with a time constant for heating and one for cooling
+    FirstOrder,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Policy {
     /// The input rests while the target rests
     Hold,

@@ -171,11 +171,13 @@ impl Regressor {
     /// Runs of recordings in which no column changes its start.
     fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
         let count = experiment.recordings.len();
-        if self.unknown_start() {
-            (0..count).map(|s| s..s + 1).collect()
+        // One recording a run, or all in one.
+        let length = if self.unknown_start() {
+            1
         } else {
-            vec![0..count]
-        }
+            count.max(1)
+        };
+        (0..count).step_by(length).map(|s| s..s + length).collect()
     }
 
     /// Starts that columns have in the recording.
