@@ -62,7 +62,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         }
     }
     if let (Some(fit), args::Start::Off) = (&model.fit, args.start)
-        && fit.open_at_start > 0
+        && fit.open_at_start > model.plane().operators() / 20
     {
         eprintln!(
             "hysteron: the first input leaves {} operators open, which are taken as off: if it does not follow on the lowest input, use --start unknown",
