@@ -1,24 +1,11 @@
 //! `hysteron prepare` and the preparation before a fit, as a black box.
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+mod common;
+
+use common::{run, text};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::Output;
-
-fn run(folder: &Path, line: &str) -> Output {
-    Command::cargo_bin("hysteron")
-        .unwrap()
-        .current_dir(folder)
-        .args(line.split_whitespace())
-        .output()
-        .unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
 
 /// Loops of a play whose readings are a little rough; in lines 102 and 103 the input dropped to zero.
 fn rough_recording() -> tempfile::TempDir {

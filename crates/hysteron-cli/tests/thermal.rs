@@ -1,24 +1,11 @@
 //! A thermal body in front of the model, as a black box.
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+mod common;
+
+use common::{run, text};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use std::process::Output;
-
-fn run(folder: &Path, line: &str) -> Output {
-    Command::cargo_bin("hysteron")
-        .unwrap()
-        .current_dir(folder)
-        .args(line.split_whitespace())
-        .output()
-        .unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
 
 /// A wire of 2 s heating and 5 s cooling with a play, under a slow ramp and steps; irregular in time.
 fn wire() -> tempfile::TempDir {

@@ -22,7 +22,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "K", default_value = "20", value_parser = parse_levels_or_auto)]
     pub(crate) levels: Levels,
     /// Strength of the smoothness across the plane, 1e-9 to 1e-4 as a rule; `auto` chooses it as the levels
-    #[arg(long, value_name = "STRENGTH", default_value = "off", value_parser = parse_step)]
+    #[arg(long, value_name = "STRENGTH", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) smooth: Step,
     /// Where the operators stand before the first sample
     #[arg(long, value_enum, default_value = "off")]
