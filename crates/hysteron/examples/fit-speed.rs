@@ -18,6 +18,7 @@ fn main() -> Result<()> {
     if let [levels, samples] = &arguments[..] {
         return child(levels.parse()?, samples.parse()?);
     }
+    print!("{}", include_str!("fit-speed.md"));
     println!(
         "Simulated material, first-order reversal curves and a walk between levels, noise of 1 %.\n"
     );
