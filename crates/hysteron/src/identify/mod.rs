@@ -6,6 +6,7 @@ mod excitation;
 mod experiment;
 mod free;
 mod initial;
+mod left_out;
 mod nnls;
 mod options;
 mod pivoting;
@@ -23,8 +24,9 @@ pub use excitation::{Excitation, excitation};
 pub(crate) use experiment::bernstein;
 pub use experiment::plane_of;
 pub(crate) use initial::simulate_from_unknown;
+pub use left_out::{LeftOut, left_out};
 pub use options::{FitOptions, FitSummary, Solver, Start};
-pub use validate::{Candidates, LeftOut, Score, Validation, cross_validate, left_out};
+pub use validate::{Candidates, Score, Validation, cross_validate};
 
 use crate::{Errors, LoadDependence, LoadPart, Model, Recording, Result};
 use problem::Problem;
