@@ -1,7 +1,10 @@
 //! A shape-memory actuator as the tests see it: K = 20 over 20…80 °C, a major loop, then minor loops.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Evaluation, Model, Operator, Plane, Quantity, Recording, Sign, evaluate};
+use hysteron::{
+    Candidates, Evaluation, FitOptions, Model, Operator, Plane, Quantity, Recording, Sign,
+    cross_validate, evaluate, fit_experiment,
+};
 
 /// The parts of a report.
 pub(crate) struct Fixture {
@@ -42,6 +45,21 @@ impl Fixture {
     /// Gives the model a plane of `levels` levels.
     pub(crate) fn refine(&mut self, levels: usize) {
         self.model = model(levels, density);
+    }
+
+    /// Gives a model that says how it was chosen and how certain it is: identified from the recording.
+    pub(crate) fn identify(&mut self) {
+        let recordings = std::slice::from_ref(&self.recording);
+        let candidates = Candidates::new(Some(8), None);
+        let options = FitOptions::default();
+        let (mut options, validation) =
+            cross_validate(recordings, &options, &candidates, &|_, _| Ok(())).unwrap();
+        options.bootstrap = 20;
+        self.model = fit_experiment(recordings, &options, &|_, _| Ok(())).unwrap();
+        if let Some(fit) = &mut self.model.fit {
+            fit.validation = Some(validation);
+        }
+        self.evaluate();
     }
 
     /// Evaluates again, after a change.
