@@ -1,6 +1,6 @@
 //! `hysteron design`
 
-use crate::{Result, args, print, text};
+use crate::{Result, args, keep_apart, print, text};
 use hysteron::{
     AtomicFile, Design, DesignOptions, Excitation, Plane, Quantity, Rates, TableReader,
 };
@@ -9,6 +9,17 @@ use std::path::Path;
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
     let (min, max) = args.range;
+    for read in &args.from {
+        for written in [Some(&args.out), args.figure.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            keep_apart(read, written)?;
+        }
+    }
+    if args.figure.as_ref() == Some(&args.out) {
+        return Err("the profile and the figure need a file each".into());
+    }
     let to_stdout = args.out == Path::new("-");
     if to_stdout && args.json.json {
         return Err("with --json standard output is for that alone: name a file with -o".into());
@@ -59,6 +70,11 @@ fn input_of(path: &Path, column: &str) -> Result<Vec<f64>> {
     let mut input = Vec::new();
     while table.advance()? {
         input.push(table.number(column)?);
+    }
+    if input.is_empty() {
+        return Err(table
+            .fault(None, "there are no rows below the header".into())
+            .into());
     }
     Ok(input)
 }

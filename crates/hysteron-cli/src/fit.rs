@@ -2,16 +2,10 @@
 
 use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
 use hysteron::{
-    Candidates, Columns, FirstOrder, FitOptions, FitSummary, Model, Preparation, RateDependence,
-    Recording, Sign, Solver, Step,
+    Advice, Candidates, Columns, FirstOrder, FitOptions, FitSummary, Model, Preparation,
+    RateDependence, Recording, Sign, Solver, Step,
 };
 use serde_json::json;
-
-/// Replicates of the bootstrap where nothing else is said, as long as that takes a moment only.
-const REPLICATES: usize = 200;
-
-/// Levels from which on it takes longer.
-const MANY_LEVELS: usize = 45;
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let columns = Columns {
@@ -19,6 +13,9 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         load: args.load.as_deref(),
         ..Columns::new(&args.input, &args.output)
     };
+    if args.out == std::path::Path::new("-") {
+        return Err("a model goes to a file: name one with -o".into());
+    }
     let mut prepared = Vec::new();
     for data in &args.data {
         keep_apart(data, &args.out)?;
@@ -38,36 +35,12 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let model = identify(args, &recordings)?;
     model.write(&args.out)?;
 
-    let plane = model.plane();
-    let seen = recordings.iter().map(|r| model.behind_body(r));
-    let seen = seen.collect::<hysteron::Result<Vec<_>>>()?;
-    let inputs = seen.iter().flat_map(|r| &r.input);
-    let samples: usize = recordings.iter().map(Recording::len).sum();
-    let clipped = inputs.filter(|t| plane.clipped(**t).is_some()).count();
-    if clipped > 0 {
-        eprintln!(
-            "hysteron: {clipped} of {samples} inputs lie outside the active range {} to {} and were taken as its ends: widen --range",
-            text::number(plane.bottom()),
-            text::number(plane.max())
-        );
-    }
-    for recording in &recordings {
-        let against = hysteron::way_against_input(recording, model.sign())?;
-        if matches!(args.solver, args::Solver::Nnls) && against > hysteron::AGAINST_INPUT {
-            eprintln!(
-                "hysteron: on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow: \
-                 a butterfly loop needs --solver ols, several loads --load, a drive that heats --thermal",
-                100.0 * against
-            );
+    let mut clipped = 0;
+    for advice in hysteron::advice(&model, &recordings)? {
+        eprintln!("hysteron: {advice}");
+        if let Advice::Clipped { inputs, .. } = advice {
+            clipped = inputs;
         }
-    }
-    if let (Some(fit), args::Start::Off) = (&model.fit, args.start)
-        && fit.open_at_start > model.plane().operators() / 20
-    {
-        eprintln!(
-            "hysteron: the first input leaves {} operators open, which are taken as off: if it does not follow on the lowest input, use --start unknown",
-            fit.open_at_start
-        );
     }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
@@ -122,8 +95,8 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         options = chosen;
         validation = Some(found);
     }
-    let few = options.levels < MANY_LEVELS;
-    options.bootstrap = args.bootstrap.unwrap_or(if few { REPLICATES } else { 0 });
+    let usual = FitOptions::usual_bootstrap(options.levels);
+    options.bootstrap = args.bootstrap.unwrap_or(usual);
     let mut model = match args.thermal {
         None => hysteron::fit_experiment(recordings, &options, &watch)?,
         Some(args::Thermal::FirstOrder) => hysteron::fit_thermal(recordings, &options, &watch)?,

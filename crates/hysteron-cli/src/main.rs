@@ -59,12 +59,14 @@ fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
     false
 }
 
-/// Refuses to write over the recording that is read.
+/// Refuses to write over a file that is read.
 fn keep_apart(data: &Path, out: &Path) -> Result<()> {
     let there = out.canonicalize().ok();
     if there.is_some() && there == data.canonicalize().ok() {
         let out = out.display();
-        return Err(format!("{out}: this would replace the recording: name another file").into());
+        return Err(
+            format!("{out}: this would replace a file that is read: name another one").into(),
+        );
     }
     Ok(())
 }

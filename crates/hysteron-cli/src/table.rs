@@ -1,6 +1,6 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
-use crate::{Result, args, print, progress};
+use crate::{Result, args, keep_apart, print, progress};
 use hysteron::{Counts, Model, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
@@ -16,7 +16,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     };
     let what = ["inputs above the plane", "inputs below its active range"];
     through(
-        &args.data,
+        [&args.data, &args.model],
         args.out.as_deref(),
         args.json.json,
         what,
@@ -33,7 +33,13 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
 }
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
-    let (model, _) = args.load.apply(Model::read(&args.model)?)?;
+    let (model, column) = args.load.apply(Model::read(&args.model)?)?;
+    if let Some(column) = column {
+        return Err(format!(
+            "--load {column}: an inverse is that of one load, give it as a number"
+        )
+        .into());
+    }
     let how = match args.policy {
         args::Policy::Hold => hysteron::Invert::Hold {
             band: args.band.unwrap_or(0.0),
@@ -48,7 +54,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     };
     let what = ["targets above the model's range", "targets below it"];
     through(
-        &args.data,
+        [&args.data, &args.model],
         args.out.as_deref(),
         args.json.json,
         what,
@@ -60,7 +66,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
 
 /// Opens both ends, runs `work` between them and says what came of it.
 fn through(
-    data: &Path,
+    [data, model]: [&Path; 2],
     out: Option<&Path>,
     json: bool,
     what: [&str; 2],
@@ -70,6 +76,8 @@ fn through(
         &dyn Fn(u64),
     ) -> hysteron::Result<Counts>,
 ) -> Result<()> {
+    // The table itself may be replaced: all its columns are in the new one.
+    out.map_or(Ok(()), |out| keep_apart(model, out))?;
     let mut table = TableReader::open(data)?;
     // With --json, standard output is for the JSON alone.
     let mut writer = match (out, json) {

@@ -499,7 +499,7 @@ fn bad_options_are_refused() {
     let said = bench.refused("fit run.csv --input x --output y -o m.json --range -50,0");
     assert!(said.contains("take another range"), "{said}");
     let said = bench.refused("fit run.csv --input x --output y -o run.csv");
-    assert!(said.contains("would replace the recording"), "{said}");
+    assert!(said.contains("would replace a file that is read"), "{said}");
     for levels in 2..30 {
         let done = bench.run(&format!(
             "fit run.csv --input x --output y -o m.json --levels {levels}"

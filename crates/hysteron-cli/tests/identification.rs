@@ -92,7 +92,7 @@ fn several_files_are_one_experiment() {
         folder.path(),
         "fit run.csv other.csv --input x --output y -o other.csv",
     );
-    assert!(said.contains("would replace the recording"), "{said}");
+    assert!(said.contains("would replace a file that is read"), "{said}");
     assert!(!folder.path().join("n.json").exists());
 }
 

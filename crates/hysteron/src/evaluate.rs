@@ -2,13 +2,10 @@
 
 use crate::identify::simulate_from_unknown;
 use crate::recording::range;
-use crate::turning::{Turning, headings};
+use crate::turning::{NOISE, Turning, headings};
 use crate::{
     BandEvaluation, Errors, Inverse, Model, Policy, Recording, Result, Start, State, Status,
 };
-
-/// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
-pub const NOISE: f64 = 0.01;
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
 /// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
@@ -80,7 +77,8 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     if start != Start::Off {
         if model.load.is_some() {
             return Err(crate::Error::Fit(
-                "with a load that changes, a recording has to start with every operator off".into(),
+                "from another start than off, take the model at one load (a number for --load)"
+                    .into(),
             ));
         }
         let mut from_on = vec![0.0; recording.len()];
@@ -108,7 +106,11 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         Err(error) => Err(error.to_string()),
     };
     Ok(Evaluation {
-        band: BandEvaluation::of(model, recording, &output_model)?,
+        // The band sets out with every operator off.
+        band: match start {
+            Start::Off => BandEvaluation::of(model, &seen, &output_model)?,
+            _ => None,
+        },
         output_model,
         forward,
         clipped: clipped.low + clipped.high,

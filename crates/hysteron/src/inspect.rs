@@ -6,8 +6,8 @@ mod model;
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
 pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
 
-use crate::evaluate::NOISE;
 use crate::recording::{gaps, range};
+use crate::turning::NOISE;
 use crate::{Plane, Recording, Result, Turning};
 use hysteron_core::ridge;
 use serde::Serialize;

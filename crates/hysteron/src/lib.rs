@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod advice;
 mod band;
 mod design;
 mod error;
@@ -29,10 +30,11 @@ mod table;
 mod thermal;
 mod turning;
 
+pub use advice::{Advice, advice};
 pub use band::{Band, BandEvaluation};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
-pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, NOISE, evaluate, evaluate_from};
+pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
 pub use hysteron_core::{
     Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
     Status,
@@ -58,7 +60,7 @@ pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
 pub use thermal::{FirstOrder, ThermalState, fit_thermal};
-pub use turning::{Headings, Turning, headings};
+pub use turning::{Headings, NOISE, Turning, headings};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;

@@ -1,6 +1,5 @@
 //! Weights that depend on a load: one model for several loads or stresses.
 
-use crate::identify::bernstein;
 use crate::{Error, Quantity, Result};
 use serde::{Deserialize, Serialize};
 
@@ -92,5 +91,45 @@ impl LoadDependence {
     /// As [`LoadDependence::factors`].
     pub fn at(&self, load: f64) -> Result<LoadPart> {
         Ok(LoadPart::sum(&self.parts, &self.factors(load)?))
+    }
+}
+
+pub(crate) fn no_load() -> Error {
+    Error::Fit("this model does not depend on a load: leave the load out".into())
+}
+
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
+/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
+pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
+    // De Casteljau's scheme.
+    let mut values = vec![1.0];
+    for _ in 0..degree {
+        let mut next = vec![0.0; values.len() + 1];
+        for (k, value) in values.iter().enumerate() {
+            next[k] += (1.0 - s) * value;
+            next[k + 1] += s * value;
+        }
+        values = next;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bernstein;
+
+    #[test]
+    fn load_functions_sum_to_one_and_meet_the_ends() {
+        for degree in 0..=5 {
+            for s in [0.0, 0.3, 1.0] {
+                let values = bernstein(degree, s);
+                assert_eq!(values.len(), degree + 1);
+                // Five roundings of numbers up to one.
+                assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-15 * 5.0);
+                assert!(values.iter().all(|v| *v >= 0.0));
+            }
+            assert_eq!(bernstein(degree, 0.0)[0], 1.0);
+            assert_eq!(bernstein(degree, 1.0)[degree], 1.0);
+        }
     }
 }

@@ -136,13 +136,14 @@ impl Model {
     /// [`Error::Fit`] where the model has no load, or for one outside its range.
     pub fn at_load(&self, load: f64) -> Result<Self> {
         let Some(dependence) = &self.load else {
-            return Err(Error::Fit("this model does not depend on a load".into()));
+            return Err(crate::load::no_load());
         };
         let crate::LoadPart { offset, weights } = dependence.at(load)?;
         let (operator, plane) = (self.operator(), *self.plane());
         let mut model = Self::new(operator, plane, weights, offset, self.sign)?;
         model.input = self.input.clone();
         model.output = self.output.clone();
+        model.thermal = self.thermal;
         model.fit = self.fit.clone();
         Ok(model)
     }
@@ -172,7 +173,7 @@ impl Model {
     /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads as inputs.
     pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
         let Some(dependence) = &self.load else {
-            return Err(Error::Fit("this model does not depend on a load".into()));
+            return Err(crate::load::no_load());
         };
         if load.len() != input.len() {
             let (loads, inputs) = (load.len(), input.len());

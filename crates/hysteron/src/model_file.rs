@@ -205,6 +205,10 @@ impl Model {
         }
         model.load = file.load.map(|entry| entry.into_load(&model)).transpose()?;
         model.thermal = file.thermal.map(ThermalEntry::check).transpose()?;
+        let confidence = file.fit.as_ref().and_then(|fit| fit.confidence.as_ref());
+        if let Some((field, problem)) = confidence.and_then(|c| c.fault(plane.operators())) {
+            return Err(fault(&format!("fit.confidence.{field}"), problem));
+        }
         model.fit = file.fit;
         Ok(model)
     }

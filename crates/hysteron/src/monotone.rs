@@ -1,6 +1,6 @@
 //! Whether an output goes with its input, as weights from zero on demand.
 
-use crate::evaluate::NOISE;
+use crate::turning::NOISE;
 use crate::turning::headings;
 use crate::{Direction, Recording, Result, Sign};
 

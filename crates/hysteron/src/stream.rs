@@ -93,7 +93,10 @@ struct Loaded<'m> {
 impl<'m> Loaded<'m> {
     fn new(model: &'m Model, table: &mut TableReader, load: Option<&str>) -> Result<Option<Self>> {
         let Some(dependence) = &model.load else {
-            return Ok(None);
+            return match load {
+                None => Ok(None),
+                Some(_) => Err(crate::load::no_load()),
+            };
         };
         let Some(load) = load else {
             return Err(crate::Error::Fit(format!(

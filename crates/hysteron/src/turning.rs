@@ -2,6 +2,9 @@
 
 use crate::Direction;
 
+/// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
+pub const NOISE: f64 = 0.01;
+
 /// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
 /// from it by more than `band`.
 ///

@@ -214,7 +214,7 @@ fn what_whole_files_do_not_hold() {
         (
             "v5.mat",
             ["fs", "fs"],
-            "recording FILE, column `fs`: it is 2 throughout: nothing can be identified from it",
+            "recording FILE: the column `fs` is named twice: input, output, time and load are four things",
         ),
         (
             "none.parquet",

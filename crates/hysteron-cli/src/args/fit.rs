@@ -21,7 +21,7 @@ pub(crate) struct Fit {
     /// branches left out
     #[arg(long, value_name = "K", default_value = "20", value_parser = parse_levels_or_auto)]
     pub(crate) levels: Levels,
-    /// Strength of the smoothness across the plane, 1e-9 to 1e-4 as a rule; `auto` chooses it as the levels
+    /// Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; `auto` chooses it as the levels
     #[arg(long, value_name = "STRENGTH", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) smooth: Step,
     /// Where the operators stand before the first sample
@@ -113,16 +113,16 @@ pub(crate) struct PrepareBeforeFit {
 #[command(next_help_heading = "Preparation")]
 pub(crate) struct Steps {
     /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations make a spike
-    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) spikes: Option<Step>,
     /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the step in s
-    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) resample: Option<Step>,
     /// Zero-phase low-pass: `auto` (as far as the noise goes), `off`, or the cut-off in Hz, without time in cycles a sample
-    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) low_pass: Option<Step>,
     /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend on rate), `off` or its time constant in s [default: off]
-    #[arg(long, value_name = "STEP", value_parser = parse_step)]
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Option<Step>,
     /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches), `off`, or the band in its unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]

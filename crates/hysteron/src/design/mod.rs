@@ -5,11 +5,14 @@ mod spiral;
 
 pub use profile::{Rates, ramps};
 
-use crate::identify::Unresolved;
+use crate::identify::{Initial, Unresolved};
 use crate::recording::range;
 use crate::{Error, Excitation, Operator, Plane, Result, TableWriter, excitation};
 use spiral::Corners;
 use std::path::Path;
+
+/// Most samples of a profile.
+const MOST_SAMPLES: f64 = 1e7;
 
 /// Samples a level at the faster rate, where the step is not given: enough to average some noise away.
 const SAMPLES_PER_LEVEL: f64 = 10.0;
@@ -138,7 +141,8 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let levels = options.plane.levels();
     let mut known = Corners::none(levels);
     if !recorded.is_empty() {
-        known.0 = Unresolved::of(recorded, options.plane, options.operator)?.corners_known();
+        known.0 = Unresolved::of(recorded, options.plane, options.operator, Initial::Off)?
+            .corners_known();
     }
     let wanted = spiral::completing(levels, &known);
     let turns = within_budget(options, &wanted)?;
@@ -149,6 +153,12 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
             to: input_at(options, leg[1]),
             new_corners: known.add(leg[0], leg[1]),
         });
+    }
+    let samples = options.rates.duration(&inputs(options, &turns)) / step_s;
+    if samples > MOST_SAMPLES {
+        return Err(Error::Design(format!(
+            "a sample every {step_s:e} s makes {samples:.1e} samples, more than {MOST_SAMPLES:e}: give a longer step, or rates nearer to each other"
+        )));
     }
     let (time, input) = match legs.is_empty() {
         true => (Vec::new(), Vec::new()),

@@ -1,11 +1,11 @@
 //! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
 //! the output.
 
-use super::excitation::{Excitation, excitation};
-use super::pivoting;
+use super::excitation::{Excitation, Unresolved};
 use super::problem::{Fitted, Problem};
-use super::solve::NormalEquations;
-use super::{Solver, Watch, nnls};
+use super::solve::{NormalEquations, not_definite};
+use super::sparse::Initial;
+use super::{Solver, Start, Watch};
 use crate::{LoadPart, Result};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
@@ -54,6 +54,41 @@ pub struct Confidence {
 }
 
 impl Confidence {
+    /// The first entry that cannot be, of a model with `operators` operators, and why.
+    pub(crate) fn fault(&self, operators: usize) -> Option<(String, String)> {
+        let lengths = [
+            ("excitation", self.excitation.len()),
+            ("standard_error", self.standard_error.len()),
+        ];
+        let factors = self.factors.iter().enumerate();
+        let of_factors = factors.map(|(n, f)| (format!("factors[{n}].weights"), f.weights.len()));
+        let lengths = lengths.map(|(name, length)| (name.to_owned(), length));
+        for (name, length) in lengths.into_iter().chain(of_factors) {
+            if length != operators {
+                return Some((name, format!("{length} entries for {operators} operators")));
+            }
+        }
+        let sizes = [
+            ("condition", self.condition),
+            ("noise", self.noise),
+            ("offset_error", self.offset_error),
+        ];
+        let errors = self.standard_error.iter().map(|e| ("standard_error", *e));
+        let factors = self.factors.iter();
+        let deviations = factors.flat_map(|f| f.weights.iter().chain([&f.offset]));
+        let deviations = deviations.map(|d| ("factors", d.abs()));
+        let mut numbers = sizes.into_iter().chain(errors).chain(deviations);
+        // Their squares are summed.
+        numbers
+            .find(|(_, value)| !(0.0..=1e140).contains(value))
+            .map(|(name, value)| {
+                (
+                    name.to_owned(),
+                    format!("{value:e} is not a number from zero on that can be squared"),
+                )
+            })
+    }
+
     /// How many operators are in a class.
     #[must_use]
     pub fn count(&self, class: Excitation) -> usize {
@@ -87,8 +122,9 @@ pub(super) fn of(
         options.smooth,
         watch,
     )?;
-    let (rank, condition) = match options.smooth > 0.0 {
-        true => rank(&NormalEquations::new(
+    // What the data say without the penalty.
+    let plain = match options.smooth > 0.0 {
+        true => Some(NormalEquations::new(
             &problem.regressor,
             experiment,
             &free,
@@ -96,17 +132,19 @@ pub(super) fn of(
             0.0,
             watch,
         )?),
-        false => rank(&equations),
+        false => None,
     };
+    let (rank, condition) = rank(plain.as_ref().unwrap_or(&equations))?;
+    let free_count = fitted.solution.free.len() as f64;
     let factor = match options.solver {
         Solver::Ols => Some(equations.factor()?),
         Solver::Nnls => None,
     };
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
-    let used = solution.x.iter().filter(|x| **x != 0.0).count() + solution.free.len();
     // Fitted residuals are smaller than the errors behind them.
-    let left = (samples - used.min(rank + solution.free.len()) as f64).max(1.0);
+    let used = degrees_of_freedom(&solution.x, &equations, plain.as_ref()) + free_count;
+    let left = (samples - used).max(1.0);
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
     let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
@@ -146,6 +184,11 @@ pub(super) fn of(
         .iter()
         .map(|range| &experiment.input[range.clone()])
         .collect();
+    // Where it is not known, the classes are those from off; what is open then counts among the unknowns.
+    let start = match options.start {
+        Start::On => Initial::On,
+        Start::Off | Start::Unknown => Initial::Off,
+    };
     Ok(Some(Confidence {
         branches: experiment.branches(),
         rank,
@@ -153,7 +196,8 @@ pub(super) fn of(
         condition,
         noise: (squares / left).sqrt(),
         replicates: options.bootstrap,
-        excitation: excitation(&inputs, *problem.regressor.plane(), options.operator)?,
+        excitation: Unresolved::of(&inputs, *problem.regressor.plane(), options.operator, start)?
+            .classes(&inputs)?,
         standard_error: standard.weights,
         offset_error: standard.offset,
         factors,
@@ -216,28 +260,41 @@ fn replicate(
     let mut right = equations.times(x);
     // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
     right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
-    if let Some(factor) = factor {
-        let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
-        return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
-    }
-    let (mut x, exact) = match problem.options.smooth > 0.0 {
-        true => pivoting::minimum(&equations.matrix, &right, x),
-        false => (x.to_vec(), false),
+    equations.minimum(&right, x, factor, &|_, _| Ok(()))
+}
+
+/// How many parameters the fit has: one for each weight above zero, less as far as the penalty ties them together,
+/// `tr (G + P)⁻¹ G` over these (Hastie, Tibshirani and Friedman 2009, 7.6).
+fn degrees_of_freedom(
+    x: &[f64],
+    equations: &NormalEquations<'_>,
+    plain: Option<&NormalEquations<'_>>,
+) -> f64 {
+    let above: Vec<usize> = (0..x.len()).filter(|n| x[*n] != 0.0).collect();
+    let size = above.len();
+    let Some(plain) = plain else {
+        return size as f64;
     };
-    if !exact {
-        nnls::solve(&equations.matrix, &right, &mut x, &|_, _| Ok(()))?;
+    let part = |of: &NormalEquations<'_>| {
+        Mat::from_fn(size, size, |i, j| of.matrix[above[i] * x.len() + above[j]])
+    };
+    match part(equations).llt(Side::Lower) {
+        Ok(factor) => {
+            let shrunk = factor.solve(&part(plain));
+            (0..size).map(|n| shrunk[(n, n)]).sum()
+        }
+        Err(_) => size as f64,
     }
-    Ok(x)
 }
 
 /// Rank of the centred regressor, and the ratio of its largest to its smallest singular value.
-fn rank(equations: &NormalEquations<'_>) -> (usize, f64) {
+fn rank(equations: &NormalEquations<'_>) -> Result<(usize, f64)> {
     let count = equations.matrix.len().isqrt();
     let element = |i: usize, j: usize| equations.matrix[i * count + j];
     let matrix = Mat::from_fn(count, count, element);
-    let Ok(values) = matrix.self_adjoint_eigenvalues(Side::Lower) else {
-        return (0, f64::MAX);
-    };
+    let values = matrix
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_err(|_| not_definite())?;
     let largest = values.iter().copied().fold(0.0, f64::max);
     let above: Vec<f64> = values
         .into_iter()
@@ -250,7 +307,7 @@ fn rank(equations: &NormalEquations<'_>) -> (usize, f64) {
     } else {
         (largest / smallest).sqrt()
     };
-    (above.len(), condition)
+    Ok((above.len(), condition))
 }
 
 /// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).

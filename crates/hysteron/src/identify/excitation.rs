@@ -5,7 +5,7 @@
 //! `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the centred Gram matrix: a diagonal element of 1 says that the weight
 //! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
 
-use super::sparse::{From, SparseForm};
+use super::sparse::{Initial, SparseForm};
 use crate::recording::range;
 use crate::{Error, NOISE, Operator, Plane, Result, Turning};
 use faer::linalg::solvers::DenseSolveCore;
@@ -75,22 +75,27 @@ pub(crate) const UNRESOLVED: f64 = 5e-3;
 /// # Errors
 /// [`Error::Core`] for an input that is not finite; [`Error::Fit`] where the plane has too many operators for their Gram matrix.
 pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<Excitation>> {
-    let unresolved = Unresolved::of(inputs, plane, operator)?;
-    unresolved.classes(inputs)
+    Unresolved::of(inputs, plane, operator, Initial::Off)?.classes(inputs)
 }
 
 /// What recorded inputs leave open: `I − R = ε (G + εI)⁻¹`, the part of a unit prior variance that data of unit noise leave.
 pub(crate) struct Unresolved {
     plane: Plane,
     operator: Operator,
+    start: Initial,
     matrix: Mat<f64>,
 }
 
 impl Unresolved {
-    pub(crate) fn of(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Self> {
+    pub(crate) fn of(
+        inputs: &[&[f64]],
+        plane: Plane,
+        operator: Operator,
+        start: Initial,
+    ) -> Result<Self> {
         super::problem::check_gram(plane.operators())?;
         let count = plane.operators();
-        let mut gram = centred_gram(inputs, plane, operator)?;
+        let mut gram = centred_gram(inputs, plane, operator, start)?;
         let trace: f64 = (0..count).map(|n| gram[n * count + n]).sum();
         let ridge = RIDGE.max(ROUNDING * trace);
         for n in 0..count {
@@ -106,12 +111,13 @@ impl Unresolved {
         Ok(Self {
             plane,
             operator,
+            start,
             matrix,
         })
     }
 
-    fn classes(&self, inputs: &[&[f64]]) -> Result<Vec<Excitation>> {
-        let moves = branches_moved(inputs, self.plane, self.operator)?;
+    pub(crate) fn classes(&self, inputs: &[&[f64]]) -> Result<Vec<Excitation>> {
+        let moves = branches_moved(inputs, self.plane, self.operator, self.start)?;
         let class = |(n, moves): (usize, usize)| match moves {
             _ if self.matrix[(n, n)] <= UNRESOLVED => Excitation::Determined,
             0 => Excitation::Never,
@@ -159,20 +165,19 @@ fn prefix_sums(levels: usize, mu: &mut [f64]) {
 }
 
 /// `Φᵀ Φ` of all recordings together, the mean over them taken off every column.
-fn centred_gram(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<f64>> {
+fn centred_gram(
+    inputs: &[&[f64]],
+    plane: Plane,
+    operator: Operator,
+    start: Initial,
+) -> Result<Vec<f64>> {
     let count = plane.operators();
     let mut gram = vec![0.0; count * count];
     let mut sums = vec![0.0; count];
     let form = SparseForm::new(plane, operator)?;
     for input in inputs {
-        form.add_outer(
-            input,
-            (From::Off, From::Off),
-            |_| 1.0,
-            &mut gram,
-            &|_, _| Ok(()),
-        )?;
-        form.add_adjoint(input, From::Off, |_| 1.0, &mut sums)?;
+        form.add_outer(input, (start, start), |_| 1.0, &mut gram, &|_, _| Ok(()))?;
+        form.add_adjoint(input, start, |_| 1.0, &mut sums)?;
     }
     form.gram_of(&mut gram);
     form.operators_of(&mut sums);
@@ -186,7 +191,12 @@ fn centred_gram(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<V
 }
 
 /// On how many branches each operator moves by more than 1 % of its swing.
-fn branches_moved(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<usize>> {
+fn branches_moved(
+    inputs: &[&[f64]],
+    plane: Plane,
+    operator: Operator,
+    start: Initial,
+) -> Result<Vec<usize>> {
     let mut moves = vec![0; plane.operators()];
     let weights = vec![0.0; plane.operators()];
     for input in inputs {
@@ -195,7 +205,10 @@ fn branches_moved(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result
         };
         let mut states = weights.clone();
         let mut plain = Definition::new(plane, operator, &weights, &mut states)?;
-        // From off to the first sample nobody saw it move.
+        if start == Initial::On {
+            plain.step(plane.max())?;
+        }
+        // From there to the first sample nobody saw it move.
         plain.step(first)?;
         let mut before = plain.states().to_vec();
         for end in branch_ends(input) {

@@ -3,8 +3,9 @@
 
 use super::FitOptions;
 use super::regressor::MOST_RECORDINGS;
-use crate::evaluate::NOISE;
+use crate::load::bernstein;
 use crate::recording::range;
+use crate::turning::NOISE;
 use crate::{Error, Plane, Recording, Result, Turning};
 use std::ops::Range;
 
@@ -62,9 +63,17 @@ impl Experiment {
             None => experiment.parts = vec![vec![1.0; experiment.input.len()]],
             Some(load) => {
                 let (low, high) = range(&load);
-                if low >= high {
+                // A load that differs by rounding is one load.
+                if high - low <= 1e-9 * high.abs().max(low.abs()) {
                     return Err(Error::Fit(format!(
                         "the load is {low} throughout: nothing can be learned of its effect, fit without it"
+                    )));
+                }
+                let (loads, degree) = (different(&load), options.load_degree);
+                if loads <= degree {
+                    return Err(Error::Fit(format!(
+                        "{loads} different loads cannot tell weights of order {degree} in the load: take --load-degree {} at most",
+                        loads - 1
                     )));
                 }
                 experiment.load_range = Some((low, high));
@@ -169,20 +178,20 @@ impl Experiment {
     }
 }
 
-/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
-/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
-pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
-    // De Casteljau's scheme.
-    let mut values = vec![1.0];
-    for _ in 0..degree {
-        let mut next = vec![0.0; values.len() + 1];
-        for (k, value) in values.iter().enumerate() {
-            next[k] += (1.0 - s) * value;
-            next[k + 1] += s * value;
+/// How many loads there are that differ by more than a thousandth of their range.
+fn different(load: &[f64]) -> usize {
+    let mut sorted = load.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = range(load);
+    let mut last = f64::NEG_INFINITY;
+    let mut count = 0;
+    for load in sorted {
+        if load - last > 1e-3 * (high - low) {
+            count += 1;
+            last = load;
         }
-        values = next;
     }
-    values
+    count
 }
 
 /// Ranges below this have squares of zero.
@@ -231,24 +240,4 @@ fn active_plane(low: f64, high: f64, levels: usize) -> Result<Plane> {
         }
     }
     Ok(plane)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::bernstein;
-
-    #[test]
-    fn load_functions_sum_to_one_and_meet_the_ends() {
-        for degree in 0..5 {
-            for s in [0.0, 0.3, 1.0] {
-                let values = bernstein(degree, s);
-                assert_eq!(values.len(), degree + 1);
-                // Five roundings of numbers up to one.
-                assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-15 * 5.0);
-                assert!(values.iter().all(|v| *v >= 0.0));
-            }
-            assert_eq!(bernstein(degree, 0.0)[0], 1.0);
-            assert_eq!(bernstein(degree, 1.0)[degree], 1.0);
-        }
-    }
 }

@@ -40,7 +40,7 @@ impl FreeColumns {
         }
         let factor = gram
             .llt(Side::Lower)
-            .map_err(|_| super::nnls::not_definite())?;
+            .map_err(|_| super::solve::not_definite())?;
         let inverse = factor.solve(&Mat::<f64>::identity(count, count));
         let inverse = (0..count)
             .map(|a| (0..count).map(|b| inverse[(a, b)]).collect())

@@ -1,10 +1,7 @@
 //! The start of a recording, with a model that is known: how much of each operator is on before the first sample.
 
-use super::sparse::{From, SparseForm};
+use super::sparse::{Initial, OPEN, SparseForm};
 use crate::{Model, Operator, Recording, Result};
-
-/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
-pub(super) const OPEN: f64 = 1e-9;
 
 /// Sweeps end when none moves the output by more than this part of the model's range, and at the latest after so many.
 const ENOUGH: f64 = 1e-9;
@@ -17,6 +14,7 @@ const SWEEPS: usize = 10_000;
 pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Result<Vec<f64>> {
     let form = SparseForm::new(*model.plane(), model.operator())?;
     let (count, input) = (form.operators(), &recording.input);
+    super::problem::check_gram(count)?;
     // To states in [0, 1]: μ (2γ − 1) = 2μ γ − μ.
     let factor = if model.operator() == Operator::Mkp {
         1.0
@@ -27,7 +25,7 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
     let sign = model.sign().factor();
     let (off, _) = model.output_range();
 
-    let from_off = form.forward(&weights, input, From::Off)?;
+    let from_off = form.forward(&weights, input, Initial::Off)?;
     let target = recording.output.iter().zip(&from_off);
     let target: Vec<f64> = target.map(|(y, h)| sign * (y - off) - h).collect();
     let open: Vec<usize> = form
@@ -40,17 +38,17 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
     // Dᵀ D and Dᵀ y of D = Φ_on − Φ_off, of the operators that are open.
     let mut gram = vec![0.0; count * count];
     for (left, right, part) in [
-        (From::On, From::On, 1.0),
-        (From::On, From::Off, -1.0),
-        (From::Off, From::On, -1.0),
-        (From::Off, From::Off, 1.0),
+        (Initial::On, Initial::On, 1.0),
+        (Initial::On, Initial::Off, -1.0),
+        (Initial::Off, Initial::On, -1.0),
+        (Initial::Off, Initial::Off, 1.0),
     ] {
         form.add_outer(input, (left, right), |_| part, &mut gram, &|_, _| Ok(()))?;
     }
     form.gram_of(&mut gram);
     let mut right = vec![0.0; count];
-    form.add_adjoint(input, From::On, |n| target[n], &mut right)?;
-    form.add_adjoint(input, From::Off, |n| -target[n], &mut right)?;
+    form.add_adjoint(input, Initial::On, |n| target[n], &mut right)?;
+    form.add_adjoint(input, Initial::Off, |n| -target[n], &mut right)?;
     form.operators_of(&mut right);
 
     let mut nu = vec![0.0; count];
@@ -79,8 +77,8 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
         }
     }
     let rest: Vec<f64> = weights.iter().zip(&nu).map(|(mu, nu)| mu - nu).collect();
-    let rest = form.forward(&rest, input, From::Off)?;
-    let on = form.forward(&nu, input, From::On)?;
+    let rest = form.forward(&rest, input, Initial::Off)?;
+    let on = form.forward(&nu, input, Initial::On)?;
     Ok(rest
         .iter()
         .zip(on)

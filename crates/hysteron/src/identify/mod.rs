@@ -21,17 +21,17 @@ mod validate;
 pub use confidence::{Confidence, INTERVAL};
 pub(crate) use excitation::Unresolved;
 pub use excitation::{Excitation, excitation};
-pub(crate) use experiment::bernstein;
 pub use experiment::plane_of;
 pub(crate) use initial::simulate_from_unknown;
 pub use left_out::{LeftOut, left_out};
 pub use options::{FitOptions, FitSummary, Solver, Start};
+pub(crate) use sparse::Initial;
 pub use validate::{Candidates, Score, Validation, cross_validate};
 
 use crate::{Errors, LoadDependence, LoadPart, Model, Recording, Result};
 use problem::Problem;
 
-/// Told, now and then, what is being done and how far it is from 0 to 1; an error it returns ends the work.
+/// Told, now and then, what is being done and how far it is from 0 to 1, NaN where that is not known; an error it returns ends the work.
 pub type Watch<'a> = &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync);
 
 /// Identifies a model: the weights and offset that minimise the squared error over the recording.

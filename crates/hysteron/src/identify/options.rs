@@ -39,7 +39,7 @@ pub enum Start {
 /// | `solver` | NNLS | NNLS, OLS | see [`Solver`] |
 /// | `sign` | the better one | ± | direction of the output |
 /// | `offset` | free | finite | output with every operator off |
-/// | `smooth` | 0 | from 0 on; 1e-8 to 1e-4 as a rule | strength of the smoothness across the plane |
+/// | `smooth` | 0 | from 0 on; 1e-10 to 1e-4 as a rule | strength of the smoothness across the plane |
 /// | `start` | off | off, on, unknown | where the operators stand before each recording |
 /// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, where the recordings have one |
 /// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
@@ -66,6 +66,14 @@ pub struct FitOptions {
     pub load_degree: usize,
     /// Replicates of the bootstrap.
     pub bootstrap: usize,
+}
+
+impl FitOptions {
+    /// Replicates that standard errors of two digits take, and none from 45 levels on, where they take long.
+    #[must_use]
+    pub fn usual_bootstrap(levels: usize) -> usize {
+        if levels < 45 { 200 } else { 0 }
+    }
 }
 
 impl Default for FitOptions {

@@ -97,7 +97,8 @@ impl Problem {
     pub(super) fn solve(&mut self, kept: Option<&[f64]>, watch: Watch<'_>) -> Result<Fitted> {
         let free = self.free(kept)?;
         loop {
-            let fitted = {
+            check_gram(self.regressor.columns().len())?;
+            let (fitted, slopes) = {
                 let equations = NormalEquations::new(
                     &self.regressor,
                     &self.experiment,
@@ -106,7 +107,9 @@ impl Problem {
                     self.options.smooth,
                     watch,
                 )?;
-                self.best_sign(&equations, watch)?
+                let fitted = self.best_sign(&equations, watch)?;
+                let slopes = equations.slopes(&fitted.solution.x);
+                (fitted, slopes)
             };
             // Rounding of a gradient: what the solver takes for zero.
             let residual = &fitted.solution.residual;
@@ -114,7 +117,7 @@ impl Problem {
             if self.options.solver == Solver::Ols
                 || !self
                     .regressor
-                    .take_missing(&self.experiment, residual, slack)?
+                    .take_missing(&self.experiment, residual, &slopes, slack)?
             {
                 return Ok(fitted);
             }

@@ -9,8 +9,7 @@
 //! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
 
 use super::experiment::Experiment;
-use super::initial::OPEN;
-use super::sparse::{From, SparseForm};
+use super::sparse::{Initial, OPEN, SparseForm};
 use super::{Start, Watch};
 use crate::{Operator, Plane, Result};
 use std::ops::Range;
@@ -36,11 +35,11 @@ impl Column {
         Self { part, operator, on }
     }
 
-    fn from(&self, recording: usize) -> From {
+    fn initial_in(&self, recording: usize) -> Initial {
         if self.on >> recording & 1 == 1 {
-            From::On
+            Initial::On
         } else {
-            From::Off
+            Initial::Off
         }
     }
 }
@@ -132,11 +131,11 @@ impl Regressor {
         let mut output = vec![0.0; experiment.input.len()];
         for (s, range) in experiment.recordings.iter().enumerate() {
             for (part, values) in experiment.parts.iter().enumerate() {
-                for from in [From::Off, From::On] {
+                for from in [Initial::Off, Initial::On] {
                     let mut weights = vec![0.0; self.form.operators()];
                     let mut any = false;
                     for (column, &x) in self.columns.iter().zip(x) {
-                        if column.part == part && column.from(s) == from && x != 0.0 {
+                        if column.part == part && column.initial_in(s) == from && x != 0.0 {
                             weights[column.operator] += x;
                             any = true;
                         }
@@ -162,7 +161,11 @@ impl Regressor {
         for recordings in self.alike(experiment) {
             let products = self.products(experiment, recordings.clone(), residual)?;
             for (result, column) in result.iter_mut().zip(&self.columns) {
-                *result += products.of(column.part, column.from(recordings.start), column.operator);
+                *result += products.of(
+                    column.part,
+                    column.initial_in(recordings.start),
+                    column.operator,
+                );
             }
         }
         Ok(result)
@@ -181,9 +184,16 @@ impl Regressor {
     }
 
     /// Starts that columns have in the recording.
-    fn starts(&self, recording: usize) -> Vec<From> {
-        let has = |from: &From| self.columns.iter().any(|c| c.from(recording) == *from);
-        [From::Off, From::On].into_iter().filter(has).collect()
+    fn starts(&self, recording: usize) -> Vec<Initial> {
+        let has = |from: &Initial| {
+            self.columns
+                .iter()
+                .any(|c| c.initial_in(recording) == *from)
+        };
+        [Initial::Off, Initial::On]
+            .into_iter()
+            .filter(has)
+            .collect()
     }
 
     fn products(
@@ -222,7 +232,7 @@ impl Regressor {
             let starts = self.starts(recordings.start);
             let groups =
                 (0..experiment.parts.len()).flat_map(|p| starts.iter().map(move |f| (p, *f)));
-            let groups: Vec<(usize, From)> = groups.collect();
+            let groups: Vec<(usize, Initial)> = groups.collect();
             for (g, &(p, from)) in groups.iter().enumerate() {
                 for &(q, other) in &groups[g..] {
                     let mut block = vec![0.0; operators * operators];
@@ -246,7 +256,7 @@ impl Regressor {
                         let columns = self.columns.iter().enumerate();
                         columns
                             .filter(move |(_, c)| {
-                                c.part == part && c.from(recordings.start) == from
+                                c.part == part && c.initial_in(recordings.start) == from
                             })
                             .map(|(n, c)| (n, c.operator))
                             .collect::<Vec<_>>()
@@ -270,11 +280,12 @@ impl Regressor {
     /// Takes in the columns whose pattern of starts would reduce the error most, one an operator and
     /// part, where that is by more than `slack`; says whether there were any.
     ///
-    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s` is the steepest descent over all patterns.
+    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns; `slopes` is `P x`, a value a column.
     pub(super) fn take_missing(
         &mut self,
         experiment: &Experiment,
         residual: &[f64],
+        slopes: &[f64],
         slack: f64,
     ) -> Result<bool> {
         if !self.unknown_start() || experiment.recordings.len() < 2 {
@@ -288,12 +299,15 @@ impl Regressor {
         let before = self.columns.len();
         for part in 0..experiment.parts.len() {
             for operator in 0..self.form.operators() {
-                let (mut on, mut descent) = (0, 0.0);
+                // The first columns are those that start off, in this order; the penalty does not know of starts.
+                let first = part * self.form.operators() + operator;
+                let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {
-                    let [off, rest] = [From::Off, From::On].map(|f| products.of(part, f, operator));
+                    let [off, started_on] =
+                        [Initial::Off, Initial::On].map(|f| products.of(part, f, operator));
                     let open = self.open[operator] >> s & 1 == 1;
-                    on |= u64::from(open && rest > off) << s;
-                    descent += if open { off.max(rest) } else { off };
+                    on |= u64::from(open && started_on > off) << s;
+                    descent += if open { off.max(started_on) } else { off };
                 }
                 let column = Column { part, operator, on };
                 if descent > slack && !self.columns.contains(&column) {
@@ -307,12 +321,12 @@ impl Regressor {
 
 /// `Φᵀ r` for each part and start.
 struct Products {
-    starts: Vec<From>,
+    starts: Vec<Initial>,
     sums: Vec<Vec<f64>>,
 }
 
 impl Products {
-    fn of(&self, part: usize, from: From, operator: usize) -> f64 {
+    fn of(&self, part: usize, from: Initial, operator: usize) -> f64 {
         let place = self.starts.iter().position(|start| *start == from);
         place.map_or(f64::NEG_INFINITY, |place| {
             self.sums[part * self.starts.len() + place][operator]

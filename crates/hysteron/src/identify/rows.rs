@@ -1,7 +1,7 @@
 //! The rows of `W`, sample by sample: the factors of the turning points before the branch, which stay
 //! the same along it, and the three of the branch itself.
 
-use super::sparse::From;
+use super::sparse::Initial;
 use crate::{Result, State};
 use hysteron_core::{Model, Turn, turn_capacity};
 
@@ -31,7 +31,7 @@ impl<'a> Rows<'a> {
     pub(super) fn new(
         blank: &'a Model<f64, Vec<f64>>,
         place: &'a [u32],
-        from: From,
+        from: Initial,
     ) -> Result<Self> {
         let state = state_of(blank, from)?;
         let mut rows = Self {
@@ -98,10 +98,10 @@ impl<'a> Rows<'a> {
 }
 
 /// The state of a model before the first sample.
-pub(super) fn state_of(model: &Model<f64, Vec<f64>>, from: From) -> Result<State> {
+pub(super) fn state_of(model: &Model<f64, Vec<f64>>, from: Initial) -> Result<State> {
     let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
     let mut state = model.state(memory)?;
-    if from == From::On {
+    if from == Initial::On {
         model.reset_on(&mut state)?;
     }
     Ok(state)

@@ -10,7 +10,7 @@ use super::free::FreeColumns;
 use super::regressor::Regressor;
 use super::smoothness::Smoothness;
 use super::{Solver, Watch, nnls, pivoting};
-use crate::Result;
+use crate::{Error, Result};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
@@ -124,22 +124,14 @@ impl<'a> NormalEquations<'a> {
             watch("weights", 0.0)?;
             let gradient = self.descent(&best)?;
             let x = match &full {
-                Some(factor) => {
-                    let step = factor.solve(&Mat::from_fn(count, 1, |n, _| gradient[n]));
-                    (0..count).map(|n| best.x[n] + step[(n, 0)]).collect()
+                Some(_) => {
+                    let step = self.minimum(&gradient, &best.x, full.as_ref(), watch)?;
+                    best.x.iter().zip(step).map(|(x, d)| x + d).collect()
                 }
                 None => {
                     let moved = self.times(&best.x);
                     let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    // Smooth weights are not zero as a rule.
-                    let (mut x, exact) = match self.smoothness.is_any() {
-                        true => pivoting::minimum(&self.matrix, &right, &best.x),
-                        false => (best.x.clone(), false),
-                    };
-                    if !exact {
-                        nnls::solve(&self.matrix, &right, &mut x, watch)?;
-                    }
-                    x
+                    self.minimum(&right, &best.x, None, watch)?
                 }
             };
             let next = self.solution(target, x)?;
@@ -154,12 +146,36 @@ impl<'a> NormalEquations<'a> {
         Ok(best)
     }
 
+    /// The minimum of `½ xᵀ M x − bᵀ x`: with a factor of `M` over all `x`, without one over those from zero on,
+    /// beginning at `start`.
+    pub(super) fn minimum(
+        &self,
+        right: &[f64],
+        start: &[f64],
+        factor: Option<&Llt<f64>>,
+        watch: Watch<'_>,
+    ) -> Result<Vec<f64>> {
+        if let Some(factor) = factor {
+            let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
+            return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
+        }
+        // Smooth weights are not zero as a rule.
+        let (mut x, exact) = match self.smoothness.is_any() {
+            true => pivoting::minimum(&self.matrix, right, start),
+            false => (start.to_vec(), false),
+        };
+        if !exact {
+            nnls::solve(&self.matrix, right, &mut x, watch)?;
+        }
+        Ok(x)
+    }
+
     /// The factor of the whole matrix, for weights of either sign.
     pub(super) fn factor(&self) -> Result<Llt<f64>> {
         let count = self.regressor.columns().len();
         let element = |i: usize, j: usize| self.matrix[i * count + j];
         let matrix = Mat::from_fn(count, count, element);
-        matrix.llt(Side::Lower).map_err(|_| nnls::not_definite())
+        matrix.llt(Side::Lower).map_err(|_| not_definite())
     }
 
     /// What `x` leaves of `target`, with the best free columns taken off.
@@ -173,7 +189,7 @@ impl<'a> NormalEquations<'a> {
                 .for_each(|(r, kept)| *r *= kept);
         }
         let free = self.free.take_off(&mut residual);
-        let slopes = self.smoothness.times(&x, self.regressor.columns());
+        let slopes = self.slopes(&x);
         let penalty: f64 = x.iter().zip(&slopes).map(|(x, s)| x * s).sum();
         let objective = residual.iter().map(|r| r * r).sum::<f64>() + penalty;
         Ok(Solution {
@@ -184,10 +200,15 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
+    /// `P x`, half the slope of the penalty.
+    pub(super) fn slopes(&self, x: &[f64]) -> Vec<f64> {
+        self.smoothness.times(x, self.regressor.columns())
+    }
+
     /// Half the descent of the objective: `Aᵀ r − P x`.
     pub(super) fn descent(&self, at: &Solution) -> Result<Vec<f64>> {
         let mut descent = self.regressor.adjoint(self.experiment, &at.residual)?;
-        let slopes = self.smoothness.times(&at.x, self.regressor.columns());
+        let slopes = self.slopes(&at.x);
         descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
         Ok(descent)
     }
@@ -199,4 +220,11 @@ impl<'a> NormalEquations<'a> {
             .map(row_times)
             .collect()
     }
+}
+
+pub(super) fn not_definite() -> Error {
+    Error::Fit(
+        "the normal equations cannot be factorised: the data hold values too large or too small to work with"
+            .into(),
+    )
 }

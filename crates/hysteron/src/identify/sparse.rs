@@ -11,10 +11,13 @@ use hysteron_core::{Model, operator_index, table_index, table_len};
 
 /// Where the operators stand before the first sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum From {
+pub(crate) enum Initial {
     Off,
     On,
 }
+
+/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
+pub(super) const OPEN: f64 = 1e-9;
 
 /// How often a long pass tells how far it is, in samples.
 const REPORT: usize = 1 << 16;
@@ -58,14 +61,14 @@ impl SparseForm {
         self.plane.operators()
     }
 
-    pub(super) fn rows(&self, from: From) -> Result<Rows<'_>> {
+    pub(super) fn rows(&self, from: Initial) -> Result<Rows<'_>> {
         Rows::new(&self.blank, &self.place, from)
     }
 
     /// How much of each operator the first sample leaves open: its state from on less that from off.
     pub(super) fn open(&self, first: f64) -> Result<Vec<f64>> {
         let levels = self.plane.levels();
-        let (mut off, mut on) = (self.rows(From::Off)?, self.rows(From::On)?);
+        let (mut off, mut on) = (self.rows(Initial::Off)?, self.rows(Initial::On)?);
         off.leaves_branch(first)?;
         on.leaves_branch(first)?;
         let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
@@ -75,7 +78,12 @@ impl SparseForm {
     }
 
     /// `Φ μ`: a run of the forward model, `O(n + K²)`.
-    pub(super) fn forward(&self, weights: &[f64], input: &[f64], from: From) -> Result<Vec<f64>> {
+    pub(super) fn forward(
+        &self,
+        weights: &[f64],
+        input: &[f64],
+        from: Initial,
+    ) -> Result<Vec<f64>> {
         let table = vec![0.0; table_len(self.plane.levels())];
         // A relay's states come doubled and shifted by its output of ±1; KP states are those of MKP.
         let relay = self.operator == Operator::Relay;
@@ -101,7 +109,7 @@ impl SparseForm {
     pub(super) fn add_adjoint(
         &self,
         input: &[f64],
-        from: From,
+        from: Initial,
         residual: impl Fn(usize) -> f64,
         sums: &mut [f64],
     ) -> Result<()> {
@@ -133,7 +141,7 @@ impl SparseForm {
     pub(super) fn add_outer(
         &self,
         input: &[f64],
-        (left, right): (From, From),
+        (left, right): (Initial, Initial),
         scale: impl Fn(usize) -> f64,
         gram: &mut [f64],
         watch: Watch<'_>,
@@ -288,11 +296,11 @@ mod tests {
     use rand::{RngExt, SeedableRng};
 
     /// `Φ` from the definition, column by column of each row.
-    fn dense(plane: Plane, operator: Operator, input: &[f64], from: From) -> Vec<Vec<f64>> {
+    fn dense(plane: Plane, operator: Operator, input: &[f64], from: Initial) -> Vec<Vec<f64>> {
         let weights = vec![1.0; plane.operators()];
         let mut states = weights.clone();
         let mut plain = Definition::new(plane, operator, &weights, &mut states).unwrap();
-        if from == From::On {
+        if from == Initial::On {
             plain.step(plane.max()).unwrap();
         }
         let step = |&t: &f64| {
@@ -307,9 +315,9 @@ mod tests {
         for (seed, levels) in [2, 3, 7, 15].into_iter().enumerate() {
             for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
                 for starts in [
-                    (From::Off, From::Off),
-                    (From::On, From::On),
-                    (From::Off, From::On),
+                    (Initial::Off, Initial::Off),
+                    (Initial::On, Initial::On),
+                    (Initial::Off, Initial::On),
                 ] {
                     agrees(seed as u64, levels, operator, starts);
                 }
@@ -317,7 +325,7 @@ mod tests {
         }
     }
 
-    fn agrees(seed: u64, levels: usize, operator: Operator, (left, right): (From, From)) {
+    fn agrees(seed: u64, levels: usize, operator: Operator, (left, right): (Initial, Initial)) {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
         let plane = Plane::new(-1.0, 4.0, levels).unwrap();
         // Runs of small steps, so that branches have many samples, and jumps between.

@@ -164,7 +164,7 @@ pub fn prepare(
         left *= lag::growth(step, tau, input_cutoff.unwrap_or(0.5));
     }
     let as_read = input_cutoff.is_none() && undone.is_none();
-    let band = settle(&mut work, options.band, left, as_read);
+    let band = settle(&mut work, options.band, left, as_read)?;
     work.check()?;
     let report = Preparation {
         samples_before: recording.len(),
@@ -206,8 +206,19 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
                 "resampling needs a time column: name it, or leave the step out".into(),
             ));
         }
-        (Step::Value(step), Some(_)) => step,
-        (Step::Auto, Some(time)) if needed && resample::irregular(time) => resample::step_of(time),
+        (Step::Value(step), Some(time)) => {
+            let duration = time[time.len() - 1] - time[0];
+            if step > duration {
+                return Err(Error::Preparation(format!(
+                    "a step of {step} s is longer than the recording, {duration} s: take a shorter one"
+                )));
+            }
+            step
+        }
+        (Step::Auto, Some(time)) if needed && resample::irregular(time) => {
+            resample::fits(time)?;
+            resample::step_of(time)
+        }
         _ => return Ok(None),
     };
     if taken <= 0.0 {
@@ -279,10 +290,18 @@ fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option
 }
 
 /// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its values are still those of the meter.
-fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Option<DeadBand> {
+fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<Option<DeadBand>> {
     let size = match how {
-        Step::Off => return None,
-        Step::Value(size) => size,
+        Step::Off => return Ok(None),
+        Step::Value(size) => {
+            let (low, high) = range(&work.input);
+            if size >= high - low {
+                return Err(Error::Preparation(format!(
+                    "a dead band of {size} takes the whole range of the input, {low} to {high}: take a smaller one"
+                )));
+            }
+            size
+        }
         Step::Auto => {
             // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both sides.
             let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
@@ -298,10 +317,10 @@ fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Option<D
     let before = work.input.clone();
     band::settle(&mut work.input, size);
     let pairs = || before.iter().zip(&work.input);
-    Some(DeadBand {
+    Ok(Some(DeadBand {
         size,
         false_reversals: band::reversals(&before).saturating_sub(band::reversals(&work.input)),
         samples_changed: pairs().filter(|(a, b)| a != b).count(),
         largest_change: pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
-    })
+    }))
 }

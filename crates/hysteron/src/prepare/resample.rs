@@ -19,6 +19,21 @@ pub(super) fn step_of(time: &[f64]) -> f64 {
     median.max(duration / (GROWTH * time.len() as f64))
 }
 
+/// That the median step does not make the samples many times as many: over a long pause there is nothing to filter.
+pub(super) fn fits(time: &[f64]) -> Result<()> {
+    let duration = time[time.len() - 1] - time[0];
+    let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
+    let samples = duration / median;
+    if median > 0.0 && samples > GROWTH * time.len() as f64 {
+        return Err(Error::Preparation(format!(
+            "the time has gaps: at the median step of {median} s there would be {samples:.0} samples instead of {}. Cut the recording at its gaps \
+             (several files make one experiment), or leave the filter out (--low-pass off) or give a step (--resample)",
+            time.len()
+        )));
+    }
+    Ok(())
+}
+
 /// Whether any step differs from the median.
 pub(super) fn irregular(time: &[f64]) -> bool {
     let steps = || time.windows(2).map(|pair| pair[1] - pair[0]);

@@ -39,6 +39,20 @@ impl Recording {
     /// ```
     pub fn read(path: &Path, columns: Columns<'_>, repair: Repair) -> Result<(Self, Vec<Note>)> {
         let mut table = TableReader::open_hashed(path)?;
+        let named = [
+            Some(columns.input),
+            Some(columns.output),
+            columns.time,
+            columns.load,
+        ];
+        for (n, name) in named.iter().enumerate() {
+            if let (Some(name), true) = (name, named[..n].contains(name)) {
+                let problem = format!(
+                    "the column `{name}` is named twice: input, output, time and load are four things"
+                );
+                return Err(table.fault(None, problem));
+            }
+        }
         let pairs = [columns.input, columns.output].map(|name| table.pair(name));
         let time = match (columns.time, &pairs) {
             (Some(time), _) => Some(time.to_owned()),

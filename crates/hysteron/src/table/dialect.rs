@@ -51,12 +51,13 @@ pub(super) fn is_skipped(line: &[u8]) -> bool {
 
 impl Dialect {
     pub(super) fn of(head: &[u8], whole: bool) -> Self {
-        let end = match head.contains(&b'\n') {
-            true => b'\n',
-            false => b'\r',
+        // A first line longer than the head has neither.
+        let end = match head.contains(&b'\r') && !head.contains(&b'\n') {
+            true => b'\r',
+            false => b'\n',
         };
         let mut lines: Vec<&[u8]> = head.split(|byte| *byte == end).collect();
-        if !whole {
+        if !whole && lines.len() > 1 {
             // The last line goes on beyond the head.
             lines.pop();
         }

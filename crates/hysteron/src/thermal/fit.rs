@@ -5,7 +5,7 @@ use crate::recording::range;
 use crate::{Error, FitOptions, Model, Recording, Result, Watch, fit_experiment};
 use serde_json::json;
 
-/// Samples that the search looks at; the last fit sees all.
+/// Samples that the search looks at, or up to three times as many; the last fit sees all.
 const SEARCHED: usize = 2000;
 
 /// Time constants that the longest recording must last: after four of them a body has settled to 2 %. A slower one
@@ -72,7 +72,7 @@ struct Search<'a> {
     watch: Watch<'a>,
     /// Logarithms of the shortest and the longest time constant searched.
     bounds: (f64, f64),
-    /// Of so many samples one is looked at.
+    /// Of so many samples three at most are looked at.
     stride: usize,
 }
 
@@ -163,13 +163,27 @@ impl<'a> Search<'a> {
     }
 }
 
+/// Of each run of `stride` samples the first and those with the extreme temperatures: without these the turning points,
+/// and with them the memory, would be others.
 fn thin(recording: Recording, stride: usize) -> Recording {
-    let every = |values: Vec<f64>| values.into_iter().step_by(stride).collect();
+    let theta = &recording.input;
+    let starts = (0..theta.len()).step_by(stride);
+    let mut kept: Vec<usize> = starts
+        .flat_map(|start| {
+            let block = start..(start + stride).min(theta.len());
+            let by = |a: &usize, b: &usize| theta[*a].total_cmp(&theta[*b]);
+            [block.clone().min_by(by), block.max_by(by), Some(start)]
+        })
+        .flatten()
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let every = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
     Recording {
-        time: recording.time.map(every),
-        input: every(recording.input),
-        output: every(recording.output),
-        load: recording.load.map(every),
+        time: recording.time.as_ref().map(every),
+        output: every(&recording.output),
+        load: recording.load.as_ref().map(every),
+        input: every(&recording.input),
         ..recording
     }
 }

@@ -57,8 +57,14 @@ impl FirstOrder {
     /// goes towards the drive and never past it, so that one time constant holds for the whole step.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for numbers that are not finite or a time that goes back; the state is then as it was.
+    /// [`Error::Thermal`] for numbers that are not finite, a time that goes back, or a body whose numbers are not above zero; the
+    /// state is then as it was.
     pub fn step(&self, state: &mut ThermalState, time: f64, drive: f64) -> Result<f64> {
+        if let Some((name, value)) = self.fault() {
+            return Err(Error::Thermal(format!(
+                "the body's {name} is {value}, where a finite number above zero is needed"
+            )));
+        }
         let elapsed = time - state.time;
         if !(elapsed >= 0.0 && elapsed.is_finite() && drive.is_finite()) {
             return Err(Error::Thermal(format!(
