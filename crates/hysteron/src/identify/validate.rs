@@ -12,11 +12,8 @@ use serde::{Deserialize, Serialize};
 /// Folds at most.
 const FOLDS: usize = 10;
 
-/// What is chosen is no worse than the best by more than this: with few folds their standard error says little.
-const CLOSE: f64 = 1.1;
-
 /// With fewer branches than this, parts of branches are left out instead.
-const ENOUGH_BRANCHES: usize = 4;
+const ENOUGH_BRANCHES: usize = 6;
 
 /// What to choose from.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +56,7 @@ pub struct Score {
 pub struct Validation {
     /// Groups of branches that were left out in turn.
     pub folds: usize,
-    /// Whether whole branches were left out: with fewer than four, parts of them.
+    /// Whether whole branches were left out: with fewer than six, parts of them.
     pub whole_branches: bool,
     /// The error left out of the candidate chosen, in the output's unit.
     pub rmse: f64,
@@ -93,7 +90,7 @@ impl Validation {
 /// Chooses levels and smoothness by the error on left-out branches. Returns the options with the choice
 /// made, and how it came about.
 ///
-/// Chosen is the smoothest candidate that is worse than the best by no more than one standard error over the folds, and 10 %. More
+/// Chosen is the smoothest candidate that is worse than the best by no more than one standard error over the folds. More
 /// levels are tried until two numbers in a row have not reduced the error by 1 %. With unknown starts in several recordings, the
 /// patterns of starts are all off and all on only.
 ///
@@ -197,7 +194,7 @@ fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
         let folds = worse.len() as f64;
         let mean = worse.iter().sum::<f64>() / folds;
         let variance = worse.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (folds - 1.0);
-        mean <= (variance / folds).sqrt() && scores[*n].rmse <= CLOSE * scores[best].rmse
+        mean <= (variance / folds).sqrt()
     };
     let chosen = (0..scores.len()).filter(as_good).min_by(|a, b| {
         let (a, b) = (scores[*a], scores[*b]);
