@@ -130,69 +130,6 @@ impl Model {
         &self.weights
     }
 
-    /// The model at a load, which depends on it no more.
-    ///
-    /// # Errors
-    /// [`Error::Fit`] where the model has no load, or for one outside its range.
-    pub fn at_load(&self, load: f64) -> Result<Self> {
-        let Some(dependence) = &self.load else {
-            return Err(crate::load::no_load());
-        };
-        let crate::LoadPart { offset, weights } = dependence.at(load)?;
-        let (operator, plane) = (self.operator(), *self.plane());
-        let mut model = Self::new(operator, plane, weights, offset, self.sign)?;
-        model.input = self.input.clone();
-        model.output = self.output.clone();
-        model.thermal = self.thermal;
-        model.fit = self.fit.clone();
-        Ok(model)
-    }
-
-    /// The models that the functions of the load are multiplied with; none without a load.
-    pub(crate) fn load_parts(&self) -> Result<Vec<Self>> {
-        let parts = self.load.iter().flat_map(|load| load.parts());
-        let (operator, plane) = (self.operator(), *self.plane());
-        parts
-            .map(|part| {
-                Self::new(
-                    operator,
-                    plane,
-                    part.weights.clone(),
-                    part.offset,
-                    self.sign,
-                )
-            })
-            .collect()
-    }
-
-    /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
-    ///
-    /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
-    ///
-    /// # Errors
-    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads as inputs.
-    pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
-        let Some(dependence) = &self.load else {
-            return Err(crate::load::no_load());
-        };
-        if load.len() != input.len() {
-            let (loads, inputs) = (load.len(), input.len());
-            return Err(Error::Fit(format!("{loads} loads for {inputs} inputs")));
-        }
-        let factors: Vec<Vec<f64>> = load
-            .iter()
-            .map(|f| dependence.factors(*f))
-            .collect::<Result<_>>()?;
-        let mut output = vec![0.0; input.len()];
-        for (k, part) in self.load_parts()?.iter().enumerate() {
-            let run = part.simulate(input)?;
-            for ((y, h), factors) in output.iter_mut().zip(run).zip(&factors) {
-                *y += factors[k] * h;
-            }
-        }
-        Ok(output)
-    }
-
     /// Output with `Σ μ γ = 0`.
     #[must_use]
     pub fn offset(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! Identification: the weights of a model from recordings.
 
+mod bootstrap;
 mod cholesky;
 mod confidence;
 mod excitation;
