@@ -220,3 +220,113 @@ fn an_interrupted_fit_leaves_nothing() {
     names.sort();
     assert_eq!(names, ["heavy.csv", "long.csv", "other.csv", "run.csv"]);
 }
+
+#[test]
+fn what_cannot_be_is_refused_and_nothing_is_replaced() {
+    let folder = bench();
+    let path = folder.path();
+    json(
+        path,
+        "fit run.csv --input x --output y --levels 6 --bootstrap 0 -o m.json",
+    );
+    let two = "fit run.csv heavy.csv --input x --output y --load load";
+    let design = "design --range 20,80 --levels 5 --heating-rate 2 --cooling-rate 1";
+    for (line, expected) in [
+        (
+            format!("{two} --load-degree 2 -o n.json"),
+            "2 different loads cannot tell weights of order 2",
+        ),
+        (
+            "fit run.csv --input x --output x -o n.json".into(),
+            "named twice",
+        ),
+        (
+            "fit run.csv --input x --output y -o -".into(),
+            "a model goes to a file",
+        ),
+        (
+            "simulate m.json run.csv --input x --load load -o n.csv".into(),
+            "does not depend on a load",
+        ),
+        (
+            "simulate m.json run.csv --input x -o m.json".into(),
+            "would replace a file that is read",
+        ),
+        (
+            "invert m.json run.csv --target y --load load -o n.csv".into(),
+            "give it as a number",
+        ),
+        (
+            format!("{design} --from run.csv --input x -o run.csv"),
+            "would replace a file that is read",
+        ),
+        (format!("{design} -o n.csv --figure n.csv"), "a file each"),
+        (
+            format!("{design} --step 1e-9 -o n.csv"),
+            "samples, more than",
+        ),
+        (
+            "prepare run.csv --input x --output y --band 1e9 -o n.csv".into(),
+            "the whole range of the input",
+        ),
+    ] {
+        let said = refused(path, &line);
+        assert!(said.contains(expected), "{line}: {said}");
+    }
+    assert!(!path.join("n.json").exists() && !path.join("n.csv").exists());
+    assert!(
+        fs::read_to_string(path.join("run.csv"))
+            .unwrap()
+            .starts_with("x,y,load\n")
+    );
+    assert!(
+        fs::read_to_string(path.join("m.json"))
+            .unwrap()
+            .starts_with('{')
+    );
+}
+
+#[test]
+fn a_broken_confidence_is_named_by_its_field() {
+    let folder = bench();
+    let path = folder.path();
+    json(
+        path,
+        "fit run.csv --input x --output y --levels 5 --bootstrap 20 -o m.json",
+    );
+    let good: Value =
+        serde_json::from_str(&fs::read_to_string(path.join("m.json")).unwrap()).unwrap();
+    for (pointer, value, field) in [
+        ("/noise", Value::from(-1.0), "fit.confidence.noise"),
+        ("/noise", Value::from(1e300), "fit.confidence.noise"),
+        (
+            "/standard_error/3",
+            Value::from(-1.0),
+            "fit.confidence.standard_error",
+        ),
+        (
+            "/standard_error",
+            Value::from(vec![0.0; 14]),
+            "fit.confidence.standard_error",
+        ),
+        (
+            "/excitation",
+            Value::from(Vec::<String>::new()),
+            "fit.confidence.excitation",
+        ),
+        (
+            "/factors/0/weights",
+            Value::from(vec![1.0]),
+            "fit.confidence.factors[0].weights",
+        ),
+    ] {
+        let mut model = good.clone();
+        *model["fit"]["confidence"].pointer_mut(pointer).unwrap() = value;
+        fs::write(path.join("bad.json"), model.to_string()).unwrap();
+        let said = refused(path, "inspect bad.json");
+        assert!(
+            said.contains("bad.json") && said.contains(field),
+            "{field}: {said}"
+        );
+    }
+}

@@ -138,3 +138,25 @@ fn what_cannot_be_done_is_said_and_leaves_nothing() {
         assert!(!folder.path().join("no.csv").exists(), "{line}");
     }
 }
+
+/// Over a day's pause there is nothing to filter; the recording has to be cut there.
+#[test]
+fn a_long_pause_is_not_filtered_away() {
+    let folder = rough_recording();
+    let table = fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let later = table
+        .lines()
+        .enumerate()
+        .map(|(n, row)| match row.split_once(',') {
+            Some((t, rest)) if n > 450 => {
+                format!("{},{rest}\n", t.parse::<f64>().unwrap() + 86_400.0)
+            }
+            _ => format!("{row}\n"),
+        });
+    fs::write(folder.path().join("run.csv"), later.collect::<String>()).unwrap();
+    let done = run(folder.path(), &format!("prepare {COLUMNS} -o out.csv"));
+    assert_eq!(done.status.code(), Some(1));
+    let said = text(&done.stderr);
+    assert!(said.contains("Cut the recording at its gaps"), "{said}");
+    assert!(!folder.path().join("out.csv").exists());
+}
