@@ -222,3 +222,64 @@ fn a_body_has_no_inverse_and_needs_time() {
         .unwrap();
     assert_eq!(evaluation.output_model, warmed);
 }
+
+/// The search looks at few samples of a long recording. A drive that turns often must not lose its turning points there.
+#[test]
+fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
+    let time: Vec<f64> = (0..30_000).map(|n| 0.1 * f64::from(n)).collect();
+    // Steps of 3 s up and 2 s down to one height after the other: 50 samples a period, where one of 15 is looked at.
+    let heights = [1.0, 0.4, 0.8, 0.6, 0.9];
+    let height = |t: &f64| {
+        if t % 5.0 < 3.0 {
+            heights[(t / 5.0) as usize % 5]
+        } else {
+            0.0
+        }
+    };
+    let input: Vec<f64> = time.iter().map(height).collect();
+    let body = FirstOrder {
+        gain: 1.0,
+        tau_heating: 1.0,
+        tau_cooling: 2.0,
+    };
+    let mut model = truth();
+    model.thermal = Some(body);
+    let output = model
+        .simulate(&body.respond(&time, &input).unwrap())
+        .unwrap();
+    let mut recording = Recording::new(input, output).unwrap();
+    recording.time = Some(time);
+    let options = FitOptions {
+        levels: 10,
+        ..FitOptions::default()
+    };
+    let found = fit_thermal(&[recording], &options, &|_, _| Ok(())).unwrap();
+    let body = found.thermal.unwrap();
+    println!("{body:?}");
+    // Exact data; what is left is that the plane found is not that of the truth.
+    assert!((body.tau_heating / 1.0 - 1.0).abs() < 0.1, "{body:?}");
+    assert!((body.tau_cooling / 2.0 - 1.0).abs() < 0.1, "{body:?}");
+    assert!(found.fit.unwrap().nrmse_percent < 1.0);
+}
+
+#[test]
+fn a_model_at_one_load_keeps_its_body() {
+    let (recording, _) = recorded(2600);
+    let mut heavy = recording.clone();
+    heavy.output.iter_mut().for_each(|y| *y *= 1.3);
+    let loads = [recording, heavy].into_iter().zip([6.0, 10.0]);
+    let recordings: Vec<Recording> = loads
+        .map(|(mut recording, load)| {
+            recording.load = Some(vec![load; recording.len()]);
+            recording
+        })
+        .collect();
+    let options = FitOptions {
+        levels: 6,
+        ..FitOptions::default()
+    };
+    let model = fit_thermal(&recordings, &options, &|_, _| Ok(())).unwrap();
+    let light = model.at_load(6.0).unwrap();
+    assert!(light.thermal.is_some() && light.thermal == model.thermal);
+    assert!(light.inverse().is_err());
+}
