@@ -132,12 +132,8 @@ fn bad_arguments_are_refused() {
     fs::write(path.join("cold.csv"), "x\n1\n2\n").unwrap();
     fs::write(path.join("bad.csv"), "x\n30\nwarm\n").unwrap();
     let cases = [
-        ("--heating-rate 0 --cooling-rate 1", 1, "heating rate is 0"),
-        (
-            "--heating-rate 1 --cooling-rate -2",
-            1,
-            "cooling rate is -2",
-        ),
+        ("--heating-rate 0 --cooling-rate 1", 2, "above zero"),
+        ("--heating-rate 1 --cooling-rate -2", 2, "above zero"),
         (
             "--heating-rate 1 --cooling-rate 1 --budget 0.1",
             1,

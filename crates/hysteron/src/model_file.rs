@@ -2,7 +2,7 @@
 
 use crate::identify::FitSummary;
 use crate::output::AtomicFile;
-use crate::recording::Quantity;
+use crate::recording::{LARGEST, Quantity};
 use crate::{Error, FirstOrder, LoadDependence, LoadPart, Model, Operator, Plane, Result, Sign};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -180,6 +180,11 @@ impl Model {
         };
         let PlaneEntry { min, max, levels } = file.plane;
         let plane = Plane::new(min, max, levels).map_err(in_field("plane"))?;
+        if min.abs().max(max.abs()) > LARGEST {
+            let problem =
+                format!("{min:e} to {max:e} is too large to be squared: use another unit");
+            return Err(fault("plane", problem));
+        }
         let sign = match file.output.sign {
             1 => Sign::Positive,
             -1 => Sign::Negative,

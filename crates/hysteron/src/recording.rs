@@ -90,7 +90,7 @@ pub struct Source {
 }
 
 /// Values beyond this have squares that a sum of squares cannot hold.
-const LARGEST: f64 = 1e140;
+pub(crate) const LARGEST: f64 = 1e140;
 
 /// An input and the output it caused, sample by sample.
 ///

@@ -31,7 +31,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
     /// Order of that function
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "load")]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "load", allow_hyphen_values = true, value_parser = up_to(5))]
     pub(crate) load_degree: usize,
     /// Put a thermal body in front of the operators and identify it with the weights: for an input that heats, where the
     /// temperature is not known. The input is taken as proportional to the power, as a duty cycle is; of a current or a voltage give
@@ -39,7 +39,7 @@ pub(crate) struct Fit {
     #[arg(long, value_enum, value_name = "BODY", requires = "time")]
     pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45 levels on 0]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
     pub(crate) bootstrap: Option<usize>,
     /// Lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]

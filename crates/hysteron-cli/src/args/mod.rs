@@ -225,13 +225,13 @@ pub(crate) struct Design {
     #[arg(long, value_parser = parse_levels)]
     pub(crate) levels: usize,
     /// How fast the input can rise, in its unit per second
-    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) heating_rate: f64,
     /// How fast it can fall
-    #[arg(long, value_name = "R", value_parser = parse_finite, allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) cooling_rate: f64,
     /// Longest duration: as many rings as fit, evenly spread [default: all that it takes]
-    #[arg(long, value_name = "MINUTES", value_parser = parse_finite, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MINUTES", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) budget: Option<f64>,
     /// A recording that exists, repeatable: what it determines is left out
     #[arg(long, value_name = "RECORDING", requires = "input")]
@@ -240,7 +240,7 @@ pub(crate) struct Design {
     #[arg(long, value_name = "COL")]
     pub(crate) input: Option<String>,
     /// Longest time between samples [default: ten samples a level]
-    #[arg(long, value_name = "SECONDS", value_parser = parse_finite, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) step: Option<f64>,
     /// Elementary operator
     #[arg(long, value_enum, default_value = "mkp")]

@@ -100,6 +100,18 @@ pub(super) fn parse_finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Whole numbers from 0 on.
+pub(super) fn up_to(most: u64) -> clap::builder::RangedU64ValueParser<usize> {
+    clap::builder::RangedU64ValueParser::new().range(0..=most)
+}
+
+pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
+    match parse_finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err("it must be above zero".into()),
+    }
+}
+
 pub(super) fn parse_band(text: &str) -> Result<f64, String> {
     let band = parse_finite(text)?;
     if band < 0.0 {
