@@ -10,7 +10,8 @@ const SWEEPS: usize = 10_000;
 /// The outputs of `model` for the recording's input, from the start that explains its output best.
 ///
 /// Every operator that the first sample leaves open contributes `ν (γ_on − γ_off)` more than from off, with
-/// `ν` between 0 and its weight: bounded least squares, one coordinate at a time (Hildreth 1957).
+/// `ν` between 0 and its weight: bounded least squares, one coordinate at a time (Hildreth 1957). With weights of either sign
+/// `ν` is free, as it is where such weights are identified.
 pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Result<Vec<f64>> {
     let form = SparseForm::new(*model.plane(), model.operator())?;
     let (count, input) = (form.operators(), &recording.input);
@@ -51,6 +52,7 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
     form.add_adjoint(input, Initial::Off, |n| -target[n], &mut right)?;
     form.operators_of(&mut right);
 
+    let signed = weights.iter().any(|mu| *mu < 0.0);
     let mut nu = vec![0.0; count];
     let mut descent = right;
     let size: f64 = weights.iter().map(|mu| mu.abs()).sum();
@@ -61,7 +63,10 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
             if curvature <= 0.0 {
                 continue;
             }
-            let (low, high) = (weights[n].min(0.0), weights[n].max(0.0));
+            let (low, high) = match signed {
+                true => (f64::NEG_INFINITY, f64::INFINITY),
+                false => (0.0, weights[n]),
+            };
             let next = (nu[n] + descent[n] / curvature).clamp(low, high);
             let step = next - nu[n];
             if step != 0.0 {
