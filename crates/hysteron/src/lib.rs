@@ -10,6 +10,7 @@
 
 mod advice;
 mod band;
+pub mod control;
 mod design;
 mod error;
 mod evaluate;

@@ -1,0 +1,50 @@
+//! What a run of a control loop leaves behind.
+
+/// What the loop had to say of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LoopStatus {
+    /// The drive stood at a limit.
+    pub saturated: bool,
+    /// The reference lay out of the model's reach; the nearest end was aimed at.
+    pub out_of_reach: bool,
+    /// The output's reading was missing, stuck or impossible: the loop went on without it.
+    pub sensor_fault: bool,
+    /// The model's weights changed.
+    pub adapted: bool,
+}
+
+/// The adapted weights at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// When, s.
+    pub time: f64,
+    /// Output with every operator off.
+    pub offset: f64,
+    /// `N` weights, row by row.
+    pub weights: Vec<f64>,
+}
+
+/// One controller's run: a value for each sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// What the output should be.
+    pub reference: Vec<f64>,
+    /// The output: the true one of a simulated plant, the measured one of a real device.
+    pub output: Vec<f64>,
+    /// The output as its sensor read it; NaN where it gave nothing.
+    pub measured: Vec<f64>,
+    /// The input of the hysteresis, true or measured.
+    pub input: Vec<f64>,
+    /// The input that the controller asked for.
+    pub command: Vec<f64>,
+    /// The drive that was written to the device.
+    pub drive: Vec<f64>,
+    /// The output that the controller's model expected before it learned from the reading; NaN for a controller without a model.
+    pub prediction: Vec<f64>,
+    /// What the loop had to say.
+    pub status: Vec<LoopStatus>,
+    /// The weights over time, of a controller that adapts.
+    pub snapshots: Vec<Snapshot>,
+}
