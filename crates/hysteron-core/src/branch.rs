@@ -63,6 +63,25 @@ impl<T: Real> Place<T> {
         }
     }
 
+    /// Works out the outputs anew along the turning points and at the present position.
+    pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
+        let split = |x| Split::of(x, grid.levels);
+        let along = |from: Turn<T>, to: T| {
+            if to > from.x {
+                from.y + grid.everett(split(to), split(from.x))
+            } else {
+                from.y - grid.everett(split(from.x), split(to))
+            }
+        };
+        let mut last = turns[START];
+        for turn in &mut turns[START + 1..=self.top] {
+            turn.y = along(last, turn.x);
+            last = *turn;
+        }
+        self.began_y = last.y;
+        self.y = along(last, self.x);
+    }
+
     /// Goes one way until the input turns; gives the position that lies the other way, if there is one.
     #[inline(always)]
     fn go<'a, const RISING: bool>(

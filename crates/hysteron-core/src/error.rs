@@ -51,6 +51,11 @@ pub enum Error {
         /// Index of `β`.
         j: usize,
     },
+    /// An option of an estimator is out of its range.
+    Adaptation {
+        /// Its name.
+        option: &'static str,
+    },
 }
 
 impl Error {
@@ -68,6 +73,7 @@ impl Error {
             Error::TurningPoints { .. } => 8,
             Error::StateMismatch => 9,
             Error::Operator { .. } => 10,
+            Error::Adaptation { .. } => 11,
         }
     }
 }
@@ -139,6 +145,9 @@ impl fmt::Display for Error {
                     f,
                     "turning point number {index} (from 0) does not lie within the two before it"
                 )
+            }
+            Error::Adaptation { option } => {
+                write!(f, "the estimator's option `{option}` is out of its range")
             }
             Error::StateMismatch => write!(f, "the state belongs to another model"),
             Error::Operator { i, j } => {

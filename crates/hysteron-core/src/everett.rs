@@ -5,7 +5,7 @@
 //! the prefix sum `C[p][q] = Σ μ_ij over j ≤ p, i > q`, and between corners it is exactly piecewise
 //! linear on triangles (Everett 1955; Mayergoyz 1991).
 
-use crate::plane::operator_index;
+use crate::plane::{operator_count, operator_index};
 use crate::{Error, NegativeWeights, Real};
 
 /// Elements of the table for `levels` levels: `(K + 1)(K + 2)/2`, the corners `0 ≤ q ≤ p ≤ K`.
@@ -20,47 +20,68 @@ pub const fn table_index(p: usize, q: usize) -> usize {
     p * (p + 1) / 2 + q
 }
 
-/// Writes the table of `weights` (`N = K(K + 1)/2` of them) to the front of `table`.
-///
-/// Row sums first, then rows on rows, so that every entry is a sum of at most `2K` terms and
-/// weights that are exactly zero leave neighbouring entries exactly equal.
-pub(crate) fn fill<T: Real>(
+/// Checks `weights` and tells which are negative.
+pub(crate) fn check<T: Real>(
     levels: usize,
     weights: &[T],
-    table: &mut [T],
 ) -> Result<Option<NegativeWeights>, Error> {
-    table[0] = T::ZERO;
+    let (expected, found) = (operator_count(levels), weights.len());
+    if expected != found {
+        return Err(Error::WeightCount { expected, found });
+    }
     let mut negative: Option<NegativeWeights> = None;
     // No output can be larger than this, twice for operators of ±1.
     let mut size = T::ZERO;
-    for p in 1..=levels {
-        let (above, row) = table[table_index(p - 1, 0)..].split_at_mut(p);
-        row[p] = T::ZERO;
-        let mut row_sum = T::ZERO;
-        for q in (0..p).rev() {
-            let index = operator_index(q + 1, p);
+    for j in 1..=levels {
+        for i in 1..=j {
+            let index = operator_index(i, j);
             let weight = weights[index];
-            row_sum = row_sum + weight;
-            row[q] = above[q] + row_sum;
             size = size + weight.larger(-weight);
             if !(size + size).is_finite() {
                 return Err(Error::WeightNotFinite { index });
             }
-        }
-        for i in 1..=p {
-            if weights[operator_index(i, p)] < T::ZERO {
+            if weight < T::ZERO {
                 let which = negative.get_or_insert(NegativeWeights {
                     count: 0,
                     first: [None; 3],
                 });
                 if let Some(free) = which.first.iter_mut().find(|place| place.is_none()) {
-                    *free = Some((i, p));
+                    *free = Some((i, j));
                 }
                 which.count += 1;
             }
         }
     }
     Ok(negative)
+}
+
+/// Writes the table of `weights` to the front of `table`.
+pub(crate) fn fill<T: Real>(levels: usize, weights: &[T], table: &mut [T]) {
+    table[0] = T::ZERO;
+    for p in 1..=levels {
+        let (above, row) = rows(table, p);
+        fill_row(p, weights, above, row);
+    }
+}
+
+/// Row `p ≥ 1` of a table and the one above it.
+pub(crate) fn rows<T>(table: &mut [T], p: usize) -> (&[T], &mut [T]) {
+    let (above, row) = table[table_index(p - 1, 0)..].split_at_mut(p);
+    (above, &mut row[..=p])
+}
+
+/// Row `p` of the table of `weights` from the row above it.
+///
+/// Row sums first, then rows on rows, so that every entry is a sum of at most `2K` terms and
+/// weights that are exactly zero leave neighbouring entries exactly equal.
+pub(crate) fn fill_row<T: Real>(p: usize, weights: &[T], above: &[T], row: &mut [T]) {
+    row[p] = T::ZERO;
+    let weights = &weights[operator_index(1, p)..][..p];
+    let mut sum = T::ZERO;
+    for q in (0..p).rev() {
+        sum = sum + weights[q];
+        row[q] = above[q] + sum;
+    }
 }
 
 /// A normalised input split into its grid cell and the place within it: `x = cell + part`, `0 ≤ part ≤ 1`.

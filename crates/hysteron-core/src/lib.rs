@@ -14,6 +14,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod adapt;
 mod branch;
 mod definition;
 mod error;
@@ -27,6 +28,9 @@ mod scalar;
 mod search;
 mod state;
 
+pub use adapt::{
+    Adaptation, Estimator, Learning, Method, Outcome, estimator_len, estimator_len_of_parts,
+};
 pub use definition::Definition;
 pub use error::{Error, NegativeWeights};
 pub use everett::{table_index, table_len};

@@ -187,6 +187,14 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         self.place = Place::start(plane.levels());
     }
 
+    /// The outputs of another table at every turning point, and at the present position.
+    pub(crate) fn rebase(&mut self, table: &[T], stamp: u64) {
+        self.stamp = stamp;
+        let levels = self.levels;
+        let turns = self.turns.as_mut();
+        self.place.rebase(turns, Grid { table, levels });
+    }
+
     /// Moves to a normalised position, as restored: `input` is what it stands for.
     #[inline(always)]
     pub(crate) fn travel(&mut self, table: &[T], x: T, input: T) {

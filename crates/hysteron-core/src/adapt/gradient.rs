@@ -1,0 +1,26 @@
+//! The normalised gradient (Goodwin & Sin 1984, section 3.3; Ioannou & Sun 1996, section 4.3).
+
+use super::memory::Slices;
+use crate::Real;
+
+/// Moves the parameters along the regressor by the share `gain` of the error, and by `leakage` to the off-line ones.
+pub(super) fn update<T: Real>(slices: &mut Slices<'_, T>, error: T, gain: T, leakage: T) {
+    let norm = slices.phi.iter().fold(T::ZERO, |sum, &phi| sum + phi * phi);
+    if norm <= T::ZERO {
+        return; // no operator is on: the output says nothing of the weights
+    }
+    let step = gain * error / norm;
+    let each = slices.theta.iter_mut().zip(&*slices.phi);
+    for ((theta, &phi), &offline) in each.zip(&*slices.offline) {
+        *theta = *theta + step * phi + leakage * (offline - *theta);
+    }
+}
+
+/// Projection onto weights that are not negative; the offset, the last parameter, is free.
+pub(super) fn project<T: Real>(theta: &mut [T]) {
+    if let Some((_offset, weights)) = theta.split_last_mut() {
+        for weight in weights {
+            *weight = weight.larger(T::ZERO);
+        }
+    }
+}

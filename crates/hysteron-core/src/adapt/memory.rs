@@ -1,0 +1,121 @@
+//! What an estimator keeps, in one block of memory that the caller provides.
+
+use crate::Method;
+use crate::everett::table_len;
+use crate::plane::operator_count;
+
+/// Numbers that an [`crate::Estimator`] over all weights needs.
+#[must_use]
+pub const fn estimator_len<T: Copy>(levels: usize, method: Method<T>) -> usize {
+    Layout::all(levels, method).len()
+}
+
+/// Numbers that an [`crate::Estimator`] over `parts` needs.
+#[must_use]
+pub const fn estimator_len_of_parts<T: Copy>(
+    levels: usize,
+    method: Method<T>,
+    parts: usize,
+) -> usize {
+    Layout::parts(levels, method, parts).len()
+}
+
+/// How many numbers of each kind there are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Layout {
+    /// Parameters, with the offset as the last one.
+    pub(super) parameters: usize,
+    gamma: usize,
+    anchor: usize,
+    covariance: usize,
+    tables: usize,
+}
+
+/// The same memory, cut up.
+pub(super) struct Slices<'a, T> {
+    /// The parameters as they are.
+    pub(super) theta: &'a mut [T],
+    /// The off-line ones.
+    pub(super) offline: &'a mut [T],
+    /// The last good ones.
+    pub(super) good: &'a mut [T],
+    /// The regressor: the derivative of the output with respect to each parameter.
+    pub(super) phi: &'a mut [T],
+    /// The operators' states; empty with parts.
+    pub(super) gamma: &'a mut [T],
+    /// The operators' states where an increment began; empty for other methods.
+    pub(super) anchor: &'a mut [T],
+    /// The lower triangle of the covariance; empty for other methods.
+    pub(super) covariance: &'a mut [T],
+    /// Covariance times regressor; empty for other methods.
+    pub(super) gain: &'a mut [T],
+    /// The tables of the parts, one after the other.
+    pub(super) tables: &'a mut [T],
+}
+
+impl Layout {
+    pub(super) const fn all<T: Copy>(levels: usize, method: Method<T>) -> Self {
+        let n = operator_count(levels);
+        let anchor = match method {
+            Method::Increments { .. } => n,
+            _ => 0,
+        };
+        Self {
+            parameters: n + 1,
+            gamma: n,
+            anchor,
+            covariance: Self::covariance(n + 1, method),
+            tables: 0,
+        }
+    }
+
+    pub(super) const fn parts<T: Copy>(levels: usize, method: Method<T>, parts: usize) -> Self {
+        Self {
+            parameters: parts + 1,
+            gamma: 0,
+            anchor: 0,
+            covariance: Self::covariance(parts + 1, method),
+            tables: parts * table_len(levels),
+        }
+    }
+
+    const fn covariance<T: Copy>(parameters: usize, method: Method<T>) -> usize {
+        match method {
+            Method::LeastSquares { .. } => operator_count(parameters),
+            _ => 0,
+        }
+    }
+
+    const fn gain(self) -> usize {
+        if self.covariance > 0 {
+            self.parameters
+        } else {
+            0
+        }
+    }
+
+    pub(super) const fn len(self) -> usize {
+        4 * self.parameters + self.gamma + self.anchor + self.covariance + self.gain() + self.tables
+    }
+
+    /// Cuts up `memory`, which holds at least as many numbers.
+    pub(super) fn cut<T>(self, memory: &mut [T]) -> Slices<'_, T> {
+        let mut rest = memory;
+        let mut next = |count: usize| {
+            let (here, after) = core::mem::take(&mut rest).split_at_mut(count);
+            rest = after;
+            here
+        };
+        Slices {
+            theta: next(self.parameters),
+            offline: next(self.parameters),
+            good: next(self.parameters),
+            phi: next(self.parameters),
+            gamma: next(self.gamma),
+            anchor: next(self.anchor),
+            covariance: next(self.covariance),
+            gain: next(self.gain()),
+            tables: next(self.tables),
+        }
+    }
+}

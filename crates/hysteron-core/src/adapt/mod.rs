@@ -1,0 +1,18 @@
+//! On-line adaptation: weights that follow the plant while the model runs.
+//!
+//! The output is linear in the weights, `H = φᵀμ` with `φ` the operators' outputs, so that an estimator of linear
+//! parameters applies. Whatever the method, weights stay at zero or above after every sample, so that the
+//! inverse exists at every instant.
+
+mod estimator;
+mod gradient;
+mod increments;
+mod least_squares;
+mod memory;
+mod operators;
+mod options;
+mod trial;
+
+pub use estimator::{Estimator, Learning, Outcome};
+pub use memory::{estimator_len, estimator_len_of_parts};
+pub use options::{Adaptation, Method};

@@ -1,0 +1,73 @@
+//! The states of all operators, kept up to date from sample to sample: what an estimator regresses on.
+
+use crate::operator::{mkp, ridge};
+use crate::plane::operator_index;
+use crate::state::{State, Turn};
+use crate::{Operator, Real};
+
+/// The rows or columns `first..=last` whose ridges a move from `x` to `to` touches: one more than the cells crossed.
+pub(super) fn touched<T: Real>(x: T, to: T, levels: usize) -> (usize, usize) {
+    let cell = |x: T| x.floor_index().min(levels - 1) + 1;
+    (cell(x.smaller(to)), cell(x.larger(to)))
+}
+
+/// Moves the states `gamma` from the normalised position `x` to `to`, equation (5): rising, only rows are
+/// touched, falling, only columns. `O(K)` for each level crossed.
+pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
+    let (first, last) = touched(x, to, levels);
+    if to > x {
+        for j in first..=last {
+            let on = ridge(to, j);
+            for gamma in &mut gamma[operator_index(1, j)..][..j] {
+                *gamma = gamma.larger(on);
+            }
+        }
+    } else if to < x {
+        for i in first..=last {
+            let off = ridge(to, i);
+            for j in i..=levels {
+                let gamma = &mut gamma[operator_index(i, j)];
+                *gamma = gamma.smaller(off);
+            }
+        }
+    }
+}
+
+/// The states of all operators from the turning points of `state`. `O(K²)` for each of these.
+pub(super) fn align<T, S>(gamma: &mut [T], levels: usize, state: &State<T, S>)
+where
+    T: Real,
+    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+{
+    gamma.fill(T::ZERO);
+    for x in state.turning_points() {
+        for j in 1..=levels {
+            for i in 1..=j {
+                let gamma = &mut gamma[operator_index(i, j)];
+                *gamma = mkp(*gamma, x, i, j);
+            }
+        }
+    }
+}
+
+/// What the operators put out: the regressor of all weights.
+pub(super) fn outputs<T: Real>(operator: Operator, gamma: &[T], phi: &mut [T]) {
+    for (phi, &gamma) in phi.iter_mut().zip(gamma) {
+        *phi = operator.output(gamma);
+    }
+}
+
+/// Calls `visit(index)` once for each operator in the rows and columns `first..=last`: all that a move over these
+/// levels can have changed.
+pub(super) fn within(first: usize, last: usize, levels: usize, mut visit: impl FnMut(usize)) {
+    for j in first..=last {
+        for i in 1..=j {
+            visit(operator_index(i, j));
+        }
+    }
+    for j in last + 1..=levels {
+        for i in first..=last {
+            visit(operator_index(i, j));
+        }
+    }
+}
