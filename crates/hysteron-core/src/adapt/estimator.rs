@@ -85,8 +85,7 @@ pub enum Outcome {
 }
 
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too. States made
-    /// before have to be [rebased](Model::rebase).
+    /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.
     ///
     /// # Errors
     /// [`Error::Adaptation`], [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::NegativeWeights`];
@@ -201,7 +200,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
 
     /// Moves `state` to `input`, tells the output that `model` expects there, and learns from the one `measured`.
     ///
-    /// The outputs include the offset. Cost: [`Method`]. Where the state was moved by others since the last call, the
+    /// The outputs include the offset. A state of the model with earlier weights is [rebased](Model::rebase). Cost: [`Method`]. Where the state was moved by others since the last call, the
     /// operators' states are worked out from its turning points, `O(K²)` for each of them.
     ///
     /// # Errors
@@ -224,7 +223,12 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         if model.plane().levels() != self.levels || model.operator() != self.operator {
             return Err(Error::StateMismatch);
         }
-        model.check(state)?;
+        if !input.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        if model.check(state).is_err() {
+            model.rebase(state)?;
+        }
         self.start_from(state);
         let output = model.step(state, input)?;
         self.follow(state);
@@ -288,7 +292,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         self.trial = Trial::default();
     }
 
-    /// Goes back to the last good weights. States of the model have to be [rebased](Model::rebase).
+    /// Goes back to the last good weights.
     pub fn roll_back<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
         self.take_back();
         self.rewrite(model);
