@@ -16,20 +16,21 @@ use crate::{Clipped, Error, Model, Operator, Real};
 ///
 /// ```
 /// use hysteron_core::{
-///     Adaptation, Estimator, Model, Operator, Plane, Turn, estimator_len, table_len, turn_capacity,
+///     Adaptation, Estimator, Method, Model, Operator, Plane, Turn, estimator_len, table_len, turn_capacity,
 /// };
 /// const K: usize = 3;
-/// let options = Adaptation::default();
+/// let method = Method::LeastSquares { forgetting: 0.98, noise: 0.01, spread: 1.0, correlation: 0.0 };
+/// let options = Adaptation { method, ..Adaptation::default() };
 /// let plane = Plane::new(20.0, 80.0, K)?;
 /// let mut model = Model::new(plane, Operator::Mkp, &[1.0; 6], [0.0; table_len(K)])?;
 /// let mut state = model.state([Turn::default(); turn_capacity(K)])?;
-/// let memory = vec![0.0; estimator_len(K, options.method)];
+/// let memory = vec![0.0; estimator_len(K, method)];
 /// let mut estimator = Estimator::new(options, &mut model, &[1.0; 6], 0.0, memory)?;
 ///
 /// // A plant whose output is twice as large.
 /// let plant = Model::new(plane, Operator::Mkp, &[2.0; 6], [0.0; table_len(K)])?;
 /// let mut there = plant.state([Turn::default(); turn_capacity(K)])?;
-/// for n in 0..2000 {
+/// for n in 0..500 {
 ///     let input = 50.0 - 40.0 * (0.1 * f64::from(n)).cos();
 ///     let measured = plant.step(&mut there, input)?.output;
 ///     estimator.step(&mut model, &mut state, input, measured)?;
