@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod adaptive;
 mod advice;
 mod band;
 pub mod control;
@@ -31,14 +32,15 @@ mod table;
 mod thermal;
 mod turning;
 
+pub use adaptive::Adaptive;
 pub use advice::{Advice, advice};
 pub use band::{Band, BandEvaluation};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
 pub use hysteron_core::{
-    Clipped, ClippedCount, Direction, MAX_LEVELS, Operator, Output, Policy, Region, Solution,
-    Status,
+    Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
+    Output, Policy, Region, Solution, Status,
 };
 pub use identify::{
     Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Score, Solver,

@@ -244,6 +244,32 @@ impl Model {
     }
 }
 
+impl Sign {
+    /// A policy for the output without sign.
+    pub(crate) fn inward(self, policy: Policy<f64>) -> Policy<f64> {
+        match policy {
+            Policy::Anticipate { heading, tolerance } if self == Sign::Negative => {
+                let heading = match heading {
+                    Direction::Rising => Direction::Falling,
+                    Direction::Falling => Direction::Rising,
+                };
+                Policy::Anticipate { heading, tolerance }
+            }
+            other => other,
+        }
+    }
+
+    /// The status for the output with its sign.
+    pub(crate) fn outward(self, solution: Solution<f64>) -> Solution<f64> {
+        let status = match solution.status {
+            Status::Low if self == Sign::Negative => Status::High,
+            Status::High if self == Sign::Negative => Status::Low,
+            other => other,
+        };
+        Solution { status, ..solution }
+    }
+}
+
 /// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model.
 #[derive(Debug, Clone)]
 pub struct Inverse<'m> {
@@ -265,24 +291,19 @@ impl Inverse<'_> {
         target: f64,
         policy: Policy<f64>,
     ) -> Result<Solution<f64>> {
-        let raw = self.model.sign.factor() * (target - self.model.offset);
-        let flipped = self.model.sign == Sign::Negative;
-        let policy = match policy {
-            Policy::Anticipate { heading, tolerance } if flipped => Policy::Anticipate {
-                heading: match heading {
-                    Direction::Rising => Direction::Falling,
-                    Direction::Falling => Direction::Rising,
-                },
-                tolerance,
-            },
-            other => other,
-        };
-        let solution = self.core.step(state, raw, policy)?;
-        let status = match solution.status {
-            Status::Low if flipped => Status::High,
-            Status::High if flipped => Status::Low,
-            other => other,
-        };
-        Ok(Solution { status, ..solution })
+        let solution = self.solve(state, target, policy)?;
+        self.model.core.step(state, solution.input)?;
+        Ok(solution)
+    }
+
+    /// Finds the input for `target` without moving `state`.
+    ///
+    /// # Errors
+    /// As [`Inverse::step`].
+    pub fn solve(&self, state: &State, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+        let sign = self.model.sign;
+        let raw = sign.factor() * (target - self.model.offset);
+        let solution = self.core.solve(state, raw, sign.inward(policy))?;
+        Ok(sign.outward(solution))
     }
 }

@@ -1,9 +1,8 @@
-//! Recursive least squares with directional forgetting (Kulhavý 1987).
+//! Recursive least squares with stabilised forgetting (Kulhavý & Zarrop 1993).
 //!
-//! In terms of information, a sample adds `φφᵀ/r` to `P⁻¹`, and directional forgetting lets `P⁻¹` fade along `φ` only: both
-//! together are `P⁻¹ ← P⁻¹ + ε φφᵀ/r` with `ε = λ − (1 − λ) r/(φᵀPφ)`. Where `φ` says nothing new, nothing is forgotten, so
-//! that the covariance cannot grow beyond the one at the start by more than in the directions that are measured again
-//! and again; there `φᵀPφ` settles at `r (1 − λ)/λ`.
+//! A sample takes from the covariance what it tells, `P ← P − (Pφ)(Pφ)ᵀ/(r + φᵀPφ)`. Forgetting then leads it back to the
+//! one at the start, `P ← λP + (1 − λ)P₀`: `P` never exceeds `P₀`, stays positive because both are, and rounding
+//! is forgotten as well. Parameters that are not excited become as uncertain as they were off-line, and no more.
 
 use super::memory::Slices;
 use crate::Real;
@@ -24,7 +23,7 @@ pub(super) fn reset<T: Real>(
     slices: &mut Slices<'_, T>,
     mut covariance: impl FnMut(usize, usize) -> T,
 ) {
-    let mut entries = slices.covariance.iter_mut();
+    let mut entries = slices.start.iter_mut();
     for a in 0..slices.theta.len() {
         for b in 0..=a {
             if let Some(entry) = entries.next() {
@@ -32,6 +31,7 @@ pub(super) fn reset<T: Real>(
             }
         }
     }
+    slices.covariance.copy_from_slice(slices.start);
 }
 
 impl<T: Real> Law<T> {
@@ -43,6 +43,7 @@ impl<T: Real> Law<T> {
             offline,
             phi,
             covariance,
+            start,
             gain,
             ..
         } = slices;
@@ -62,10 +63,12 @@ impl<T: Real> Law<T> {
         for ((theta, &gain), &offline) in theta.iter_mut().zip(&**gain).zip(&**offline) {
             *theta = *theta + step * gain + leakage * (offline - *theta);
         }
-        // P ← P − (Pφ)(Pφ)ᵀ / (r/ε + φᵀPφ), without dividing by an ε that is zero.
-        let epsilon = forgetting - (T::ONE - forgetting) * variance / spread;
-        let shrink = epsilon / (variance + epsilon * spread);
-        add_square(covariance, gain, -shrink);
+        add_square(covariance, gain, -(T::ONE / (variance + spread)));
+        if forgetting < T::ONE {
+            for (now, &start) in covariance.iter_mut().zip(&**start) {
+                *now = start + forgetting * (*now - start);
+            }
+        }
         true
     }
 }

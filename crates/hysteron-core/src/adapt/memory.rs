@@ -47,6 +47,8 @@ pub(super) struct Slices<'a, T> {
     pub(super) anchor: &'a mut [T],
     /// The lower triangle of the covariance; empty for other methods.
     pub(super) covariance: &'a mut [T],
+    /// The covariance at the start; empty for other methods.
+    pub(super) start: &'a mut [T],
     /// Covariance times regressor; empty for other methods.
     pub(super) gain: &'a mut [T],
     /// The tables of the parts, one after the other.
@@ -95,7 +97,12 @@ impl Layout {
     }
 
     pub(super) const fn len(self) -> usize {
-        4 * self.parameters + self.gamma + self.anchor + self.covariance + self.gain() + self.tables
+        4 * self.parameters
+            + self.gamma
+            + self.anchor
+            + 2 * self.covariance
+            + self.gain()
+            + self.tables
     }
 
     /// Cuts up `memory`, which holds at least as many numbers.
@@ -114,6 +121,7 @@ impl Layout {
             gamma: next(self.gamma),
             anchor: next(self.anchor),
             covariance: next(self.covariance),
+            start: next(self.covariance),
             gain: next(self.gain()),
             tables: next(self.tables),
         }

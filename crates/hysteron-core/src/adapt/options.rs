@@ -22,8 +22,8 @@ pub enum Method<T> {
         /// Levels that the input has to travel between two updates, from 1/8 to 8. Long increments are less noisy. Usual: 1.
         span: T,
     },
-    /// Recursive least squares with directional forgetting (Kulhavý 1987): old information fades only where new
-    /// information comes in, so that the covariance stays bounded without excitation. `O(n²)` for `n` parameters.
+    /// Recursive least squares with stabilised forgetting (Kulhavý & Zarrop 1993): the covariance goes back to the one at the start
+    /// and never beyond it, so that it stays bounded without excitation. `O(n²)` for `n` parameters.
     LeastSquares {
         /// `λ`, above 0 and up to 1; 1 forgets nothing. Usual: 0.95 to 0.999.
         forgetting: T,

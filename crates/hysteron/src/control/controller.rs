@@ -1,0 +1,223 @@
+//! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
+
+use super::{Compensator, Gains, LoopStatus, Pid, Reading, watch::Watch};
+use crate::{Direction, Policy, Result, Status};
+
+/// What the output should be, and where it goes next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The output wanted now.
+    pub output: f64,
+    /// Where it goes next, where that is known; *anticipate* needs it.
+    pub heading: Option<Direction>,
+}
+
+/// What the inverse does where the target rests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rest {
+    /// The input rests too (equation 14).
+    #[default]
+    Hold,
+    /// The input crosses the dead band as soon as it is known that the target reverses.
+    Anticipate,
+}
+
+/// The loop inside, which brings the input (a temperature) to the one commanded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InnerLoop {
+    /// Its gains: power for each degree.
+    pub gains: Gains,
+    /// The drive is the square root of what the gains give: a current, whose heat goes with its square.
+    pub square_root: bool,
+}
+
+/// What a [`Controller`] is made of.
+#[derive(Debug, Clone)]
+pub struct Scheme {
+    /// Time between samples, s.
+    pub interval_s: f64,
+    /// The model, for feedforward through its inverse.
+    pub compensator: Option<Compensator>,
+    /// What the inverse does where the target rests.
+    pub rest: Rest,
+    /// Reversals of the target up to this size are not followed by the inverse, in the output's unit.
+    pub tolerance: f64,
+    /// Feedback of the output, added to the feedforward.
+    pub pid: Option<Gains>,
+    /// Without a model the command sets out from here.
+    pub bias: f64,
+    /// Lowest and highest input that may be commanded.
+    pub commands: (f64, f64),
+    /// Lowest and highest drive.
+    pub drives: (f64, f64),
+    /// The loop inside; without one, the command is the drive.
+    pub inner: Option<InnerLoop>,
+    /// Time constant of the filter on both readings, s; 0 for none.
+    pub filter_s: f64,
+}
+
+/// What a controller does with a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Action {
+    /// The input asked for.
+    pub command: f64,
+    /// The drive to write to the device.
+    pub drive: f64,
+    /// The output that the model expected before it learned; NaN without a model.
+    pub prediction: f64,
+    /// What there is to say.
+    pub status: LoopStatus,
+}
+
+/// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the drive.
+#[derive(Debug, Clone)]
+pub struct Controller {
+    scheme: Scheme,
+    pid: Option<Pid>,
+    inner: Option<Pid>,
+    output: Watch,
+    input: Watch,
+    /// Drive and command of the last sample.
+    last: Option<(f64, f64)>,
+    /// Whether the drive stands at its lower and its upper limit.
+    held: (bool, bool),
+}
+
+impl Controller {
+    /// A controller at rest.
+    #[must_use]
+    pub fn new(scheme: Scheme) -> Self {
+        let watch = Watch::new(scheme.interval_s, scheme.filter_s);
+        Self {
+            pid: scheme.pid.map(Pid::new),
+            inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
+            output: watch.clone(),
+            input: watch,
+            last: None,
+            held: (false, false),
+            scheme,
+        }
+    }
+
+    /// One sample: from what is wanted and what was read to what is to be written. The drive is finite and within its
+    /// limits whatever the readings are.
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
+    pub fn step(&mut self, target: Target, reading: Reading) -> Result<Action> {
+        if !target.output.is_finite() {
+            return Err(hysteron_core::Error::InputNotFinite { index: 0 }.into());
+        }
+        let measured = self.output.read(reading.output);
+        let measured_input = reading.input.map(|input| self.input.read(input));
+        // Without a sensor of its own, the input is the one that was commanded.
+        let input = match measured_input {
+            Some(input) => input,
+            None => self.last.map(|(_, command)| command),
+        };
+        let mut status = LoopStatus {
+            sensor_fault: measured.is_none() || measured_input == Some(None),
+            ..LoopStatus::default()
+        };
+        let mut prediction = f64::NAN;
+        if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, input) {
+            (prediction, status.adapted) = compensator.follow(input, measured)?;
+        }
+        let command = self.command(target, measured, &mut status)?;
+        let drive = self.drive(command, input);
+        let (low, high) = self.scheme.drives;
+        self.held = (drive <= low, drive >= high);
+        status.saturated = self.held.0 || self.held.1;
+        self.last = Some((drive, command));
+        Ok(Action {
+            command,
+            drive,
+            prediction,
+            status,
+        })
+    }
+
+    /// One sample that brings the input to `command`, whatever the output is: for recordings.
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
+    pub fn step_command(&mut self, command: f64, reading: Reading) -> Result<Action> {
+        let input = reading.input.and_then(|input| self.input.read(input));
+        let drive = self.drive(command, input);
+        Ok(Action {
+            command,
+            drive,
+            prediction: f64::NAN,
+            status: LoopStatus::default(),
+        })
+    }
+
+    /// The model in the loop.
+    #[must_use]
+    pub fn compensator(&self) -> Option<&Compensator> {
+        self.scheme.compensator.as_ref()
+    }
+
+    fn command(
+        &mut self,
+        target: Target,
+        measured: Option<f64>,
+        status: &mut LoopStatus,
+    ) -> Result<f64> {
+        let scheme = &self.scheme;
+        let tolerance = scheme.tolerance;
+        let policy = match (scheme.rest, target.heading) {
+            (Rest::Anticipate, Some(heading)) => Policy::Anticipate { heading, tolerance },
+            _ => Policy::Hold { tolerance },
+        };
+        let feedforward = match &scheme.compensator {
+            Some(compensator) => {
+                let solution = compensator.solve(target.output, policy)?;
+                status.out_of_reach = solution.status != Status::Ok;
+                solution.input
+            }
+            None => scheme.bias,
+        };
+        let Some(pid) = &mut self.pid else {
+            return Ok(feedforward.clamp(scheme.commands.0, scheme.commands.1));
+        };
+        Ok(match measured {
+            Some(measured) => pid.step(
+                target.output - measured,
+                scheme.interval_s,
+                feedforward,
+                scheme.commands,
+                self.held,
+            ),
+            None => pid.hold(feedforward, scheme.commands),
+        })
+    }
+
+    fn drive(&mut self, command: f64, input: Option<f64>) -> f64 {
+        let (low, high) = self.scheme.drives;
+        let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
+            return command.clamp(low, high);
+        };
+        // Not knowing how hot it is, it must not be heated.
+        let Some(input) = input else { return low };
+        let square = |drive: f64| {
+            if inner.square_root {
+                drive * drive
+            } else {
+                drive
+            }
+        };
+        let power = pid.step(
+            command - input,
+            self.scheme.interval_s,
+            0.0,
+            (square(low), square(high)),
+            (false, false),
+        );
+        match inner.square_root {
+            true => power.sqrt(),
+            false => power,
+        }
+    }
+}
