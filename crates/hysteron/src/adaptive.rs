@@ -113,15 +113,21 @@ impl Adaptive {
         self.sign().factor() * (self.core.output(&self.state) + self.estimator.offset())
     }
 
-    /// The input that gives `target`, by the weights as they are now; nothing moves.
+    /// Finds the input that gives `target`, by the weights as they are now, and moves `state` there: a state of
+    /// this model, which may have had other weights since.
     ///
     /// # Errors
-    /// [`Error::Core`] for a target that is not finite.
-    pub fn solve(&self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+    /// [`Error::Core`] for a target that is not finite; the state is then as it was.
+    pub fn solve(
+        &self,
+        state: &mut State,
+        target: f64,
+        policy: Policy<f64>,
+    ) -> Result<Solution<f64>> {
         let sign = self.sign();
         let raw = sign.factor() * target - self.estimator.offset();
-        let inverse = self.core.inverse()?;
-        let solution = inverse.solve(&self.state, raw, sign.inward(policy))?;
+        self.core.rebase(state)?;
+        let solution = self.core.inverse()?.step(state, raw, sign.inward(policy))?;
         Ok(sign.outward(solution))
     }
 

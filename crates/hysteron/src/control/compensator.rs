@@ -1,18 +1,22 @@
 //! The model in a loop: what it expects at the input that it is told of, and the input that it wants.
+//!
+//! These are two states of one model. The first follows the input as measured, for prediction and learning. The second
+//! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
+//! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
 
 use crate::{Adaptive, Model, Outcome, Policy, Result, Solution, State};
 
 /// A hysteresis model and its inverse in the loop, fixed or adapting.
 #[derive(Debug, Clone)]
-pub enum Compensator {
-    /// A model that stays as it was identified.
-    Fixed {
-        /// The model.
-        model: Box<Model>,
-        /// The state that it runs in.
-        state: State,
-    },
-    /// A model that learns.
+pub struct Compensator {
+    kind: Kind,
+    /// Where the inverse stands; none before the first sample.
+    wanted: Option<State>,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Fixed { model: Box<Model>, state: State },
     Adaptive(Box<Adaptive>),
 }
 
@@ -21,16 +25,22 @@ impl Compensator {
     #[must_use]
     pub fn fixed(model: Model) -> Self {
         let state = model.start();
-        Self::Fixed {
-            model: Box::new(model),
-            state,
+        Self {
+            kind: Kind::Fixed {
+                model: Box::new(model),
+                state,
+            },
+            wanted: None,
         }
     }
 
     /// A model that learns.
     #[must_use]
     pub fn adaptive(adaptive: Adaptive) -> Self {
-        Self::Adaptive(Box::new(adaptive))
+        Self {
+            kind: Kind::Adaptive(Box::new(adaptive)),
+            wanted: None,
+        }
     }
 
     /// Moves to the input and gives the output expected there and whether anything was learned from the one measured.
@@ -38,33 +48,39 @@ impl Compensator {
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
     pub fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
-        match (self, measured) {
-            (Self::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
-            (Self::Adaptive(adaptive), Some(measured)) => {
+        match (&mut self.kind, measured) {
+            (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
+            (Kind::Adaptive(adaptive), Some(measured)) => {
                 let learning = adaptive.step(input, measured)?;
                 Ok((learning.output, learning.outcome == Outcome::Learned))
             }
-            (Self::Adaptive(adaptive), None) => Ok((adaptive.predict(input)?, false)),
+            (Kind::Adaptive(adaptive), None) => Ok((adaptive.predict(input)?, false)),
         }
     }
 
-    /// The input that gives `target`; nothing moves.
+    /// The input that gives `target`, on the way from the last one asked for.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite and weights below zero.
-    pub fn solve(&self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
-        match self {
-            Self::Fixed { model, state } => model.inverse()?.solve(state, target, policy),
-            Self::Adaptive(adaptive) => adaptive.solve(target, policy),
+    pub fn solve(&mut self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+        match &self.kind {
+            Kind::Fixed { model, state } => {
+                let wanted = self.wanted.get_or_insert_with(|| state.clone());
+                model.inverse()?.step(wanted, target, policy)
+            }
+            Kind::Adaptive(adaptive) => {
+                let wanted = self.wanted.get_or_insert_with(|| adaptive.state().clone());
+                adaptive.solve(wanted, target, policy)
+            }
         }
     }
 
-    /// Output with every operator off, and the weights, of a model that learns.
+    /// The model that learns.
     #[must_use]
-    pub fn adapted(&self) -> Option<(f64, Vec<f64>)> {
-        match self {
-            Self::Fixed { .. } => None,
-            Self::Adaptive(adaptive) => Some((adaptive.offset(), adaptive.weights())),
+    pub fn adapting(&self) -> Option<&Adaptive> {
+        match &self.kind {
+            Kind::Fixed { .. } => None,
+            Kind::Adaptive(adaptive) => Some(adaptive),
         }
     }
 }

@@ -165,13 +165,13 @@ impl Controller {
         measured: Option<f64>,
         status: &mut LoopStatus,
     ) -> Result<f64> {
-        let scheme = &self.scheme;
+        let scheme = &mut self.scheme;
         let tolerance = scheme.tolerance;
         let policy = match (scheme.rest, target.heading) {
             (Rest::Anticipate, Some(heading)) => Policy::Anticipate { heading, tolerance },
             _ => Policy::Hold { tolerance },
         };
-        let feedforward = match &scheme.compensator {
+        let feedforward = match &mut scheme.compensator {
             Some(compensator) => {
                 let solution = compensator.solve(target.output, policy)?;
                 status.out_of_reach = solution.status != Status::Ok;
