@@ -6,6 +6,7 @@
 //! Both read through a [`SensorChain`]. Neither contains a model, an operator or a table of the toolkit, so what is shown on
 //! them is not shown by the model on itself. Their options are plain data that a scenario file can name.
 
+mod cloud;
 mod drift;
 mod fatigue;
 mod preisach;

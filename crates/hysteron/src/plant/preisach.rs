@@ -1,13 +1,10 @@
-//! A piezo-like actuator made of a cloud of relays, behind an amplifier with a lag.
-//!
-//! The cloud is what no model of the toolkit can hold exactly. Its relays lie in centre and half-width, not on the grid of a
-//! plane; they are dense where the density is high; the density is asymmetric and has two lobes; and a load
-//! moves and deforms it. All numbers are invented, in the size of a stack actuator of 100 µm at 150 V.
+//! A piezo-like actuator: a cloud of relays behind an amplifier with a lag.
 
+use super::cloud::{NOMINAL_LOAD_N, cloud, relative};
 use super::divided;
 use super::drift::DriftOptions;
-use super::relays::{Relay, Relays};
-use super::sensor::{SensorChain, SensorOptions};
+use super::relays::Relays;
+use super::sensor::{SensorChain, SensorOptions, step_for_lag};
 use crate::control::{Device, Disturbance, Reading, SimulatedPlant};
 use crate::rig::{RigError, check};
 use serde::Deserialize;
@@ -16,78 +13,6 @@ use serde::Deserialize;
 const LIMIT_V: f64 = 150.0;
 /// Stroke at the nominal load, µm.
 const STROKE_UM: f64 = 100.0;
-/// Load at which the cloud is as [`LOBES`] say, N.
-const NOMINAL_LOAD_N: f64 = 6.0;
-
-/// A part of the cloud. Centres and half-widths follow Kumaraswamy's distribution (1980), which is skewed and bounded.
-struct Lobe {
-    /// Share of the relays.
-    share: f64,
-    /// Range of the centres, V, and the shape of their distribution.
-    centre_v: (f64, f64),
-    centre_shape: (f64, f64),
-    /// Largest half-width at the lowest and at the highest centre, V, and the shape of the half-widths' distribution.
-    half_width_v: (f64, f64),
-    half_width_shape: (f64, f64),
-}
-
-const LOBES: [Lobe; 2] = [
-    Lobe {
-        share: 0.75,
-        centre_v: (18.0, 125.0),
-        centre_shape: (1.4, 1.8),
-        half_width_v: (12.0, 22.0),
-        half_width_shape: (1.2, 2.5),
-    },
-    Lobe {
-        share: 0.25,
-        centre_v: (70.0, 105.0),
-        centre_shape: (2.0, 2.0),
-        half_width_v: (24.0, 18.0),
-        half_width_shape: (4.0, 1.5),
-    },
-];
-
-/// The value below which a share `p` of Kumaraswamy's distribution lies, from 0 to 1.
-fn quantile((a, b): (f64, f64), p: f64) -> f64 {
-    (1.0 - (1.0 - p).powf(1.0 / b)).powf(1.0 / a)
-}
-
-fn between((low, high): (f64, f64), share: f64) -> f64 {
-    low + share * (high - low)
-}
-
-/// The cloud of `levels` × `levels` relays under the load `load_n` (N).
-fn cloud(levels: usize, load_n: f64) -> Vec<Relay> {
-    let load = relative(load_n);
-    let middle = |n: usize, of: usize| (n as f64 + 0.5) / of as f64;
-    let mut relays = Vec::with_capacity(levels * levels);
-    for lobe in &LOBES {
-        let centres = (lobe.share * levels as f64).round() as usize;
-        for i in 0..centres {
-            let place = quantile(lobe.centre_shape, middle(i, centres));
-            let centre = between(lobe.centre_v, place);
-            let widest = between(lobe.half_width_v, place);
-            for j in 0..levels {
-                let half = widest * quantile(lobe.half_width_shape, middle(j, levels));
-                // A load asks for more drive, spreads the switching and widens most what switches late.
-                let centre = centre + load * (4.0 + 0.08 * (centre - 75.0));
-                let half = half * (1.0 + load * 0.3 * place);
-                relays.push(Relay {
-                    down: centre - half,
-                    up: centre + half,
-                });
-            }
-        }
-    }
-    relays
-}
-
-/// The load above the nominal one, in units of 4 N.
-fn relative(load_n: f64) -> f64 {
-    (load_n - NOMINAL_LOAD_N) / 4.0
-}
-
 /// The simulated actuator and its sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -193,14 +118,14 @@ impl PreisachPlant {
             output: sensor(options.output_sensor, 0)?,
             input: sensor(options.input_sensor, 1)?,
         };
-        plant.output = SensorChain::new(options.output_sensor, plant.output_um(), options.seed, 0)?;
+        plant.output.settle(plant.output_um());
         Ok(plant)
     }
 
     fn output_um(&self) -> f64 {
         let load = relative(self.options.load_n);
-        let gain = (1.0 - 0.12 * load) * (1.0 + self.options.drift.gain * (1.0 - self.to_come));
-        STROKE_UM * (gain * self.relays.share() - 0.14 * load)
+        let gain = (1.0 - 0.1 * load) * (1.0 + self.options.drift.gain * (1.0 - self.to_come));
+        STROKE_UM * (gain * self.relays.share() - 0.18 * load)
     }
 
     /// Lets `dt_s` pass. What the relays feel is the amplifier's voltage less the drift of their thresholds. Both are exponentials, so it
@@ -234,13 +159,18 @@ impl PreisachPlant {
     /// When, s from now, what the relays feel turns round; `None` if it does not.
     fn turn_s(&self) -> Option<f64> {
         let (lag, slow) = (self.options.lag_s, self.options.drift.time_s);
-        // d/dt = −(v − u)/τ exp(−t/τ) − (S c/T) exp(−t/T) = 0, with c = to_come.
+        if lag == 0.0 {
+            // The amplifier jumps, then the drift goes on.
+            return Some(0.0);
+        }
+        // Where (u − v)/τ exp(−t/τ) = S c/T exp(−t/T), with c still to come.
         let fast_rate = (self.drive_v - self.amplifier_v) / lag;
         let slow_rate = self.options.drift.threshold_v * self.to_come / slow;
         let turn_s = (fast_rate / slow_rate).ln() / (1.0 / lag - 1.0 / slow);
         (turn_s.is_finite() && turn_s > 0.0).then_some(turn_s)
     }
 
+    /// Shows the sensors what `dt_s` has brought.
     fn follow(&mut self, dt_s: f64) {
         self.output.follow(self.output_um(), dt_s);
         self.input.follow(self.amplifier_v, dt_s);
@@ -270,6 +200,11 @@ impl SimulatedPlant for PreisachPlant {
             .output
             .longest_step_s()
             .min(self.input.longest_step_s());
+        let longest = if longest.is_finite() {
+            longest.min(step_for_lag(self.options.lag_s))
+        } else {
+            longest
+        };
         let (steps, h) = divided(dt_s, longest);
         for _ in 0..steps {
             self.step(h);

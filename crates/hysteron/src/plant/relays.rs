@@ -38,11 +38,7 @@ impl Relays {
     /// Gives the relays other thresholds. Each keeps its state where the input lies between its new ones.
     pub(super) fn replace(&mut self, relays: &[Relay]) {
         let sorted = |threshold: fn(&Relay) -> f64| {
-            let mut all: Vec<Threshold> = (0..)
-                .zip(relays)
-                .map(|(n, r)| (threshold(r), n))
-                .map(|(t, n)| (t, n))
-                .collect();
+            let mut all: Vec<Threshold> = relays.iter().map(threshold).zip(0..).collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
             all
         };

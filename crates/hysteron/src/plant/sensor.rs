@@ -3,11 +3,16 @@
 use crate::rig::{RigError, Sensor, check};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, Uniform};
+use rand_distr::{Distribution, StandardUniform};
 use serde::Deserialize;
 
 /// Shortest step that a lag asks of its plant, s.
 const SHORTEST_STEP_S: f64 = 1e-3;
+
+/// Step (s) in which the answer of a first-order body with the time constant `lag_s` is nearly straight.
+pub(super) fn step_for_lag(lag_s: f64) -> f64 {
+    (0.1 * lag_s).max(SHORTEST_STEP_S)
+}
 
 /// What a simulated sensor does to the truth, in the unit of what it measures. The default is a perfect sensor, also for the fields
 /// that a scenario leaves out: who names a sensor describes the whole of it.
@@ -106,22 +111,29 @@ impl SensorChain {
         rng.set_stream(stream);
         let mut sensor = Self {
             options,
-            truth,
-            lagged: truth,
-            last: truth,
+            truth: f64::NAN,
+            lagged: f64::NAN,
+            last: f64::NAN,
             stuck: false,
             lost: false,
             rng,
         };
-        // A sensor that sticks before it was ever read stands at what it would show without noise.
-        sensor.last = sensor.shown(truth);
+        sensor.settle(truth);
         Ok(sensor)
+    }
+
+    /// Sets the sensor as if the truth had always been `truth`.
+    pub(super) fn settle(&mut self, truth: f64) {
+        self.truth = truth;
+        self.lagged = truth;
+        // If it sticks before it was ever read, it stands at what it would show without noise.
+        self.last = self.shown(truth);
     }
 
     /// Longest step (s) in which the truth may be taken as moving along a straight line for [`follow`](Self::follow).
     pub(super) fn longest_step_s(&self) -> f64 {
         if self.options.lag_s > 0.0 {
-            (0.1 * self.options.lag_s).max(SHORTEST_STEP_S)
+            step_for_lag(self.options.lag_s)
         } else {
             f64::INFINITY
         }
@@ -145,7 +157,8 @@ impl SensorChain {
     pub fn read(&mut self) -> f64 {
         // Drawn whatever the faults are: afterwards the noise goes on as it would have without them.
         let noisy = self.options.noise().read(self.lagged, &mut self.rng);
-        let dropped = self.chance() < self.options.dropout;
+        let chance: f64 = StandardUniform.sample(&mut self.rng);
+        let dropped = chance < self.options.dropout;
         if self.lost || dropped {
             return f64::NAN;
         }
@@ -163,10 +176,6 @@ impl SensorChain {
     /// Lets the sensor read NaN, or work again.
     pub fn set_lost(&mut self, lost: bool) {
         self.lost = lost;
-    }
-
-    fn chance(&mut self) -> f64 {
-        Uniform::new(0.0, 1.0).map_or(0.0, |unit| unit.sample(&mut self.rng))
     }
 
     /// What the display makes of a value: steps counted from the range's lower end, within the range.
