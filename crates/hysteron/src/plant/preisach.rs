@@ -13,6 +13,7 @@ use serde::Deserialize;
 const LIMIT_V: f64 = 150.0;
 /// Stroke at the nominal load, µm.
 const STROKE_UM: f64 = 100.0;
+
 /// The simulated actuator and its sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
