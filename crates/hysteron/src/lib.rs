@@ -24,6 +24,7 @@ mod model;
 mod model_file;
 mod monotone;
 mod output;
+pub mod plant;
 mod prepare;
 mod recording;
 pub mod rig;

@@ -496,6 +496,8 @@ fn the_plant_refuses_absurd_input_and_stays_as_it_was() {
             plant.step(2.0, value),
             plant.set_load_n(value),
             plant.set_room_degc(value),
+            plant.set_predeformation_mm(value),
+            plant.set_transformation_shift_k(value),
         ];
         for refused in refusals {
             assert!(
@@ -525,6 +527,10 @@ fn a_rig_that_cannot_be_is_refused() {
     let rigs = [
         Rig {
             load_n: f64::INFINITY,
+            ..Rig::default()
+        },
+        Rig {
+            predeformation_mm: -1.0,
             ..Rig::default()
         },
         Rig {

@@ -29,6 +29,9 @@ pub enum RigError {
         /// Where the temperature came to rest, °C.
         reached_degc: f64,
     },
+    /// The plant has nothing that this disturbance could act on.
+    #[error("this plant has no {0}")]
+    NoSuchDisturbance(&'static str),
     /// A recording cannot be filtered because it has no time of its samples.
     #[error("the recording has no time: a filter needs the sampling rate")]
     NoTime,
@@ -38,7 +41,7 @@ pub enum RigError {
 }
 
 /// Accepts `value` if it is finite and within `[low, high]`.
-pub(super) fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), RigError> {
+pub(crate) fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), RigError> {
     if (low..=high).contains(&value) {
         Ok(())
     } else {

@@ -28,6 +28,7 @@ mod transformation;
 
 pub use convection::still_air;
 pub use error::RigError;
+pub(crate) use error::check;
 pub use experiment::{CUTOFF_HZ, Experiment, Phase, prepared};
 pub use plant::{Plant, Rig};
 pub use reproduction::{LEVELS, RANGE_DEGC, Reproduction};

@@ -23,6 +23,13 @@ pub struct Rig {
     pub room_degc: f64,
     /// Load that hangs on the spring, N, from 0 to 1000. Default 6.
     pub load_n: f64,
+    /// Pre-deformation, mm, from 0 to 20: how far the spring was stretched, when it was cold, beyond what the load stretches it.
+    /// Default 0.
+    ///
+    /// Martensite keeps it and austenite takes it back, the term `ε_L ξ` of Brinson 1993, so it makes the stroke
+    /// longer and leaves the temperatures as they are. That the load stretches new martensite as far again on each cooling
+    /// (stress-assisted two-way effect) is taken for granted.
+    pub predeformation_mm: f64,
 }
 
 impl Default for Rig {
@@ -33,6 +40,7 @@ impl Default for Rig {
             wire: Wire::default(),
             room_degc: 22.0,
             load_n: 6.0,
+            predeformation_mm: 0.0,
         }
     }
 }
@@ -55,6 +63,7 @@ pub struct Plant {
     body: Body,
     cold_deflection_mm: f64,
     temperature_degc: f64,
+    shift_k: f64,
     rings: Vec<(Ring, MaterialPoint)>,
 }
 
@@ -69,6 +78,7 @@ impl Plant {
         rig.wire.check()?;
         check_room(rig.room_degc)?;
         check_load(rig.load_n)?;
+        check_predeformation(rig.predeformation_mm)?;
         let cooled = |ring: Ring| {
             let sigma = ring.stress_mpa_per_n * rig.load_n;
             let point =
@@ -80,6 +90,7 @@ impl Plant {
             body: Body::new(&rig.wire, &rig.spring),
             cold_deflection_mm: 0.0,
             temperature_degc: rig.room_degc,
+            shift_k: 0.0,
             rings: rig.spring.cross_section().map(cooled).collect(),
         };
         plant.cold_deflection_mm = plant.deflection_mm();
@@ -125,7 +136,34 @@ impl Plant {
         Ok(())
     }
 
-    /// What the plant is made of, with its present load and room temperature.
+    /// Changes the pre-deformation to `predeformation_mm` (mm, from 0 to 20), see [`Rig::predeformation_mm`].
+    ///
+    /// # Errors
+    /// [`RigError::OutOfRange`] if the number is not finite or outside its range.
+    pub fn set_predeformation_mm(&mut self, predeformation_mm: f64) -> Result<(), RigError> {
+        check_predeformation(predeformation_mm)?;
+        self.rig.predeformation_mm = predeformation_mm;
+        Ok(())
+    }
+
+    /// Raises all four transformation temperatures to `shift_k` (K, from −50 to 50) above those of [`Rig::transformation`], at
+    /// constant temperature. The heat of the transformation that this drives is left out.
+    ///
+    /// # Errors
+    /// [`RigError::OutOfRange`] if the number is not finite or outside its range.
+    pub fn set_transformation_shift_k(&mut self, shift_k: f64) -> Result<(), RigError> {
+        check(
+            "shift of the transformation temperatures (K)",
+            shift_k,
+            -50.0,
+            50.0,
+        )?;
+        self.shift_k = shift_k;
+        self.transform(self.temperature_degc);
+        Ok(())
+    }
+
+    /// What the plant is made of, with its present load, pre-deformation and room temperature.
     #[must_use]
     pub fn rig(&self) -> &Rig {
         &self.rig
@@ -162,11 +200,20 @@ impl Plant {
             .rings
             .iter()
             .map(|(ring, point)| (ring.polar_moment_mm4, point.fraction()));
+        let (all, martensite) =
+            self.rings
+                .iter()
+                .fold((0.0, 0.0), |(all, martensite), (ring, point)| {
+                    let j = ring.polar_moment_mm4;
+                    (all + j, martensite + j * point.fraction())
+                });
         self.rig.spring.deflection_mm(self.rig.load_n, rings)
+            + self.rig.predeformation_mm * martensite / all
     }
 
-    /// One step of the classical Runge–Kutta method of order 4.
-    fn substep(&mut self, current_a: f64, h: f64) {
+    /// One step of the classical Runge–Kutta method of order 4. The caller has checked the current and keeps `h` (s) at most
+    /// [`Wire::substep_s`].
+    pub(crate) fn substep(&mut self, current_a: f64, h: f64) {
         let t = self.temperature_degc;
         let power = |xi, t| self.body.net_power_w(current_a, xi, t, self.rig.room_degc);
         // The current is constant, so the temperature moves one way within a step; the branch is that of its start.
@@ -193,7 +240,7 @@ impl Plant {
             .iter()
             .fold((0.0, 0.0), |(xi, slope), (ring, point)| {
                 let sigma = ring.stress_mpa_per_n * self.rig.load_n;
-                let (ring_xi, ring_slope) = point.ahead(law, direction, t, sigma);
+                let (ring_xi, ring_slope) = point.ahead(law, direction, t - self.shift_k, sigma);
                 (
                     xi + ring.area_share * ring_xi,
                     slope + ring.area_share * ring_slope,
@@ -205,9 +252,13 @@ impl Plant {
         self.temperature_degc = t;
         for (ring, point) in &mut self.rings {
             let sigma = ring.stress_mpa_per_n * self.rig.load_n;
-            point.advance(&self.rig.transformation, t, sigma);
+            point.advance(&self.rig.transformation, t - self.shift_k, sigma);
         }
     }
+}
+
+fn check_predeformation(predeformation_mm: f64) -> Result<(), RigError> {
+    check("pre-deformation (mm)", predeformation_mm, 0.0, 20.0)
 }
 
 fn check_room(room_degc: f64) -> Result<(), RigError> {
