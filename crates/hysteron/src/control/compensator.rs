@@ -4,7 +4,11 @@
 //! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
 //! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
 
-use crate::{Adaptive, Model, Outcome, Policy, Result, Solution, State};
+use crate::{Adaptive, Direction, Model, Outcome, Policy, Result, Sign, Solution, State, Turning};
+
+/// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
+/// inverse goes back across the dead band only for a difference of this many tolerances.
+const NOT_TURNED: f64 = 8.0;
 
 /// A hysteresis model and its inverse in the loop, fixed or adapting.
 #[derive(Debug, Clone)]
@@ -12,6 +16,8 @@ pub struct Compensator {
     kind: Kind,
     /// Where the inverse stands; none before the first sample.
     wanted: Option<State>,
+    /// The branch that the target is on.
+    target: Turning,
 }
 
 #[derive(Debug, Clone)]
@@ -25,21 +31,23 @@ impl Compensator {
     #[must_use]
     pub fn fixed(model: Model) -> Self {
         let state = model.start();
-        Self {
-            kind: Kind::Fixed {
-                model: Box::new(model),
-                state,
-            },
-            wanted: None,
-        }
+        Self::new(Kind::Fixed {
+            model: Box::new(model),
+            state,
+        })
     }
 
     /// A model that learns.
     #[must_use]
     pub fn adaptive(adaptive: Adaptive) -> Self {
+        Self::new(Kind::Adaptive(Box::new(adaptive)))
+    }
+
+    fn new(kind: Kind) -> Self {
         Self {
-            kind: Kind::Adaptive(Box::new(adaptive)),
+            kind,
             wanted: None,
+            target: Turning::new(0.0),
         }
     }
 
@@ -58,20 +66,41 @@ impl Compensator {
         }
     }
 
-    /// The input that gives `target`, on the way from the last one asked for.
+    /// The input that gives `target`, on the way from the last one asked for. Where the target goes next is for
+    /// *anticipate*; a target that goes back by up to the `tolerance` is not followed.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite and weights below zero.
-    pub fn solve(&mut self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+    pub fn solve(
+        &mut self,
+        target: f64,
+        heading: Option<Direction>,
+        tolerance: f64,
+    ) -> Result<Solution<f64>> {
+        if self.wanted.is_none() {
+            self.target = Turning::new(tolerance);
+        }
+        self.target.push(target);
+        let (state, sign) = match &self.kind {
+            Kind::Fixed { model, state } => (state, model.sign()),
+            Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),
+        };
+        let wanted = self.wanted.get_or_insert_with(|| state.clone());
+        let rises = wanted.is_rising() == (sign == Sign::Positive);
+        let turned = match self.target.branch() {
+            Some((branch, _)) => rises != (branch == Direction::Rising),
+            None => false,
+        };
+        let policy = match heading {
+            Some(heading) => Policy::Anticipate { heading, tolerance },
+            None if turned => Policy::Hold { tolerance },
+            None => Policy::Hold {
+                tolerance: NOT_TURNED * tolerance,
+            },
+        };
         match &self.kind {
-            Kind::Fixed { model, state } => {
-                let wanted = self.wanted.get_or_insert_with(|| state.clone());
-                model.inverse()?.step(wanted, target, policy)
-            }
-            Kind::Adaptive(adaptive) => {
-                let wanted = self.wanted.get_or_insert_with(|| adaptive.state().clone());
-                adaptive.solve(wanted, target, policy)
-            }
+            Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target, policy),
+            Kind::Adaptive(adaptive) => adaptive.solve(wanted, target, policy),
         }
     }
 

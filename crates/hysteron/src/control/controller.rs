@@ -1,7 +1,7 @@
 //! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
 
 use super::{Compensator, Gains, LoopStatus, Pid, Reading, watch::Watch};
-use crate::{Direction, Policy, Result, Status};
+use crate::{Direction, Result, Status};
 
 /// What the output should be, and where it goes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,14 +166,13 @@ impl Controller {
         status: &mut LoopStatus,
     ) -> Result<f64> {
         let scheme = &mut self.scheme;
-        let tolerance = scheme.tolerance;
-        let policy = match (scheme.rest, target.heading) {
-            (Rest::Anticipate, Some(heading)) => Policy::Anticipate { heading, tolerance },
-            _ => Policy::Hold { tolerance },
+        let heading = match scheme.rest {
+            Rest::Anticipate => target.heading,
+            Rest::Hold => None,
         };
         let feedforward = match &mut scheme.compensator {
             Some(compensator) => {
-                let solution = compensator.solve(target.output, policy)?;
+                let solution = compensator.solve(target.output, heading, scheme.tolerance)?;
                 status.out_of_reach = solution.status != Status::Ok;
                 solution.input
             }
