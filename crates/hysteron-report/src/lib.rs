@@ -13,6 +13,7 @@ mod error;
 mod figure;
 mod figures;
 mod files;
+mod frame;
 mod instants;
 mod number;
 mod page;

@@ -36,6 +36,25 @@ pub(crate) const ANTICIPATE: Stroke = Stroke {
 /// A discrepancy where it stands alone.
 pub(crate) const DISCREPANCY: Stroke = Stroke::solid("#1d2b3a", 1.3);
 
+/// For many lines in one panel: ever darker, and different in their dashes.
+pub(crate) const LINES: [Stroke; 7] = [
+    dashed("#b9c2cc", "2 4"),
+    dashed("#e0a15e", "9 4"),
+    dashed("#7cb5cf", ""),
+    dashed("#d9682d", "2 4"),
+    dashed("#3a86b4", "9 4"),
+    dashed("#a53e0f", ""),
+    dashed("#0f2f63", "12 4 2 4"),
+];
+
+const fn dashed(colour: &'static str, dash: &'static str) -> Stroke {
+    Stroke {
+        colour,
+        width: 2.0,
+        dash,
+    }
+}
+
 /// Axis lines and ticks.
 pub(crate) const AXIS: Stroke = Stroke::solid("#444b54", 1.0);
 /// Grid lines, behind the data.

@@ -9,7 +9,7 @@ use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
 use crate::figure::Figure;
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::view::{View, extent};
 
 /// Width of a figure over time.
 pub(super) const WIDTH: f64 = 760.0;
@@ -115,7 +115,9 @@ pub(super) fn plot(
     let (panel, height) = frame(sheet, view, y, height);
     panel.shade(
         &mut sheet.canvas,
-        stretches(moving).iter().map(|stretch| view.extent(stretch)),
+        stretches(moving)
+            .iter()
+            .map(|stretch| extent(&view.time, stretch)),
     );
     draw(sheet, view, &panel, curves);
     (panel, height)
