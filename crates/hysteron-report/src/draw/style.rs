@@ -69,6 +69,13 @@ pub(crate) const GUIDE: Stroke = Stroke {
     dash: "4 3",
 };
 
+/// What the output should be: wide and pale, under the curve that follows it.
+pub(crate) const REFERENCE: Stroke = Stroke::solid("#a9b3be", 4.2);
+/// A curve that may be noisy, where dashes would be lost.
+pub(crate) const FOLLOWER: Stroke = Stroke::solid("#12385f", 1.3);
+/// Where a curve leaves the panel.
+pub(crate) const BEYOND: Stroke = Stroke::solid("#d2550c", 3.4);
+
 /// Samples in the dead band.
 pub(crate) const SHADE: &str = "#e4e7ec";
 /// Where the output is expected, around what the model says: a tint of its colour.

@@ -16,6 +16,7 @@ pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
 pub(crate) use excitation_map::counts as classes_counted;
+pub(crate) use over_time::time_axis;
 
 use crate::captions;
 use crate::draw::sheet::Sheet;

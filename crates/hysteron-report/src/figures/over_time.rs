@@ -144,6 +144,6 @@ fn draw(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, curves: &[Curve<'_>])
 }
 
 /// Time runs from edge to edge.
-pub(super) fn time_axis(label: &Labelled, span: Span) -> Axis {
+pub(crate) fn time_axis(label: &Labelled, span: Span) -> Axis {
     Axis::new(label, span.padded(0.005))
 }

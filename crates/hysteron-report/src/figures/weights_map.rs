@@ -14,32 +14,26 @@ pub(super) const WIDTH: f64 = 600.0;
 
 pub(super) fn svg(view: &View<'_>) -> String {
     let half = Half::of_weights(view.source);
-    let (low, high) = half.cells().fold((0.0f64, 0.0f64), |(low, high), cell| {
-        (low.min(cell.sum), high.max(cell.sum))
-    });
-    let largest = if high > -low { high } else { -low };
-    let scale = Axis::new(
-        &view.output.renamed("weight μ"),
-        if low < high {
-            Span { low, high }
-        } else {
-            Span {
-                low: 0.0,
-                high: 1.0,
-            }
-        },
-    );
+    let span = Span::from_zero(half.cells().map(|cell| cell.sum));
+    let scale = Axis::new(&view.output.renamed("weight μ"), span);
 
     let mut sheet = sheet(Figure::WeightsMap, view, WIDTH);
     let mut keys = Vec::new();
-    keys.extend((low < 0.0).then(|| Key::Text("cells with − : weights below zero".into())));
+    keys.extend((span.low < 0.0).then(|| Key::Text("cells with − : weights below zero".into())));
     keys.extend(half.remark().map(Key::Text));
     if keys.is_empty() {
         keys.push(Key::Text(String::new()));
     }
     sheet.legend(&keys);
 
-    let (panel, bottom) = plot(&mut sheet, view, &half, |cell| cell.sum, &scale, largest);
+    let (panel, bottom) = plot(
+        &mut sheet,
+        view,
+        &half,
+        |cell| cell.sum,
+        &scale,
+        span.largest(),
+    );
     half.signs(&mut sheet.canvas, &panel, view.source.zero());
     finish(Figure::WeightsMap, view, sheet, bottom)
 }
