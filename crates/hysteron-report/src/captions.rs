@@ -207,7 +207,8 @@ fn at_index(series: &[f64], k: usize) -> f64 {
     series.get(k).copied().unwrap_or(f64::NAN)
 }
 
-fn capitalised(text: &str) -> String {
+/// `text` with a capital at its start.
+pub(crate) fn capitalised(text: &str) -> String {
     let mut characters = text.chars();
     characters
         .next()

@@ -18,6 +18,51 @@ pub enum ReportError {
         /// Values of the series.
         found: usize,
     },
+    /// A comparison without a run.
+    #[error("no run to show: a report needs the trace of at least one controller")]
+    NoRun,
+    /// A run without samples.
+    #[error("the run of {run} has no samples: nothing can be shown of it")]
+    EmptyRun {
+        /// The controller's name.
+        run: String,
+    },
+    /// A series of a run has another length than the time of the first run.
+    #[error(
+        "{series} of {run} has {found} values, but the first run has {expected} samples: give runs over the same samples"
+    )]
+    RunLength {
+        /// The controller's name.
+        run: String,
+        /// The series, for example `output`.
+        series: &'static str,
+        /// Samples of the first run.
+        expected: usize,
+        /// Values of the series.
+        found: usize,
+    },
+    /// A snapshot has more or fewer weights than the plane has operators.
+    #[error(
+        "a snapshot of {run} has {found} weights, but the plane has {expected} operators: give the plane of the model that adapted"
+    )]
+    Snapshot {
+        /// The controller's name.
+        run: String,
+        /// Operators of the plane.
+        expected: usize,
+        /// Weights of the snapshot.
+        found: usize,
+    },
+    /// A row of the table has more or fewer cells than there are headers.
+    #[error("the table's row {row} has {found} values under {expected} headers")]
+    Row {
+        /// The row's name.
+        row: String,
+        /// Headers.
+        expected: usize,
+        /// Values of the row.
+        found: usize,
+    },
     /// A file or the directory could not be written.
     #[error(transparent)]
     Write(#[from] hysteron::Error),

@@ -1,14 +1,13 @@
-//! The page: one HTML file with everything in it.
+//! The page of an evaluation.
 
 use crate::captions::{caption, percent, title};
 use crate::figure::Figure;
 use crate::figures::classes_counted;
+use crate::frame;
 use crate::number::{count, significant};
 use crate::view::View;
 use hysteron::{Confidence, Errors};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-const STYLE: &str = include_str!("page.css");
+use maud::{Markup, html};
 
 /// The sections of the page and their figures; figures in one group stand side by side where there is room.
 const SECTIONS: [(&str, &[&[Figure]]); 5] = [
@@ -47,39 +46,21 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
 
 /// The page around the figures in `drawn`.
 pub(crate) fn html(heading: &str, view: &View<'_>, drawn: &[(Figure, String)]) -> String {
-    let heading = if heading.trim().is_empty() {
-        "Report"
-    } else {
-        heading
+    let lead = html! {
+        "A hysteresis model of " (view.output.name) " over " (view.input.name) ", tested on a recording of both."
     };
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (heading) @if view.simulated() { " (simulated)" } }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                main {
-                    h1 { (heading) }
-                    p.lead { "A hysteresis model of " (view.output.name) " over " (view.input.name) ", tested on a recording of both." }
-                    @if view.simulated() {
-                        p.simulated { "Simulated: this recording comes from a simulated plant, not from a measurement." }
-                    }
-                    (facts(view))
-                    (errors(view))
-                    @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
-                    footer {
-                        "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of SMA actuators”, which \
-                         introduces the MKP model; its figure numbers are given with each caption."
-                    }
-                }
-            }
+    let simulated =
+        "Simulated: this recording comes from a simulated plant, not from a measurement.";
+    let body = html! {
+        (facts(view))
+        (errors(view))
+        @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
+        footer {
+            "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of SMA actuators”, which \
+             introduces the MKP model; its figure numbers are given with each caption."
         }
-    }
-    .into_string()
+    };
+    frame::html(heading, lead, view.simulated().then_some(simulated), body)
 }
 
 fn facts(view: &View<'_>) -> Markup {
@@ -197,18 +178,15 @@ fn section(
 }
 
 fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
-    let Some(number) = drawn.iter().position(|(candidate, _)| *candidate == figure) else {
+    let mut numbered = drawn.iter().enumerate();
+    let Some((number, (_, svg))) = numbered.find(|(_, (candidate, _))| *candidate == figure) else {
         return html! {};
     };
-    html! {
-        figure id=(figure.stem()) {
-            div.wide { @if let Some((_, svg)) = drawn.get(number) { (PreEscaped(svg)) } }
-            figcaption {
-                b { "Figure " (number + 1) ". " (title(figure, view)) "." } " " (caption(figure, view)) " "
-                @if let Some(number) = figure.chapter_number() {
-                    span.beside { "Beside Fig. " (number) " of the chapter." }
-                }
-            }
+    let beside = html! {
+        @if let Some(number) = figure.chapter_number() {
+            " " span.beside { "Beside Fig. " (number) " of the chapter." }
         }
-    }
+    };
+    let words = [title(figure, view), caption(figure, view)];
+    frame::picture(figure.stem(), number, svg, &words, beside)
 }

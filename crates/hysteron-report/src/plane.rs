@@ -1,11 +1,14 @@
 //! The half `α ≤ β` of the plane as cells that can be drawn.
 
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::{Canvas, Rect};
+use crate::draw::canvas::{Canvas, Rect, Short};
+use crate::draw::colour::of_share;
 use crate::draw::panel::{Labels, Panel, threshold};
 use crate::draw::style::Stroke;
+use crate::quantity::Labelled;
 use crate::source::Source;
-use crate::view::View;
+use hysteron::Plane;
+use std::fmt::Write;
 
 /// More cells a side than this cannot be told apart; neighbours are then drawn as one.
 const FINEST: usize = 128;
@@ -41,26 +44,22 @@ pub(crate) struct Half {
 
 impl Half {
     pub(crate) fn of_weights(source: Source<'_>) -> Self {
-        Self::new(source, source.weights())
-    }
-
-    /// A value for each operator, in the order of the weights.
-    pub(crate) fn of_values(source: Source<'_>, values: &[f64]) -> Self {
-        Self::new(source, values)
+        Self::of_values(source.plane(), source.weights())
     }
 
     /// The operator states after the inputs `history`.
     pub(crate) fn of_states(source: Source<'_>, history: &[f64]) -> Self {
-        Self::new(source, &source.states(history))
+        Self::of_values(source.plane(), &source.states(history))
     }
 
-    fn new(source: Source<'_>, values: &[f64]) -> Self {
-        let levels = source.levels();
+    /// A value for each operator, in the order of the weights.
+    pub(crate) fn of_values(plane: &Plane, values: &[f64]) -> Self {
+        let levels = plane.levels();
         let block = levels.div_ceil(FINEST).max(1);
         let side = levels.div_ceil(block);
-        let pitch = block as f64 * source.step();
-        let middle = 0.5 * (block as f64 - 1.0) * source.step();
-        let centre = |k: usize| source.level(k * block + 1) + middle;
+        let pitch = block as f64 * plane.step();
+        let middle = 0.5 * (block as f64 - 1.0) * plane.step();
+        let centre = |k: usize| plane.level(k * block + 1) + middle;
         let mut cells: Vec<Cell> = (0..side)
             .flat_map(|j| (0..=j).map(move |i| (i, j)))
             .map(|(i, j)| Cell {
@@ -96,6 +95,51 @@ impl Half {
     pub(crate) fn place(&self, panel: &Panel, cell: &Cell) -> [f64; 3] {
         let [x, y] = panel.point(cell.alpha - 0.5 * self.pitch, cell.beta + 0.5 * self.pitch);
         [x, y, panel.px(cell.alpha + 0.5 * self.pitch) - x]
+    }
+
+    /// Colours each cell by its value relative to `largest`.
+    pub(crate) fn fill(
+        &self,
+        canvas: &mut Canvas,
+        panel: &Panel,
+        value: impl Fn(&Cell) -> f64,
+        largest: f64,
+    ) {
+        for cell in self.cells() {
+            let [x, y, width] = self.place(panel, &cell);
+            let share = if largest > 0.0 {
+                value(&cell) / largest
+            } else {
+                0.0
+            };
+            // A hair wider than the cell, or the seams between cells shine through.
+            let (width, height) = (width + 0.3, width + 0.3);
+            let area = Rect {
+                x,
+                y,
+                width,
+                height,
+            };
+            canvas.rect(area, &of_share(share));
+        }
+    }
+
+    /// A minus sign in each cell below `-zero`, which a grey print needs.
+    pub(crate) fn signs(&self, canvas: &mut Canvas, panel: &Panel, zero: f64) {
+        let mut minus = String::new();
+        for cell in self.cells().filter(|cell| cell.sum < -zero) {
+            let [x, y, width] = self.place(panel, &cell);
+            if width > 4.0 {
+                let _ = write!(
+                    minus,
+                    "M{} {}h{}",
+                    Short(x + 0.3 * width),
+                    Short(y + 0.5 * width),
+                    Short(0.4 * width)
+                );
+            }
+        }
+        canvas.path(&minus, None, Some(&MINUS));
     }
 
     /// Whether all cells hold the same value.
@@ -135,19 +179,21 @@ impl Half {
     }
 }
 
+/// The sign of a value below zero.
+pub(crate) const MINUS: Stroke = Stroke::solid("#1b2128", 1.0);
+
 /// `α = β`.
 const DIAGONAL: Stroke = Stroke::solid("#c3c9d1", 1.0);
 
 /// The axes of the plane, `[α, β]`, over all cells.
-pub(crate) fn axes(view: &View<'_>) -> [Axis; 2] {
-    let source = view.source;
-    let (low, high) = (source.level(1), source.level(source.levels().max(1)));
-    let room = 0.8 * source.step().max((high - low) / FINEST as f64);
+pub(crate) fn axes(plane: &Plane, input: &Labelled) -> [Axis; 2] {
+    let (low, high) = (plane.min(), plane.max());
+    let room = 0.8 * plane.step().max((high - low) / FINEST as f64);
     let span = Span {
         low: low - room,
         high: high + room,
     };
-    ["α", "β"].map(|symbol| Axis::new(&threshold(symbol, &view.input), span))
+    ["α", "β"].map(|symbol| Axis::new(&threshold(symbol, input), span))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::view::View;
-use crate::{figures, files, page, png};
+use crate::{figures, files, page};
 use hysteron::Evaluation;
 use hysteron::Model;
 use hysteron::Recording;
@@ -37,34 +37,10 @@ impl Report<'_> {
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
     pub fn write(&self, dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
         let view = self.view()?;
-        files::make_directory(dir)?;
-        let mut drawn = Vec::new();
-        let mut written = vec![dir.join("index.html")];
-        for figure in Figure::ALL {
-            let [svg_path, png_path] =
-                ["svg", "png"].map(|extension| dir.join(format!("{figure}.{extension}")));
-            let Some(svg) = figures::svg(figure, &view) else {
-                files::remove_stale(&svg_path)?;
-                files::remove_stale(&png_path)?;
-                continue;
-            };
-            files::write(&svg_path, svg.as_bytes())?;
-            files::write(
-                &png_path,
-                &png::of_svg(&svg).map_err(|reason| ReportError::Raster {
-                    path: png_path.clone(),
-                    reason,
-                })?,
-            )?;
-            written.extend([svg_path, png_path]);
-            drawn.push((figure, svg));
-        }
-        // The page comes last, so that a page in the directory means a complete report.
-        files::write(
-            &dir.join("index.html"),
-            page::html(self.title, &view, &drawn).as_bytes(),
-        )?;
-        Ok(written)
+        let figures = Figure::ALL.map(|figure| (figure, figures::svg(figure, &view)));
+        files::write_report(dir, figures.into_iter(), |drawn| {
+            page::html(self.title, &view, drawn)
+        })
     }
 
     /// A single figure as an SVG document; `None` where the evaluation has nothing to show in it.

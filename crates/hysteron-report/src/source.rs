@@ -43,19 +43,9 @@ impl<'a> Source<'a> {
         self.model.plane().levels()
     }
 
-    /// `ΔT`; with a single level, whatever keeps a picture of the plane from collapsing.
+    /// `ΔT`.
     pub(crate) fn step(self) -> f64 {
-        let step = self.model.plane().step();
-        if step.is_finite() && step > 0.0 {
-            step
-        } else {
-            1.0
-        }
-    }
-
-    /// `T_min + (k − 1) ΔT`.
-    pub(crate) fn level(self, k: usize) -> f64 {
-        self.min() + (k as f64 - 1.0) * self.step()
+        self.model.plane().step()
     }
 
     /// All weights, row by row: `j = 1…K`, within a row `i = 1…j`.

@@ -6,6 +6,7 @@ use crate::source::Source;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
 use hysteron::{Origin, Recording};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// A report, ready to be drawn.
 pub(crate) struct View<'a> {
@@ -95,11 +96,6 @@ impl<'a> View<'a> {
         }
     }
 
-    /// What stands at the corner of every figure.
-    pub(crate) fn note(&self) -> Option<&'static str> {
-        self.simulated().then_some("simulated, not measured")
-    }
-
     /// Modelled minus recorded.
     pub(crate) fn discrepancy(modelled: &[f64], recorded: &[f64]) -> Vec<f64> {
         modelled
@@ -108,23 +104,23 @@ impl<'a> View<'a> {
             .map(|(modelled, recorded)| modelled - recorded)
             .collect()
     }
+}
 
-    /// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one sample has a width.
-    pub(crate) fn extent(&self, stretch: &std::ops::Range<usize>) -> [f64; 2] {
-        let between = |before: Option<usize>, after: usize| {
-            let after = self
-                .time
-                .get(after)
-                .or(self.time.last())
-                .copied()
-                .unwrap_or(0.0);
-            before
-                .and_then(|k| self.time.get(k))
-                .map_or(after, |before| 0.5 * (before + after))
-        };
-        [
-            between(stretch.start.checked_sub(1), stretch.start),
-            between(stretch.end.checked_sub(1), stretch.end),
-        ]
-    }
+/// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one sample has a width.
+pub(crate) fn extent(time: &[f64], stretch: &Range<usize>) -> [f64; 2] {
+    let between = |before: Option<usize>, after: usize| {
+        let after = time.get(after).or(time.last()).copied().unwrap_or(0.0);
+        before
+            .and_then(|k| time.get(k))
+            .map_or(after, |before| 0.5 * (before + after))
+    };
+    [
+        between(stretch.start.checked_sub(1), stretch.start),
+        between(stretch.end.checked_sub(1), stretch.end),
+    ]
+}
+
+/// What stands at the corner of a figure.
+pub(crate) fn note(simulated: bool) -> Option<&'static str> {
+    simulated.then_some("simulated, not measured")
 }

@@ -9,6 +9,9 @@ const LARGEST: f64 = 1e300;
 /// Values below this are drawn as zero: steps between them would lose their digits.
 const SMALLEST: f64 = 1e-300;
 
+/// Pixels between ticks, at least.
+const CLOSEST: f64 = 16.0;
+
 /// The range that an axis covers. Never empty, always finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
@@ -45,6 +48,21 @@ impl Span {
         }
     }
 
+    /// The range of the finite values with zero in it, as a scale of colours needs; `0…1` where all are zero.
+    pub(crate) fn from_zero(values: impl IntoIterator<Item = f64>) -> Self {
+        let drawable = values.into_iter().filter(|value| value.abs() <= LARGEST);
+        let (low, high) = drawable.fold((0.0_f64, 0.0_f64), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        let high = if low < high { high } else { 1.0 };
+        Self { low, high }
+    }
+
+    /// The largest magnitude.
+    pub(crate) fn largest(self) -> f64 {
+        self.high.max(-self.low)
+    }
+
     /// Room for the line's width and some air, `share` of the range on each side.
     pub(crate) fn padded(self, share: f64) -> Self {
         let room = share * (self.high - self.low);
@@ -77,6 +95,8 @@ pub(crate) struct Axis {
     exponent: i32,
     /// In place of numbers, a name at each of 0, 1, 2 and so on.
     names: Vec<String>,
+    /// Whether the label stands elsewhere, for several panels together.
+    unlabelled: bool,
 }
 
 /// Where a tick stands and what it says.
@@ -98,6 +118,7 @@ impl Axis {
             span,
             exponent,
             names: Vec::new(),
+            unlabelled: false,
         }
     }
 
@@ -110,8 +131,19 @@ impl Axis {
         }
     }
 
+    /// The same axis, its label left to someone else.
+    pub(crate) fn unlabelled(self) -> Self {
+        Self {
+            unlabelled: true,
+            ..self
+        }
+    }
+
     /// Name and unit.
     pub(crate) fn label(&self) -> String {
+        if self.unlabelled {
+            return String::new();
+        }
         let factor = (self.exponent != 0).then(|| power_of_ten(self.exponent));
         self.quantity.axis(factor.as_deref())
     }
@@ -129,7 +161,12 @@ impl Axis {
 
     /// Ticks for a vertical axis of `length` pixels.
     pub(crate) fn ticks_up(&self, length: f64) -> Vec<Tick> {
-        self.ticks(length, |_| 44.0)
+        let ticks = self.ticks(length, |_| (0.25 * length).clamp(22.0, 44.0));
+        if ticks.len() > 1 {
+            return ticks;
+        }
+        // A single tick tells no scale: as close as the labels allow.
+        self.ticks(length, |_| CLOSEST)
     }
 
     /// The finest ticks at steps of 1, 2 or 5 · 10ⁿ that are at least `room` pixels apart.
@@ -147,7 +184,7 @@ impl Axis {
             for leading in [1.0, 2.0, 5.0] {
                 let step = leading * 10f64.powi(exponent);
                 let spacing = step / range * length;
-                if spacing < 20.0 {
+                if spacing < CLOSEST {
                     continue;
                 }
                 let ticks = self.at_steps_of(step, exponent);

@@ -3,6 +3,7 @@
 pub(crate) mod axis;
 pub(crate) mod canvas;
 pub(crate) mod colour;
+pub(crate) mod colour_bar;
 pub(crate) mod marker;
 pub(crate) mod panel;
 pub(crate) mod sheet;

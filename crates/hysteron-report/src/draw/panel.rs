@@ -36,6 +36,13 @@ pub(crate) fn left_of(y: &Axis, height: f64) -> f64 {
         + 28.0
 }
 
+/// The label of a `y` axis beside `area`, from `left` on.
+pub(crate) fn y_label(canvas: &mut Canvas, y: &Axis, left: f64, area: Rect) {
+    let middle = area.y + area.height / 2.0;
+    let label = text::fit(&y.label(), LABEL, area.height + 30.0);
+    canvas.text_upwards([left + LABEL + 2.0, middle], Anchor::Middle, LABEL, &label);
+}
+
 impl Panel {
     /// Draws grid and axes over `area`, which excludes the space for labels.
     pub(crate) fn draw(canvas: &mut Canvas, area: Rect, x: Axis, y: Axis, labels: Labels) -> Self {
@@ -44,6 +51,12 @@ impl Panel {
         panel.x_axis(canvas, labels.x);
         panel.y_axis(canvas, labels.y);
         panel
+    }
+
+    /// An `x` axis without a panel, at the foot of `area`.
+    pub(crate) fn x_alone(canvas: &mut Canvas, area: Rect, x: Axis) {
+        let y = x.clone();
+        Self { area, x, y }.x_axis(canvas, true);
     }
 
     /// Pixel of an x value.
@@ -75,17 +88,7 @@ impl Panel {
 
     /// Bands from x to x over the full height; bands less than a pixel apart become one.
     pub(crate) fn shade(&self, canvas: &mut Canvas, bands: impl IntoIterator<Item = [f64; 2]>) {
-        let mut merged: Vec<[f64; 2]> = Vec::new();
-        for [from, to] in bands
-            .into_iter()
-            .map(|band| band.map(|x| self.px(x).clamp(self.area.x, self.area.right())))
-        {
-            match merged.last_mut() {
-                Some(last) if from - last[1] < 1.0 => last[1] = last[1].max(to),
-                _ => merged.push([from, to]),
-            }
-        }
-        for [from, to] in merged {
+        for [from, to] in self.merged(bands) {
             canvas.rect(
                 Rect {
                     x: from,
@@ -98,6 +101,19 @@ impl Panel {
         // The shade covers the grid and the axis line's inner half: draw them again.
         self.grid(canvas);
         self.frame(canvas);
+    }
+
+    /// Pixels of bands from x to x; bands less than a pixel apart become one.
+    pub(crate) fn merged(&self, bands: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+        let mut merged: Vec<[f64; 2]> = Vec::new();
+        let pixel = |x: f64| self.px(x).clamp(self.area.x, self.area.right());
+        for [from, to] in bands.into_iter().map(|band| band.map(pixel)) {
+            match merged.last_mut() {
+                Some(last) if from - last[1] < 1.0 => last[1] = last[1].max(to),
+                _ => merged.push([from, to]),
+            }
+        }
+        merged
     }
 
     /// A filled band between the curves `low` and `high`.
@@ -212,10 +228,8 @@ impl Panel {
             }
         }
         if labelled {
-            let middle = self.area.y + self.area.height / 2.0;
-            let label = text::fit(&self.y.label(), LABEL, self.area.height + 30.0);
-            let at = left - left_of(&self.y, self.area.height) + LABEL + 2.0;
-            canvas.text_upwards([at, middle], Anchor::Middle, LABEL, &label);
+            let at = left - left_of(&self.y, self.area.height);
+            y_label(canvas, &self.y, at, self.area);
         }
     }
 }

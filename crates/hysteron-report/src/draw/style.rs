@@ -36,6 +36,25 @@ pub(crate) const ANTICIPATE: Stroke = Stroke {
 /// A discrepancy where it stands alone.
 pub(crate) const DISCREPANCY: Stroke = Stroke::solid("#1d2b3a", 1.3);
 
+/// For many lines in one panel: ever darker, and different in their dashes.
+pub(crate) const LINES: [Stroke; 7] = [
+    dashed("#b9c2cc", "2 4"),
+    dashed("#e0a15e", "9 4"),
+    dashed("#7cb5cf", ""),
+    dashed("#d9682d", "2 4"),
+    dashed("#3a86b4", "9 4"),
+    dashed("#a53e0f", ""),
+    dashed("#0f2f63", "12 4 2 4"),
+];
+
+const fn dashed(colour: &'static str, dash: &'static str) -> Stroke {
+    Stroke {
+        colour,
+        width: 2.0,
+        dash,
+    }
+}
+
 /// Axis lines and ticks.
 pub(crate) const AXIS: Stroke = Stroke::solid("#444b54", 1.0);
 /// Grid lines, behind the data.
@@ -49,6 +68,13 @@ pub(crate) const GUIDE: Stroke = Stroke {
     width: 1.1,
     dash: "4 3",
 };
+
+/// What the output should be: wide and pale, under the curve that follows it.
+pub(crate) const REFERENCE: Stroke = Stroke::solid("#a9b3be", 4.2);
+/// A curve that may be noisy, where dashes would be lost.
+pub(crate) const FOLLOWER: Stroke = Stroke::solid("#12385f", 1.3);
+/// Where a curve leaves the panel.
+pub(crate) const BEYOND: Stroke = Stroke::solid("#d2550c", 3.4);
 
 /// Samples in the dead band.
 pub(crate) const SHADE: &str = "#e4e7ec";

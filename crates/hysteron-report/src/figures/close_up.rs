@@ -9,7 +9,7 @@ use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::{ANTICIPATE, GUIDE, MEASURED, MODELLED};
 use crate::figure::Figure;
-use crate::view::View;
+use crate::view::{View, extent};
 use std::ops::Range;
 
 const OUTPUT_HEIGHT: f64 = 150.0;
@@ -54,7 +54,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let bands: Vec<[f64; 2]> = stretches(&inverse.moving)
         .iter()
         .filter(|stretch| stretch.start < window.end && stretch.end > window.start)
-        .map(|stretch| view.extent(stretch))
+        .map(|stretch| extent(&view.time, stretch))
         .collect();
     let canvas = &mut sheet.canvas;
     let above = Panel::draw(

@@ -6,7 +6,7 @@ use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
-use crate::draw::style::Stroke;
+use crate::draw::style::LINES;
 use crate::figure::Figure;
 use crate::number::{magnitude, power_of_ten, significant};
 use crate::quantity::Labelled;
@@ -17,25 +17,6 @@ const PLOT_HEIGHT: f64 = 340.0;
 
 /// Errors beyond this many times the best are cut off: they would press the others together.
 const SHOWN: f64 = 6.0;
-
-/// From few levels to many: ever darker, and different in their dashes.
-const LINES: [Stroke; 7] = [
-    dashed("#b9c2cc", "2 4"),
-    dashed("#e0a15e", "9 4"),
-    dashed("#7cb5cf", ""),
-    dashed("#d9682d", "2 4"),
-    dashed("#3a86b4", "9 4"),
-    dashed("#a53e0f", ""),
-    dashed("#0f2f63", "12 4 2 4"),
-];
-
-const fn dashed(colour: &'static str, dash: &'static str) -> Stroke {
-    Stroke {
-        colour,
-        width: 2.0,
-        dash,
-    }
-}
 
 pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let (levels, smooth, errors) = view.validation()?.table();

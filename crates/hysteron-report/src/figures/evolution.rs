@@ -34,7 +34,7 @@ pub(super) fn svg(view: &View<'_>) -> String {
         Key::Marker(Marker::Disc, "γ = 1: S".into(), "max"),
         Key::Line(GUIDE, "present input".into()),
     ]);
-    let [alpha, beta] = axes(view);
+    let [alpha, beta] = axes(view.source.plane(), &view.input);
     let left = MARGIN + left_of(&beta, 200.0);
     let side = (WIDTH - MARGIN - left - GAP * (COLUMNS as f64 - 1.0)) / COLUMNS as f64;
     let instants = instants(view);

@@ -16,11 +16,12 @@ pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
 pub(crate) use excitation_map::counts as classes_counted;
+pub(crate) use over_time::time_axis;
 
 use crate::captions;
 use crate::draw::sheet::Sheet;
 use crate::figure::Figure;
-use crate::view::View;
+use crate::view::{View, note};
 
 /// The figure as SVG; `None` where this report has no such figure.
 pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
@@ -47,7 +48,7 @@ fn sheet(figure: Figure, view: &View<'_>, width: f64) -> Sheet {
         figure.stem(),
         width,
         &captions::title(figure, view),
-        view.note(),
+        note(view.simulated()),
     )
 }
 

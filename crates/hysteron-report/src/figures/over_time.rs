@@ -9,7 +9,7 @@ use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
 use crate::figure::Figure;
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::view::{View, extent};
 
 /// Width of a figure over time.
 pub(super) const WIDTH: f64 = 760.0;
@@ -115,7 +115,9 @@ pub(super) fn plot(
     let (panel, height) = frame(sheet, view, y, height);
     panel.shade(
         &mut sheet.canvas,
-        stretches(moving).iter().map(|stretch| view.extent(stretch)),
+        stretches(moving)
+            .iter()
+            .map(|stretch| extent(&view.time, stretch)),
     );
     draw(sheet, view, &panel, curves);
     (panel, height)
@@ -142,6 +144,6 @@ fn draw(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, curves: &[Curve<'_>])
 }
 
 /// Time runs from edge to edge.
-pub(super) fn time_axis(label: &Labelled, span: Span) -> Axis {
+pub(crate) fn time_axis(label: &Labelled, span: Span) -> Axis {
     Axis::new(label, span.padded(0.005))
 }

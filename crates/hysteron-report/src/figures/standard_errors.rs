@@ -29,7 +29,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     };
     let errors: Vec<f64> = confidence.standard_error.iter().map(percent).collect();
     // The error of a block of operators is not the sum of theirs: the largest stands for it.
-    let half = Half::of_values(view.source, &errors);
+    let half = Half::of_values(view.source.plane(), &errors);
     let high = half
         .cells()
         .fold(0.0, |high: f64, cell| high.max(cell.largest));
@@ -58,7 +58,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     sheet.legend(&keys);
     let (panel, bottom) = plot(&mut sheet, view, &half, |cell| cell.largest, &scale, high);
     let mut slashes = String::new();
-    for cell in Half::of_values(view.source, &unknown).cells() {
+    for cell in Half::of_values(view.source.plane(), &unknown).cells() {
         if cell.sum == 0.0 || cell.mean() < 1.0 {
             continue;
         }

@@ -15,7 +15,7 @@ pub(super) fn svg(view: &View<'_>) -> String {
     let half = Half::of_weights(view.source);
     let zero = view.source.zero();
     let mut sheet = sheet(Figure::WeightsPlane, view, WIDTH);
-    let [alpha, beta] = axes(view);
+    let [alpha, beta] = axes(view.source.plane(), &view.input);
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left;
     let radius = 0.33 * side / (half.side as f64 + 1.0);

@@ -1,0 +1,50 @@
+//! What every page has: one HTML file with everything in it.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("page.css");
+
+/// The page of `body`; `simulated` says that nothing on it was measured.
+pub(crate) fn html(heading: &str, lead: Markup, simulated: Option<&str>, body: Markup) -> String {
+    let heading = if heading.trim().is_empty() {
+        "Report"
+    } else {
+        heading
+    };
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (heading) @if simulated.is_some() { " (simulated)" } }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    h1 { (heading) }
+                    p.lead { (lead) }
+                    @if let Some(simulated) = simulated { p.simulated { (simulated) } }
+                    (body)
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+/// The figure `number`, counted from 0, with its title and caption; `beside` ends the caption.
+pub(crate) fn picture(
+    id: &str,
+    number: usize,
+    svg: &str,
+    [title, caption]: &[String; 2],
+    beside: Markup,
+) -> Markup {
+    html! {
+        figure id=(id) {
+            div.wide { (PreEscaped(svg)) }
+            figcaption { b { "Figure " (number + 1) ". " (title) "." } " " (caption) (beside) }
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Input and drive over time, with what the loop had to say.
+
+use super::figure::Figure;
+use super::report::NamedTrace;
+use super::stack::{Heading, WIDTH, event_lines, height, stack};
+use super::view::View;
+use crate::dead_band::stretches;
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::{Anchor, Rect};
+use crate::draw::panel::{BELOW, Panel};
+use crate::draw::sheet::{Key, Sheet};
+use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
+use crate::draw::text;
+use crate::view::extent;
+use hysteron::control::{LoopStatus, Trace};
+
+/// Height of a row of the status strip.
+const ROW: f64 = 13.0;
+/// Size of the word beside it.
+const WORD: f64 = 10.5;
+
+type Flag = fn(&LoopStatus) -> bool;
+
+/// What a loop can say: the word of its row, what that means, its colour, and whether it holds.
+const FLAGS: [(&str, &str, &str, Flag); 3] = [
+    ("limit", "drive at a limit", "#8fb6d2", |status| {
+        status.saturated
+    }),
+    ("reach", "reference out of reach", "#d2550c", |status| {
+        status.out_of_reach
+    }),
+    ("sensor", "sensor fault", "#12233a", |status| {
+        status.sensor_fault
+    }),
+];
+
+pub(super) fn input(view: &View<'_>) -> Option<String> {
+    let asked = view
+        .report
+        .runs
+        .iter()
+        .flat_map(|run| &run.trace.command)
+        .any(|command| command.is_finite());
+    let mut keys = Vec::new();
+    if asked {
+        keys.push(Key::Line(REFERENCE, "commanded".into()));
+    }
+    keys.push(Key::Line(FOLLOWER, view.known().into()));
+    let curves = |trace: &'_ Trace| [trace.command.clone(), trace.input.clone()];
+    let known = view.report.runs.iter().flat_map(|run| &run.trace.input);
+    let any = asked || known.into_iter().any(|input| input.is_finite());
+    any.then(|| figure(Figure::Input, view, keys, curves, !view.has_drive()))
+}
+
+pub(super) fn drive(view: &View<'_>) -> Option<String> {
+    let keys = vec![Key::Line(FOLLOWER, view.drive.name.clone())];
+    let curves = |trace: &'_ Trace| [Vec::new(), trace.drive.clone()];
+    view.has_drive()
+        .then(|| figure(Figure::Drive, view, keys, curves, true))
+}
+
+/// Two curves of each run, the first pale beneath the second, and a strip with the status where `strip`.
+fn figure(
+    figure: Figure,
+    view: &View<'_>,
+    mut keys: Vec<Key>,
+    curves: impl Fn(&Trace) -> [Vec<f64>; 2],
+    strip: bool,
+) -> String {
+    let runs = view.report.runs;
+    let said = |flag: Flag| runs.iter().any(|run| run.trace.status.iter().any(flag));
+    let flags: Vec<_> = FLAGS
+        .into_iter()
+        .filter(|(.., flag)| strip && said(*flag))
+        .collect();
+    keys.extend(
+        flags
+            .iter()
+            .map(|(_, words, colour, _)| Key::Area(colour, (*words).into())),
+    );
+    let mut sheet = view.sheet(figure, WIDTH);
+    sheet.legend(&keys);
+    let drawn: Vec<[Vec<f64>; 2]> = runs.iter().map(|run| curves(run.trace)).collect();
+    let quantity = match figure {
+        Figure::Drive => &view.drive,
+        _ => &view.input,
+    };
+    let y = Axis::new(
+        quantity,
+        Span::of(drawn.iter().flatten().flatten()).padded(0.05),
+    );
+    let headings: Vec<Heading> = runs.iter().map(|run| heading(run, &flags)).collect();
+    // Below a panel for the rows, beside it for their words and the label of the axis.
+    let words = flags.iter().map(|(word, ..)| text::width(word, WORD));
+    let beside = words.fold(0.0, f64::max) + LABEL + 18.0;
+    let room = match flags.len() {
+        0 => 0.0,
+        rows => ROW * rows as f64 + 6.0,
+    };
+    let (panels, mut bottom) = stack(
+        &mut sheet,
+        view,
+        &headings,
+        &y,
+        height(runs.len()),
+        [room, beside],
+    );
+    for ((panel, run), [beneath, above]) in panels.iter().zip(runs).zip(&drawn) {
+        let time = &run.trace.time;
+        panel.curve(&mut sheet.canvas, time, beneath, &REFERENCE);
+        panel.curve(&mut sheet.canvas, time, above, &FOLLOWER);
+        event_lines(&mut sheet, view, panel);
+        for (n, (word, _, colour, flag)) in flags.iter().enumerate() {
+            let area = Rect {
+                y: panel.area.bottom() + 5.0 + ROW * n as f64,
+                height: ROW - 3.0,
+                ..panel.area
+            };
+            row(&mut sheet, panel, run.trace, area, (word, colour, *flag));
+        }
+    }
+    if let Some(panel) = panels.last().filter(|_| room > 0.0) {
+        let below = panel.area.bottom() + room;
+        time_below(&mut sheet, view, panel, below);
+        bottom = below + BELOW + 4.0;
+    }
+    view.finish(figure, sheet, bottom)
+}
+
+/// A row of the status strip over `area`: filled where the flag holds.
+fn row(
+    sheet: &mut Sheet,
+    panel: &Panel,
+    trace: &Trace,
+    area: Rect,
+    (word, colour, flag): (&str, &str, Flag),
+) {
+    let canvas = &mut sheet.canvas;
+    let middle = area.y + 0.5 * area.height;
+    let at = [area.x - 8.0, middle + 0.36 * WORD];
+    canvas.text_in(at, Anchor::End, WORD, FAINT, word);
+    canvas.line([area.x, middle], [area.right(), middle], &GRID);
+    let clear: Vec<bool> = trace.status.iter().map(|status| !flag(status)).collect();
+    let bands = stretches(&clear);
+    let times = bands.iter().map(|stretch| extent(&trace.time, stretch));
+    for [from, to] in panel.merged(times) {
+        let width = (to - from).max(1.5);
+        canvas.rect(
+            Rect {
+                x: from,
+                width,
+                ..area
+            },
+            colour,
+        );
+    }
+}
+
+/// How much of the time each flag held.
+fn heading(run: &NamedTrace<'_>, flags: &[(&str, &str, &str, Flag)]) -> Heading {
+    let status = &run.trace.status;
+    let share = |(word, _, _, flag): &(&str, &str, &str, Flag)| {
+        let count = status.iter().filter(|status| flag(status)).count();
+        let percent = crate::captions::percent(100.0 * count as f64 / status.len().max(1) as f64);
+        (count > 0).then(|| format!("{word} {percent}"))
+    };
+    Heading {
+        name: run.name.to_owned(),
+        remark: flags
+            .iter()
+            .filter_map(share)
+            .collect::<Vec<_>>()
+            .join(", "),
+    }
+}
+
+/// The time axis below the last strip.
+fn time_below(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, y: f64) {
+    let area = Rect {
+        y,
+        height: 0.0,
+        ..panel.area
+    };
+    Panel::x_alone(&mut sheet.canvas, area, view.time_axis.clone());
+}

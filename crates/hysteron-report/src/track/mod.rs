@@ -1,0 +1,20 @@
+//! The report of a comparison of controllers.
+
+mod before_after;
+mod captions;
+mod figure;
+mod input;
+mod page;
+mod report;
+mod reversal;
+mod series;
+mod stack;
+mod view;
+mod weights_time;
+
+pub use report::{NamedTrace, TrackReport, TrackTable};
+
+#[cfg(test)]
+mod fixture;
+#[cfg(test)]
+mod tests;
