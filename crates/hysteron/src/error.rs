@@ -72,6 +72,14 @@ pub enum Error {
     /// A thermal body cannot be run or identified.
     #[error("thermal body: {0}")]
     Thermal(String),
+    /// A scenario says something that cannot be.
+    #[error("scenario: `{field}`: {problem}")]
+    Scenario {
+        /// The field, or the line of the file.
+        field: String,
+        /// What is wrong with it, and what is expected.
+        problem: String,
+    },
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -95,6 +103,7 @@ impl Error {
             Error::Preparation(_) => 26,
             Error::Design(_) => 27,
             Error::Thermal(_) => 28,
+            Error::Scenario { .. } => 29,
         }
     }
 }

@@ -31,6 +31,7 @@ pub mod rig;
 mod stream;
 mod table;
 mod thermal;
+pub mod track;
 mod turning;
 
 pub use adaptive::Adaptive;

@@ -55,6 +55,9 @@ pub struct Scheme {
     pub inner: Option<InnerLoop>,
     /// Time constant of the filter on both readings, s; 0 for none.
     pub filter_s: f64,
+    /// Time after which an output that reads the same to the last bit is taken as stuck, s. `None` where the sensor has no noise
+    /// to tell it from an output at rest.
+    pub stuck_s: Option<f64>,
 }
 
 /// What a controller does with a sample.
@@ -66,6 +69,8 @@ pub struct Action {
     pub drive: f64,
     /// The output that the model expected before it learned; NaN without a model.
     pub prediction: f64,
+    /// The readings as filtered; NaN where there is none to be believed.
+    pub filtered: Reading,
     /// What there is to say.
     pub status: LoopStatus,
 }
@@ -78,8 +83,8 @@ pub struct Controller {
     inner: Option<Pid>,
     output: Watch,
     input: Watch,
-    /// Drive and command of the last sample.
-    last: Option<(f64, f64)>,
+    /// The last command.
+    last: Option<f64>,
     /// Whether the drive stands at its lower and its upper limit.
     held: (bool, bool),
 }
@@ -88,12 +93,12 @@ impl Controller {
     /// A controller at rest.
     #[must_use]
     pub fn new(scheme: Scheme) -> Self {
-        let watch = Watch::new(scheme.interval_s, scheme.filter_s);
+        let (interval_s, filter_s) = (scheme.interval_s, scheme.filter_s);
         Self {
             pid: scheme.pid.map(Pid::new),
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
-            output: watch.clone(),
-            input: watch,
+            output: Watch::new(interval_s, filter_s, scheme.stuck_s),
+            input: Watch::new(interval_s, filter_s, None),
             last: None,
             held: (false, false),
             scheme,
@@ -109,15 +114,9 @@ impl Controller {
         if !target.output.is_finite() {
             return Err(hysteron_core::Error::InputNotFinite { index: 0 }.into());
         }
-        let measured = self.output.read(reading.output);
-        let measured_input = reading.input.map(|input| self.input.read(input));
-        // Without a sensor of its own, the input is the one that was commanded.
-        let input = match measured_input {
-            Some(input) => input,
-            None => self.last.map(|(_, command)| command),
-        };
+        let (measured, input) = self.read(reading);
         let mut status = LoopStatus {
-            sensor_fault: measured.is_none() || measured_input == Some(None),
+            sensor_fault: measured.is_none() || (reading.input.is_some() && input.is_none()),
             ..LoopStatus::default()
         };
         let mut prediction = f64::NAN;
@@ -125,38 +124,59 @@ impl Controller {
             (prediction, status.adapted) = compensator.follow(input, measured)?;
         }
         let command = self.command(target, measured, &mut status)?;
-        let drive = self.drive(command, input);
-        let (low, high) = self.scheme.drives;
-        self.held = (drive <= low, drive >= high);
-        status.saturated = self.held.0 || self.held.1;
-        self.last = Some((drive, command));
-        Ok(Action {
-            command,
-            drive,
-            prediction,
-            status,
-        })
+        Ok(self.act(command, prediction, (measured, input), status))
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings.
+    /// One sample that brings the input to `command`, whatever the output is: for recordings and step tests.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
     pub fn step_command(&mut self, command: f64, reading: Reading) -> Result<Action> {
-        let input = reading.input.and_then(|input| self.input.read(input));
-        let drive = self.drive(command, input);
-        Ok(Action {
-            command,
-            drive,
-            prediction: f64::NAN,
-            status: LoopStatus::default(),
-        })
+        if !command.is_finite() {
+            return Err(hysteron_core::Error::InputNotFinite { index: 0 }.into());
+        }
+        let readings = self.read(reading);
+        Ok(self.act(command, f64::NAN, readings, LoopStatus::default()))
     }
 
     /// The model in the loop.
     #[must_use]
     pub fn compensator(&self) -> Option<&Compensator> {
         self.scheme.compensator.as_ref()
+    }
+
+    /// Output and input as filtered. Without a sensor of its own, the input is the one that was commanded.
+    fn read(&mut self, reading: Reading) -> (Option<f64>, Option<f64>) {
+        let measured = self.output.read(reading.output);
+        let input = match reading.input {
+            Some(input) => Some(input),
+            None => self.last,
+        };
+        (measured, input.and_then(|input| self.input.read(input)))
+    }
+
+    fn act(
+        &mut self,
+        command: f64,
+        prediction: f64,
+        (measured, input): (Option<f64>, Option<f64>),
+        mut status: LoopStatus,
+    ) -> Action {
+        let drive = self.drive(command, input);
+        let (low, high) = self.scheme.drives;
+        self.held = (drive <= low, drive >= high);
+        status.saturated = self.held.0 || self.held.1;
+        self.last = Some(command);
+        Action {
+            command,
+            drive,
+            prediction,
+            filtered: Reading {
+                output: measured.unwrap_or(f64::NAN),
+                input,
+            },
+            status,
+        }
     }
 
     fn command(

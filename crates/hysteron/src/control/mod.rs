@@ -4,6 +4,7 @@ mod compensator;
 mod controller;
 mod device;
 mod pid;
+mod run;
 mod trace;
 mod watch;
 
@@ -11,4 +12,5 @@ pub use compensator::Compensator;
 pub use controller::{Action, Controller, InnerLoop, Rest, Scheme, Target};
 pub use device::{Device, Disturbance, Reading, SimulatedPlant};
 pub use pid::{Gains, Pid};
+pub use run::{Course, run};
 pub use trace::{LoopStatus, Snapshot, Trace};

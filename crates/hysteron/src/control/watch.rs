@@ -1,44 +1,52 @@
 //! A sensor under watch: readings that are missing or stand still are not believed.
 
-/// Seconds that a reading may stay the same to the last bit, while others move, before it is taken as stuck.
-const STUCK_S: f64 = 2.0;
+/// Samples without a reading after which the filter starts afresh.
+const FORGET_AFTER: u32 = 10;
 
 /// Filters a sensor's readings and tells when there is none to be believed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Watch {
-    interval_s: f64,
     /// Share of the way to a new reading.
     share: f64,
-    filtered: Option<f64>,
+    /// Equal readings in a row that a sensor at work does not give.
+    most_equal: Option<u32>,
+    filtered: f64,
     last: f64,
-    same_s: f64,
+    equal: u32,
+    missing: u32,
 }
 
 impl Watch {
-    pub(super) fn new(interval_s: f64, filter_s: f64) -> Self {
+    /// A filter with the time constant `filter_s`; a reading that stays the same to the last bit for `stuck_s` is not believed.
+    pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
+        let samples = |time: f64| (time / interval_s).ceil().max(1.0) as u32;
         Self {
-            interval_s,
             share: 1.0 - (-interval_s / filter_s.max(f64::MIN_POSITIVE)).exp(),
-            filtered: None,
+            most_equal: stuck_s.map(samples),
+            filtered: f64::NAN,
             last: f64::NAN,
-            same_s: 0.0,
+            equal: 0,
+            missing: 0,
         }
     }
 
     /// The filtered reading; `None` where it is not a number, or stuck.
     pub(super) fn read(&mut self, reading: f64) -> Option<f64> {
-        if !reading.is_finite() {
+        self.equal = match reading == self.last {
+            true => self.equal.saturating_add(1),
+            false => 0,
+        };
+        self.last = reading;
+        let stuck = self.most_equal.is_some_and(|most| self.equal >= most);
+        if stuck || !reading.is_finite() {
+            self.missing = self.missing.saturating_add(1);
             return None;
         }
-        if reading == self.last {
-            self.same_s += self.interval_s;
-        } else {
-            self.same_s = 0.0;
+        if self.filtered.is_nan() || self.missing > FORGET_AFTER {
+            self.filtered = reading;
         }
-        self.last = reading;
-        let filtered = self.filtered.unwrap_or(reading);
-        let filtered = filtered + self.share * (reading - filtered);
-        self.filtered = Some(filtered);
-        (self.same_s < STUCK_S).then_some(filtered)
+        self.missing = 0;
+        self.filtered += self.share * (reading - self.filtered);
+        Some(self.filtered)
     }
 }

@@ -1,0 +1,66 @@
+//! A controller on a simulated plant, sample by sample.
+
+use super::{Controller, Disturbance, SimulatedPlant, Snapshot, Target, Trace};
+use crate::{Direction, Result};
+
+/// Snapshots of adapted weights over a run.
+const SNAPSHOTS: usize = 60;
+
+/// What happens in a run: the reference, and what acts on the plant.
+#[derive(Debug, Clone)]
+pub struct Course<'a> {
+    /// Time between samples, s.
+    pub interval_s: f64,
+    /// The reference at each sample.
+    pub reference: &'a [f64],
+    /// Where it goes next at each sample ([`crate::headings`]).
+    pub headings: &'a [Option<Direction>],
+    /// What happens before which sample, in order.
+    pub events: &'a [(usize, Disturbance)],
+}
+
+/// Runs `controller` on `plant`. The trace holds the plant's true output and input.
+///
+/// # Errors
+/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite.
+pub fn run(
+    plant: &mut dyn SimulatedPlant,
+    controller: &mut Controller,
+    course: &Course<'_>,
+) -> Result<Trace> {
+    let mut trace = Trace::default();
+    let mut events = course.events.iter().peekable();
+    let count = course.reference.len();
+    let every = count.div_ceil(SNAPSHOTS).max(1);
+    for (n, &output) in course.reference.iter().enumerate() {
+        while let Some((_, event)) = events.next_if(|(at, _)| *at <= n) {
+            plant.disturb(*event)?;
+        }
+        let truth = plant.truth();
+        let reading = plant.read();
+        let heading = course.headings.get(n).copied().flatten();
+        let action = controller.step(Target { output, heading }, reading)?;
+        plant.write(action.drive);
+        plant.advance(course.interval_s);
+
+        let time = n as f64 * course.interval_s;
+        trace.time.push(time);
+        trace.reference.push(output);
+        trace.output.push(truth.output);
+        trace.measured.push(reading.output);
+        trace.input.push(truth.input.unwrap_or(action.command));
+        trace.command.push(action.command);
+        trace.drive.push(action.drive);
+        trace.prediction.push(action.prediction);
+        trace.status.push(action.status);
+        let adapting = controller.compensator().and_then(|c| c.adapting());
+        if let (Some(adaptive), true) = (adapting, n % every == 0 || n + 1 == count) {
+            trace.snapshots.push(Snapshot {
+                time,
+                offset: adaptive.offset(),
+                weights: adaptive.weights(),
+            });
+        }
+    }
+    Ok(trace)
+}

@@ -1,0 +1,73 @@
+//! The experiment that a plant's model is identified from: the designed profile, run through the same loop and sensors.
+
+use super::scenario::Scenario;
+use crate::control::{Controller, Scheme};
+use crate::design::{DesignOptions, Rates, design};
+use crate::{FitOptions, Model, Plane, Recording, Result, fit};
+
+/// A model of the scenario's plant: from its file, or fitted to an experiment with the noise of `seed`.
+///
+/// # Errors
+/// As [`design`], [`fit`] and [`Model::read`].
+pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
+    let options = &scenario.model;
+    if let Some(file) = &options.file {
+        return Model::read(file);
+    }
+    let plane = Plane::new(options.range.0, options.range.1, options.levels)?;
+    let recording = record(scenario, scheme, &profile(scenario, plane)?, seed)?;
+    let mut model = fit(
+        &recording,
+        &FitOptions {
+            levels: options.levels,
+            range: Some(options.range),
+            smooth: options.smooth,
+            ..FitOptions::default()
+        },
+    )?;
+    let [_, input, output] = scenario.plant.quantities();
+    (model.input, model.output) = (input, output);
+    Ok(model)
+}
+
+/// The profile that determines every operator, at each sample.
+fn profile(scenario: &Scenario, plane: Plane) -> Result<Vec<f64>> {
+    let (heating, cooling) = scenario.model.rates;
+    let planned = design(
+        &DesignOptions {
+            step_s: Some(scenario.interval_s),
+            ..DesignOptions::new(plane, Rates { heating, cooling })
+        },
+        &[],
+    )?;
+    let last = planned.time.last().copied().unwrap_or(0.0);
+    let count = (last / scenario.interval_s).ceil() as usize;
+    let at = |n: usize| {
+        let time = n as f64 * scenario.interval_s;
+        let after = planned.time.partition_point(|t| *t <= time);
+        let after = after.clamp(1, planned.time.len() - 1);
+        let (t, u) = (planned.time[after - 1], planned.time[after]);
+        let (x, z) = (planned.input[after - 1], planned.input[after]);
+        x + (z - x) * ((time - t) / (u - t)).clamp(0.0, 1.0)
+    };
+    Ok((0..=count).map(at).collect())
+}
+
+fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> Result<Recording> {
+    let mut plant = scenario.plant.build(seed)?;
+    let mut controller = Controller::new(scheme.clone());
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    for &command in profile {
+        let reading = plant.read();
+        let action = controller.step_command(command, reading)?;
+        plant.write(action.drive);
+        plant.advance(scenario.interval_s);
+        if let (Some(x), y) = (action.filtered.input, action.filtered.output)
+            && y.is_finite()
+        {
+            input.push(x);
+            output.push(y);
+        }
+    }
+    Recording::new(input, output)
+}

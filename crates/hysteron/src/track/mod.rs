@@ -1,0 +1,185 @@
+//! Controllers compared on a **simulated** plant: a scenario goes in, scores and traces come out.
+
+mod identify;
+mod reference;
+mod scenario;
+mod score;
+mod tune;
+
+pub use reference::Reference;
+pub use scenario::{
+    AdaptationOptions, Event, Kind, LoopOptions, MethodName, ModelOptions, PlantOptions, Scenario,
+    Tuning,
+};
+pub use score::{Score, Window, windows};
+
+use crate::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
+use crate::{Adaptive, Model, Plane, Result, headings};
+use rayon::prelude::*;
+
+/// Time for which a reading with noise does not stay the same to the last bit, in samples.
+const STUCK_SAMPLES: f64 = 15.0;
+
+/// What a comparison came to.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// The controllers, in order.
+    pub controllers: Vec<Kind>,
+    /// The windows, in order.
+    pub windows: Vec<Window>,
+    /// Scores by controller, seed, window.
+    pub scores: Vec<Vec<Vec<Score>>>,
+    /// Each controller's run of the first seed.
+    pub traces: Vec<Trace>,
+    /// The model identified for the first seed.
+    pub model: Model,
+    /// Gains of the PID, by SIMC; none where no controller has one.
+    pub gains: Option<Gains>,
+    /// Gains of the loop inside, by SIMC; none where there is none.
+    pub inner_gains: Option<Gains>,
+}
+
+impl Comparison {
+    /// Median over the seeds of a score of a controller in a window, both by their place.
+    #[must_use]
+    pub fn median(&self, controller: usize, window: usize, of: fn(&Score) -> f64) -> f64 {
+        let runs = self.scores[controller].iter();
+        let mut values: Vec<f64> = runs
+            .map(|windows| of(&windows[window]))
+            .filter(|value| !value.is_nan())
+            .collect();
+        score::median(&mut values)
+    }
+
+    /// Median over the seeds of the ratio of two controllers' scores in a window.
+    #[must_use]
+    pub fn ratio(&self, a: Kind, b: Kind, window: usize, of: fn(&Score) -> f64) -> Option<f64> {
+        let place = |kind| self.controllers.iter().position(|k| *k == kind);
+        let (a, b) = (place(a)?, place(b)?);
+        let pairs = self.scores[a].iter().zip(&self.scores[b]);
+        let mut ratios: Vec<f64> = pairs
+            .map(|(a, b)| of(&a[window]) / of(&b[window]))
+            .collect();
+        Some(score::median(&mut ratios))
+    }
+}
+
+/// Runs every controller of the scenario with every seed. `done` is told of each finished run: how many of how many.
+///
+/// # Errors
+/// As the parts: a plant outside its physics, a model that cannot be identified, a plant that does not answer.
+pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Comparison> {
+    let mut scheme = base(scenario)?;
+    if scenario.plant.heats() {
+        scheme.inner = Some(tune::inner(scenario, &scheme)?);
+    }
+    let gains = match scenario.controllers.iter().any(|kind| kind.has_pid()) {
+        true => Some(tune::outer(scenario, &scheme)?),
+        false => None,
+    };
+    let reference = scenario.references();
+    let headings = headings(&reference, scenario.shared.tolerance);
+    let events: Vec<_> = scenario
+        .disturbance
+        .iter()
+        .flat_map(|event| {
+            let at = (event.at_s / scenario.interval_s).ceil() as usize;
+            event.disturbances().into_iter().map(move |what| (at, what))
+        })
+        .collect();
+    let course = Course {
+        interval_s: scenario.interval_s,
+        reference: &reference,
+        headings: &headings,
+        events: &events,
+    };
+    let windows = windows(scenario);
+    let total = scenario.controllers.len() * scenario.seeds as usize;
+    let finished = std::sync::atomic::AtomicUsize::new(0);
+    type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
+    let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
+        .into_par_iter()
+        .map(|seed| {
+            // Recordings and runs do not share their noise.
+            let model = identify::identify(scenario, &scheme, seed + 1_000_000)?;
+            let runs = scenario.controllers.par_iter().map(|kind| {
+                let mut plant = scenario.plant.build(seed)?;
+                let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
+                let trace = run(plant.as_mut(), &mut controller, &course)?;
+                let score = |window| Score::of(&trace, window, scheme.drives, &model);
+                let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
+                let count = finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                done(count + 1, total);
+                Ok(((seed == 1).then_some(trace), scores))
+            });
+            let runs = runs.collect::<Result<Vec<_>>>()?;
+            Ok((model, runs))
+        })
+        .collect::<Result<_>>()?;
+    let of_controller = |k: usize| seeds.iter().map(|(_, runs)| runs[k].1.clone()).collect();
+    let scores = (0..scenario.controllers.len()).map(of_controller).collect();
+    let mut seeds = seeds.into_iter();
+    let Some((model, runs)) = seeds.next() else {
+        unreachable!("a scenario has a seed at least")
+    };
+    Ok(Comparison {
+        controllers: scenario.controllers.clone(),
+        windows,
+        scores,
+        traces: runs.into_iter().filter_map(|(trace, _)| trace).collect(),
+        model,
+        gains,
+        inner_gains: scheme.inner.map(|inner| inner.gains),
+    })
+}
+
+/// What all controllers of a scenario share, without gains.
+fn base(scenario: &Scenario) -> Result<Scheme> {
+    let options = &scenario.model;
+    let plane = Plane::new(options.range.0, options.range.1, options.levels)?;
+    let truth = scenario.plant.build(1)?.truth();
+    let drives = scenario.plant.drives();
+    let commands = match scenario.plant.heats() {
+        true => (plane.bottom(), plane.max()),
+        false => drives,
+    };
+    Ok(Scheme {
+        interval_s: scenario.interval_s,
+        compensator: None,
+        rest: crate::control::Rest::Hold,
+        tolerance: scenario.shared.tolerance,
+        pid: None,
+        bias: truth
+            .input
+            .unwrap_or(drives.0)
+            .clamp(commands.0, commands.1),
+        commands,
+        drives,
+        inner: None,
+        filter_s: scenario.shared.filter_s,
+        stuck_s: Some(STUCK_SAMPLES * scenario.interval_s),
+    })
+}
+
+fn controller(
+    scenario: &Scenario,
+    scheme: &Scheme,
+    model: &Model,
+    gains: Option<Gains>,
+    kind: Kind,
+) -> Result<Controller> {
+    let compensator = match kind {
+        Kind::Pid => None,
+        _ if kind.adapts() => Some(Compensator::adaptive(Adaptive::new(
+            model,
+            scenario.adaptation.into(),
+        )?)),
+        _ => Some(Compensator::fixed(model.clone())),
+    };
+    Ok(Controller::new(Scheme {
+        compensator,
+        rest: kind.rest(),
+        pid: gains.filter(|_| kind.has_pid()),
+        ..scheme.clone()
+    }))
+}

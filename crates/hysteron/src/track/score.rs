@@ -1,0 +1,178 @@
+//! How well a run tracked its reference, by stretches of time.
+
+use super::scenario::Scenario;
+use crate::control::{Snapshot, Trace};
+use crate::{Direction, Model, Result, Turning};
+
+/// A stretch of time that errors are taken over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// What to call it.
+    pub name: String,
+    /// From when, s.
+    pub from_s: f64,
+    /// Until when, s.
+    pub to_s: f64,
+}
+
+/// What a controller did in a window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Score {
+    /// RMS of output less reference.
+    pub rmse: f64,
+    /// Largest of it.
+    pub max_abs: f64,
+    /// RMS of what the model expected, before it learned, less the output; NaN without a model.
+    pub prediction_rmse: f64,
+    /// The same with the weights as they were when the window began, and never learned since; NaN without a model.
+    pub frozen_rmse: f64,
+    /// Median delay of the output's reversals behind the reference's, s; NaN without a reversal.
+    pub lag_s: f64,
+    /// Mean change of the drive from sample to sample, as a share of its range.
+    pub drive_travel: f64,
+    /// Share of samples with the drive at a limit.
+    pub saturated: f64,
+    /// Share of samples without a reading to be believed.
+    pub faults: f64,
+}
+
+/// Share of the reference's range by which something has to go back to count as turned.
+const TURNED: f64 = 0.1;
+
+/// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
+/// settle; without disturbances the halves of the run.
+#[must_use]
+pub fn windows(scenario: &Scenario) -> Vec<Window> {
+    let window = |name: &str, from_s: f64, to_s: f64| Window {
+        name: name.into(),
+        from_s,
+        to_s,
+    };
+    let (settle, end) = (scenario.settle_s, scenario.duration_s);
+    let Some(first) = scenario.disturbance.first() else {
+        let middle = 0.5 * (settle + end);
+        return vec![
+            window("first half", settle, middle),
+            window("second half", middle, end),
+        ];
+    };
+    let mut windows = vec![window("before", settle, first.at_s)];
+    for (n, event) in scenario.disturbance.iter().enumerate() {
+        let next = scenario.disturbance.get(n + 1).map_or(end, |e| e.at_s);
+        let words = event.words();
+        windows.push(window(&format!("after {words}"), event.at_s, next));
+        let settled = event.at_s + settle;
+        if settled < next && settle > 0.0 {
+            windows.push(window(&format!("after {words}, settled"), settled, next));
+        }
+    }
+    windows.retain(|window| window.from_s < window.to_s);
+    windows
+}
+
+impl Score {
+    /// The score of a run, with a model of the same plane, in a window.
+    pub(super) fn of(
+        trace: &Trace,
+        window: &Window,
+        drives: (f64, f64),
+        model: &Model,
+    ) -> Result<Self> {
+        let inside: Vec<usize> = (0..trace.time.len())
+            .filter(|n| (window.from_s..window.to_s).contains(&trace.time[*n]))
+            .collect();
+        let share = |count: usize| count as f64 / inside.len() as f64;
+        let error = |n: &usize| trace.output[*n] - trace.reference[*n];
+        let rms = |errors: Vec<f64>| {
+            let sum: f64 = errors.iter().map(|e| e * e).sum();
+            (sum / errors.len() as f64).sqrt()
+        };
+        let expected = |n: &usize| trace.prediction[*n] - trace.output[*n];
+        let travel = inside
+            .windows(2)
+            .map(|pair| (trace.drive[pair[1]] - trace.drive[pair[0]]).abs());
+        let status = |is: fn(&crate::control::LoopStatus) -> bool| {
+            share(inside.iter().filter(|n| is(&trace.status[**n])).count())
+        };
+        let prediction_rmse = rms(inside
+            .iter()
+            .map(expected)
+            .filter(|e| e.is_finite())
+            .collect());
+        let frozen_rmse = match trace.snapshots.iter().rfind(|s| s.time <= window.from_s) {
+            Some(snapshot) => {
+                let output = free_run(trace, snapshot, model)?;
+                rms(inside
+                    .iter()
+                    .map(|n| output[*n] - trace.output[*n])
+                    .collect())
+            }
+            None => prediction_rmse,
+        };
+        Ok(Self {
+            rmse: rms(inside.iter().map(error).collect()),
+            max_abs: inside.iter().map(error).fold(0.0, |a, e| a.max(e.abs())),
+            prediction_rmse: rms(inside
+                .iter()
+                .map(expected)
+                .filter(|e| e.is_finite())
+                .collect()),
+            lag_s: lag(trace, &inside),
+            drive_travel: travel.sum::<f64>() / inside.len() as f64 / (drives.1 - drives.0),
+            saturated: status(|s| s.saturated),
+            faults: status(|s| s.sensor_fault),
+        })
+    }
+}
+
+/// What a model with the weights of `snapshot` makes of the whole run's input.
+fn free_run(trace: &Trace, snapshot: &Snapshot, model: &Model) -> Result<Vec<f64>> {
+    let (operator, plane) = (model.operator(), *model.plane());
+    let weights = snapshot.weights.clone();
+    let frozen = Model::new(operator, plane, weights, snapshot.offset, model.sign())?;
+    frozen.simulate(&trace.input)
+}
+
+/// Median over the reversals of the reference: from when the reference has gone back by [`TURNED`] of its range until the output has, from
+/// its own extreme since.
+fn lag(trace: &Trace, inside: &[usize]) -> f64 {
+    let (low, high) = crate::recording::range(&trace.reference);
+    let band = TURNED * (high - low);
+    let mut turning = Turning::new(band);
+    // Where each reversal is seen, and to where the reference then goes.
+    let mut seen: Vec<(usize, usize, Direction)> = Vec::new();
+    for &n in inside {
+        if let Some((at, heading)) = turning.push(trace.reference[n]) {
+            seen.push((inside[at], n, heading));
+        }
+    }
+    let last = inside.last().copied().unwrap_or(0);
+    let mut lags: Vec<f64> = Vec::new();
+    for (k, &(extreme, turned, heading)) in seen.iter().enumerate().skip(1) {
+        let next = seen.get(k + 1).map_or(last, |(_, n, _)| *n);
+        let up = |n: usize| match heading {
+            Direction::Rising => trace.output[n],
+            Direction::Falling => -trace.output[n],
+        };
+        let mut furthest = up(extreme);
+        let answered = (extreme..=next).find(|&n| {
+            furthest = furthest.min(up(n));
+            up(n) - furthest >= band
+        });
+        // Not at all: as late as the next reversal.
+        let answered = answered.unwrap_or(next);
+        lags.push(trace.time[answered] - trace.time[turned]);
+    }
+    median(&mut lags)
+}
+
+/// The median; NaN of nothing.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    match n {
+        0 => f64::NAN,
+        _ if n % 2 == 1 => values[n / 2],
+        _ => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
