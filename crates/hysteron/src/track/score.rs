@@ -112,11 +112,8 @@ impl Score {
         Ok(Self {
             rmse: rms(inside.iter().map(error).collect()),
             max_abs: inside.iter().map(error).fold(0.0, |a, e| a.max(e.abs())),
-            prediction_rmse: rms(inside
-                .iter()
-                .map(expected)
-                .filter(|e| e.is_finite())
-                .collect()),
+            prediction_rmse,
+            frozen_rmse,
             lag_s: lag(trace, &inside),
             drive_travel: travel.sum::<f64>() / inside.len() as f64 / (drives.1 - drives.0),
             saturated: status(|s| s.saturated),
