@@ -11,6 +11,7 @@ mod progress;
 mod recording;
 mod table;
 mod text;
+mod track;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Design(args) => design::run(&args),
+        Command::Track(args) => track::run(&args),
         Command::Demo(args) => demo::run(&args),
     };
     match done {

@@ -31,7 +31,7 @@ pub use error::ReportError;
 pub use figure::Figure;
 pub use figures::excitation_map;
 pub use report::Report;
-pub use track::{NamedTrace, TrackReport, TrackTable};
+pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};
 
 #[cfg(test)]
 mod fixture;

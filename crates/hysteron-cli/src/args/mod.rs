@@ -61,6 +61,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 -o profile.csv\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv"
     )]
     Design(Design),
+    /// Compare controllers on a simulated plant: PID, inverse, both, and an inverse that adapts
+    #[command(
+        after_help = "Examples:\n  hysteron track load-step -o load-step\n  hysteron track load-step --show > mine.toml\n  hysteron track mine.toml --seeds 5 -o mine"
+    )]
+    Track(Track),
     /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
     #[command(after_help = "Example:\n  hysteron demo -o demo")]
     Demo(Demo),
@@ -251,6 +256,27 @@ pub(crate) struct Design {
     /// Draw the plane with what is known of each operator
     #[arg(long, value_name = "SVG")]
     pub(crate) figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Track {
+    /// A TOML file, or the name of a built-in scenario
+    #[arg(required_unless_present = "list")]
+    pub(crate) scenario: Option<String>,
+    /// List the built-in scenarios
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Print the text of a built-in scenario, to start one's own from
+    #[arg(long)]
+    pub(crate) show: bool,
+    /// Runs with different noise [default: what the scenario says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) seeds: Option<u32>,
+    /// Folder for report, scores, curves of the first run, and model
+    #[arg(short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) json: Json,
 }

@@ -2,6 +2,7 @@
 
 mod before_after;
 mod captions;
+mod comparison;
 mod figure;
 mod input;
 mod page;
@@ -12,6 +13,7 @@ mod stack;
 mod view;
 mod weights_time;
 
+pub use comparison::write_comparison;
 pub use report::{NamedTrace, TrackReport, TrackTable};
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod identify;
 mod reference;
 mod scenario;
 mod score;
+mod summary;
 mod tune;
 
 pub use reference::Reference;
@@ -12,6 +13,7 @@ pub use scenario::{
     Tuning,
 };
 pub use score::{Score, Window, windows};
+pub use summary::{Median, Ratio};
 
 use crate::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
 use crate::{Adaptive, Model, Plane, Result, headings};
@@ -37,31 +39,6 @@ pub struct Comparison {
     pub gains: Option<Gains>,
     /// Gains of the loop inside, by SIMC; none where there is none.
     pub inner_gains: Option<Gains>,
-}
-
-impl Comparison {
-    /// Median over the seeds of a score of a controller in a window, both by their place.
-    #[must_use]
-    pub fn median(&self, controller: usize, window: usize, of: fn(&Score) -> f64) -> f64 {
-        let runs = self.scores[controller].iter();
-        let mut values: Vec<f64> = runs
-            .map(|windows| of(&windows[window]))
-            .filter(|value| !value.is_nan())
-            .collect();
-        score::median(&mut values)
-    }
-
-    /// Median over the seeds of the ratio of two controllers' scores in a window.
-    #[must_use]
-    pub fn ratio(&self, a: Kind, b: Kind, window: usize, of: fn(&Score) -> f64) -> Option<f64> {
-        let place = |kind| self.controllers.iter().position(|k| *k == kind);
-        let (a, b) = (place(a)?, place(b)?);
-        let pairs = self.scores[a].iter().zip(&self.scores[b]);
-        let mut ratios: Vec<f64> = pairs
-            .map(|(a, b)| of(&a[window]) / of(&b[window]))
-            .collect();
-        Some(score::median(&mut ratios))
-    }
 }
 
 /// Runs every controller of the scenario with every seed. `done` is told of each finished run: how many of how many.

@@ -261,6 +261,20 @@ impl Kind {
         }
     }
 
+    /// Its name in a scenario.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pid => "pid",
+            Self::Inverse => "inverse",
+            Self::InverseAnticipate => "inverse-anticipate",
+            Self::InversePid => "inverse-pid",
+            Self::InversePidAnticipate => "inverse-pid-anticipate",
+            Self::AdaptivePid => "adaptive-pid",
+            Self::AdaptivePidAnticipate => "adaptive-pid-anticipate",
+        }
+    }
+
     pub(super) fn has_pid(self) -> bool {
         !matches!(self, Self::Inverse | Self::InverseAnticipate)
     }

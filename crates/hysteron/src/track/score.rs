@@ -3,6 +3,7 @@
 use super::scenario::Scenario;
 use crate::control::{Snapshot, Trace};
 use crate::{Direction, Model, Result, Turning};
+use serde::Serialize;
 
 /// A stretch of time that errors are taken over.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +17,7 @@ pub struct Window {
 }
 
 /// What a controller did in a window.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Score {
     /// RMS of output less reference.
     pub rmse: f64,

@@ -1,0 +1,147 @@
+//! `hysteron track`
+
+use crate::{Result, args, print, progress, text};
+use hysteron::track::{Comparison, Scenario, track};
+use hysteron::{AtomicFile, Quantity};
+use serde_json::json;
+use std::path::Path;
+
+pub(crate) fn run(args: &args::Track) -> Result<()> {
+    if args.list {
+        return print(&Scenario::names().join("\n"));
+    }
+    let name = args.scenario.as_deref().unwrap_or_default();
+    if args.show {
+        let text = Scenario::text(name).ok_or_else(|| {
+            let names = Scenario::names().join(", ");
+            format!("`{name}` is no built-in scenario: {names}")
+        })?;
+        return print(text.trim_end());
+    }
+    let mut scenario = Scenario::load(name)?;
+    if let Some(seeds) = args.seeds {
+        scenario.seeds = seeds;
+    }
+    let bar = progress::stages();
+    let comparison = track(&scenario, &|done, all| {
+        progress::stage(&bar, "runs", done as f64 / all as f64);
+    });
+    bar.finish_and_clear();
+    let comparison = comparison?;
+    if let Some(folder) = &args.out {
+        write(&scenario, &comparison, folder)?;
+    }
+    if args.json.json {
+        return print(&to_json(&scenario, &comparison).to_string());
+    }
+    print(&to_text(&scenario, &comparison))
+}
+
+fn write(scenario: &Scenario, comparison: &Comparison, folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|source| hysteron::Error::File {
+        path: folder.into(),
+        source,
+    })?;
+    comparison.write_scores(&folder.join("scores.csv"))?;
+    comparison.model.write(&folder.join("model.json"))?;
+    for (kind, trace) in comparison.controllers.iter().zip(&comparison.traces) {
+        trace.write_csv(&folder.join(format!("{}.csv", kind.name())))?;
+    }
+    let summary = to_json(scenario, comparison).to_string();
+    AtomicFile::write_all(&folder.join("summary.json"), summary.as_bytes())?;
+    let report = folder.join("report");
+    hysteron_report::write_comparison(scenario, comparison, &report)?;
+    eprintln!(
+        "hysteron: the report is {}",
+        report.join("index.html").display()
+    );
+    Ok(())
+}
+
+fn to_json(scenario: &Scenario, comparison: &Comparison) -> serde_json::Value {
+    json!({
+        "title": scenario.title,
+        "simulated": true,
+        "seeds": scenario.seeds,
+        "pid": comparison.gains,
+        "inner_loop": comparison.inner_gains,
+        "medians": comparison.medians(),
+        "ratios": comparison.ratios(),
+    })
+}
+
+fn to_text(scenario: &Scenario, comparison: &Comparison) -> String {
+    let [_, _, output] = scenario.plant.quantities();
+    let mut parts = vec![format!(
+        "{}\nmedians over {} run(s) on a simulated plant",
+        scenario.title, scenario.seeds
+    )];
+    let medians = comparison.medians();
+    let of_windows = medians.chunks(comparison.controllers.len());
+    for (window, medians) in comparison.windows.iter().zip(of_windows) {
+        let head = format!("{} ({} to {} s)", window.name, window.from_s, window.to_s);
+        let mut rows = vec![text::row([
+            head.as_str(),
+            "RMSE",
+            "largest",
+            "prediction",
+            "frozen",
+            "lag",
+            "drive travel",
+            "saturated",
+        ])];
+        rows.extend(medians.iter().map(|median| {
+            let score = &median.score;
+            let second = Quantity::with_unit("lag", "s");
+            vec![
+                median.controller.to_owned(),
+                number(score.rmse, &output),
+                number(score.max_abs, &output),
+                number(score.prediction_rmse, &output),
+                number(score.frozen_rmse, &output),
+                number(score.lag_s, &second),
+                format!("{:.1} %", 100.0 * score.drive_travel),
+                format!("{:.0} %", 100.0 * score.saturated),
+            ]
+        }));
+        parts.push(text::table(&rows));
+    }
+    let ratios = comparison.ratios();
+    if !ratios.is_empty() {
+        let mut rows = vec![text::row([
+            "ratios, medians over the runs",
+            "RMSE",
+            "prediction",
+        ])];
+        rows.extend(ratios.iter().map(|ratio| {
+            vec![
+                format!(
+                    "{}: {} / {}",
+                    ratio.window, ratio.controller, ratio.compared_with
+                ),
+                text::number(ratio.rmse),
+                match ratio.prediction_rmse.is_nan() {
+                    true => "–".into(),
+                    false => text::number(ratio.prediction_rmse),
+                },
+            ]
+        }));
+        parts.push(text::table(&rows));
+    }
+    if let Some(gains) = &comparison.gains {
+        parts.push(format!(
+            "PID: gain {}, integral time {} s, derivative time {} s",
+            text::number(gains.gain),
+            text::number(gains.integral_s),
+            text::number(gains.derivative_s)
+        ));
+    }
+    parts.join("\n\n")
+}
+
+fn number(value: f64, quantity: &Quantity) -> String {
+    match value.is_nan() {
+        true => "–".into(),
+        false => text::with_unit(value, quantity),
+    }
+}

@@ -1,0 +1,85 @@
+//! The report of a comparison that the library made of a scenario.
+
+use super::report::{NamedTrace, TrackReport, TrackTable};
+use crate::error::ReportError;
+use crate::number::significant;
+use hysteron::Quantity;
+use hysteron::track::{Comparison, Median, Scenario};
+use std::path::{Path, PathBuf};
+
+/// Writes the report of `comparison`, which `scenario` gave, into `dir`. See [`TrackReport::write`].
+///
+/// # Errors
+/// As [`TrackReport::write`].
+pub fn write_comparison(
+    scenario: &Scenario,
+    comparison: &Comparison,
+    dir: &Path,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let [drive, input, output] = scenario.plant.quantities();
+    let runs = comparison.controllers.iter().zip(&comparison.traces);
+    let runs: Vec<NamedTrace<'_>> = runs
+        .map(|(kind, trace)| NamedTrace {
+            name: kind.words(),
+            trace,
+        })
+        .collect();
+    let events = scenario.disturbance.iter();
+    let events: Vec<(f64, String)> = events.map(|event| (event.at_s, event.words())).collect();
+    let table = table(scenario, comparison, &output);
+    TrackReport {
+        title: &scenario.title,
+        simulated: true,
+        input,
+        output,
+        drive,
+        runs: &runs,
+        events: &events,
+        table: &table,
+        plane: comparison.model.plane(),
+    }
+    .write(dir)
+}
+
+/// Tracking errors in every window; prediction error and lag in the first and the last.
+fn table(scenario: &Scenario, comparison: &Comparison, output: &Quantity) -> TrackTable {
+    let medians = comparison.medians();
+    let names: Vec<&str> = comparison.windows.iter().map(|w| w.name.as_str()).collect();
+    let ends = [0, names.len() - 1];
+    let unit = match &output.unit {
+        Some(unit) => format!(" [{unit}]"),
+        None => String::new(),
+    };
+    let mut headers: Vec<String> = names.iter().map(|w| format!("RMSE {w}{unit}")).collect();
+    headers.extend(ends.map(|w| format!("prediction RMSE {}{unit}", names[w])));
+    headers.extend(ends.map(|w| format!("lag after reversals {} [s]", names[w])));
+    let row = |k: usize| {
+        let at = |w: usize| &medians[w * comparison.controllers.len() + k];
+        let number = |w: usize, of: fn(&Median) -> f64| Some(of(at(w))).filter(|v| !v.is_nan());
+        let mut cells: Vec<_> = (0..names.len())
+            .map(|w| number(w, |m| m.score.rmse))
+            .collect();
+        cells.extend(ends.map(|w| number(w, |m| m.score.prediction_rmse)));
+        cells.extend(ends.map(|w| number(w, |m| m.score.lag_s)));
+        (comparison.controllers[k].words().to_owned(), cells)
+    };
+    let mut notes = vec![format!(
+        "Medians over {} runs with different noise, each with a model identified from a recording of its own; the curves are those of the first. \
+         Lag: from when the reference has gone back by a tenth of its range until the output has.",
+        scenario.seeds
+    )];
+    notes.extend(comparison.ratios().iter().map(|ratio| {
+        format!(
+            "{}: {} has {} times the RMSE of {}.",
+            ratio.window,
+            ratio.controller,
+            significant(ratio.rmse, 2),
+            ratio.compared_with
+        )
+    }));
+    TrackTable {
+        headers,
+        rows: (0..comparison.controllers.len()).map(row).collect(),
+        notes,
+    }
+}
