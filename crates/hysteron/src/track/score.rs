@@ -40,7 +40,7 @@ pub struct Score {
 }
 
 /// Share of the reference's range by which something has to go back to count as turned.
-const TURNED: f64 = 0.1;
+const TURNED: f64 = 0.05;
 
 /// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
 /// settle; without disturbances the halves of the run.
