@@ -39,6 +39,8 @@ pub(super) struct Slices<'a, T> {
     pub(super) offline: &'a mut [T],
     /// The last good ones.
     pub(super) good: &'a mut [T],
+    /// Those on trial to become the good ones.
+    pub(super) candidate: &'a mut [T],
     /// The regressor: the derivative of the output with respect to each parameter.
     pub(super) phi: &'a mut [T],
     /// The operators' states; empty with parts.
@@ -97,7 +99,7 @@ impl Layout {
     }
 
     pub(super) const fn len(self) -> usize {
-        4 * self.parameters
+        5 * self.parameters
             + self.gamma
             + self.anchor
             + 2 * self.covariance
@@ -117,6 +119,7 @@ impl Layout {
             theta: next(self.parameters),
             offline: next(self.parameters),
             good: next(self.parameters),
+            candidate: next(self.parameters),
             phi: next(self.parameters),
             gamma: next(self.gamma),
             anchor: next(self.anchor),
