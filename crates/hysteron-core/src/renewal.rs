@@ -35,8 +35,9 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
     /// Writes the whole table anew: `row(p, above, row)` gives row `p` from the one above it. The weights that this
     /// makes must not be negative; where they may overflow, [`Model::is_finite`] tells.
     pub(crate) fn rewrite(&mut self, mut row: impl FnMut(usize, &[T], &mut [T])) {
+        let levels = self.plane().levels();
         let table = &mut self.table.as_mut()[self.base..];
-        for p in 1..=self.plane().levels() {
+        for p in 1..=levels {
             let (above, here) = everett::rows(table, p);
             row(p, above, here);
         }
