@@ -106,3 +106,79 @@ fn multiply<T: Real>(a: &[T], x: &[T], out: &mut [T]) {
         out[n] = row[n] * x[n] + dot_and_add(&row[..n], &x[..n], x[n], &mut out[..n]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::memory::Layout;
+    use super::super::{Method, parameters};
+    use super::*;
+    use crate::operator_count;
+
+    const LEVELS: usize = 4;
+    const N: usize = operator_count(LEVELS) + 1;
+    const METHOD: Method<f64> = Method::LeastSquares {
+        forgetting: 0.95,
+        noise: 0.01,
+        spread: 2.0,
+        correlation: 2.0,
+    };
+    const LAYOUT: Layout = Layout::all(LEVELS, METHOD);
+
+    /// Whether a symmetric matrix is positive definite (Cholesky).
+    fn is_positive(at: impl Fn(usize, usize) -> f64) -> bool {
+        let mut lower = [[0.0; N]; N];
+        for a in 0..N {
+            for b in 0..=a {
+                let known: f64 = (0..b).map(|k| lower[a][k] * lower[b][k]).sum();
+                let rest = at(a, b) - known;
+                // Written so that NaN fails it.
+                if a == b && (rest <= 0.0 || rest.is_nan()) {
+                    return false;
+                }
+                lower[a][b] = if a == b {
+                    // A root by Newton's method: the core has none.
+                    (0..60).fold(rest.max(1.0), |root, _| (root + rest / root) / 2.0)
+                } else {
+                    rest / lower[b][b]
+                };
+            }
+        }
+        true
+    }
+
+    #[test]
+    fn the_covariance_stays_positive_and_never_exceeds_the_start() {
+        let mut memory = [0.0; LAYOUT.len()];
+        let mut slices = LAYOUT.cut(&mut memory);
+        parameters::start_covariance(&mut slices, LEVELS, METHOD);
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 40) as f64 / (1 << 24) as f64
+        };
+        for n in 0..20_000 {
+            // All directions, one alone, and none but the offset.
+            let kind = n / 1000 % 3;
+            for (k, phi) in slices.phi.iter_mut().enumerate() {
+                *phi = match kind {
+                    0 => random(),
+                    1 => f64::from(k == n % N),
+                    _ => f64::from(k == N - 1),
+                };
+            }
+            let law = Law {
+                forgetting: if n < 10_000 { 0.95 } else { 1.0 },
+                variance: 1e-4,
+            };
+            law.update(&mut slices, random() - 0.5, 0.0);
+            if n % 97 == 0 {
+                let (now, start) = (&*slices.covariance, &*slices.start);
+                assert!(is_positive(|a, b| now[packed(a, b)]), "after {n}");
+                // By no more than rounding.
+                let slack = |a, b| if a == b { 1e-9 } else { 0.0 };
+                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + slack(a, b);
+                assert!(is_positive(below), "after {n}");
+            }
+        }
+    }
+}

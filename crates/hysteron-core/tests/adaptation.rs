@@ -1,0 +1,353 @@
+//! Weights that change from sample to sample: the fast paths stay exact, and the guards hold.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{
+    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, inputs, levels,
+    options, plane, rng, strokes, weights,
+};
+use hysteron_core::{
+    Adaptation, Definition, Method, Operator, Outcome, Plane, Policy, Status, operator_count,
+    operator_index,
+};
+use rand::{Rng, RngExt};
+
+/// Most levels that a test of this method bears: least squares is `O(K⁴)`.
+fn most(method: Method<f64>) -> usize {
+    match method {
+        Method::LeastSquares { .. } => 9,
+        _ => 60,
+    }
+}
+
+fn total(weights: &[f64]) -> f64 {
+    weights.iter().sum()
+}
+
+/// `Σ μ γ` of the definition's states, with the operators' own outputs.
+fn sum(operator: Operator, weights: &[f64], states: &[f64]) -> f64 {
+    let each = weights.iter().zip(states);
+    each.map(|(mu, gamma)| mu * operator.output(*gamma)).sum()
+}
+
+#[test]
+fn the_fast_paths_stay_exact_while_weights_change() {
+    let (mut forward, mut back) = (0.0_f64, 0.0_f64);
+    for seed in 0..120 {
+        let mut rng = rng(seed);
+        let method = METHODS[seed as usize % 3];
+        let operator = OPERATORS[seed as usize / 3 % 3];
+        let k = levels(&mut rng, most(method));
+        let plane = plane(&mut rng, k);
+        let offline = weights(&mut rng, k);
+        let plant = weights(&mut rng, k);
+        let mut learner = Learner::new(plane, operator, &offline, options(method));
+        let mut states = vec![0.0; plane.operators()];
+        let mut definition = Definition::new(plane, operator, &plant, &mut states).unwrap();
+        // For the method on increments: the weights that each row of the table in the making was given.
+        let mut making = offline.clone();
+        let mut acting = offline.clone();
+        let (mut row, mut due) = (1, 0);
+        for (n, input) in inputs(&mut rng, &plane, 1500).into_iter().enumerate() {
+            let measured = definition.step(input).unwrap() + rng.random_range(-0.1..0.1);
+            let offset = learner.estimator.offset();
+            let expected = sum(operator, &acting, definition.states()) + offset;
+            let size = total(&acting) + offset.abs() + 1e-9;
+            let learning = learner.step(input, measured).unwrap();
+            // Rounding of some thousand terms, as where weights stand still.
+            let worst = (learning.output - expected).abs() / size;
+            assert!(worst <= 1e-12, "seed {seed}, {n}, {method:?}: {worst:e}");
+            forward = forward.max(worst);
+
+            let now = learner.estimator.parameters();
+            assert!(now.iter().all(|weight| *weight >= 0.0));
+            let found = learner.model.output(&learner.state);
+            if matches!(method, Method::Increments { .. }) {
+                if matches!(learning.outcome, Outcome::Learned | Outcome::RolledBack) {
+                    due = 2 * k;
+                }
+                if due > 0 {
+                    due -= 1;
+                    let j = operator_index(1, row)..operator_index(1, row + 1);
+                    making[j.clone()].copy_from_slice(&now[j]);
+                    row = row % k + 1;
+                    if row == 1 {
+                        // Not before the table is whole does the model change.
+                        acting.copy_from_slice(&making);
+                    }
+                }
+            } else {
+                acting.copy_from_slice(now);
+            }
+            let after = sum(operator, &acting, definition.states());
+            assert!((found - after).abs() <= 1e-12 * (total(&acting) + 1e-9));
+            if n % 50 == 0 {
+                back = back.max(round_trip(&learner, &mut rng));
+            }
+        }
+    }
+    println!("adapted model against definition: largest relative difference {forward:.1e}");
+    println!("|H(H⁻¹(y)) − y| / range while weights change: largest {back:.1e}");
+}
+
+/// `|H(H⁻¹(y)) − y|` for some targets, in ranges of the output.
+fn round_trip(learner: &Learner, rng: &mut impl Rng) -> f64 {
+    let model = &learner.model;
+    let (low, high) = model.output_range();
+    if model.operator() == Operator::Relay || high <= low {
+        return 0.0; // relays move in jumps
+    }
+    let mut worst = 0.0_f64;
+    for _ in 0..4 {
+        let target = rng.random_range(low..=high);
+        let mut there = learner.state.clone();
+        let inverse = model.inverse().unwrap();
+        let solution = inverse.step(&mut there, target, Policy::HOLD).unwrap();
+        assert_eq!(solution.status, Status::Ok);
+        let mut apart = learner.state.clone();
+        let reached = model.step(&mut apart, solution.input).unwrap().output;
+        worst = worst.max((reached - target).abs() / (high - low));
+    }
+    assert!(worst <= 1e-12, "{worst:e}");
+    worst
+}
+
+#[test]
+fn a_lagging_table_comes_to_the_weights() {
+    for seed in 0..30 {
+        let mut rng = rng(700 + seed);
+        let k = levels(&mut rng, 60);
+        let plane = plane(&mut rng, k);
+        let offline = weights(&mut rng, k);
+        let (plant, mut there) = build(plane, Operator::Mkp, &weights(&mut rng, k));
+        let mut learner = Learner::new(plane, Operator::Mkp, &offline, options(INCREMENTS));
+        let inputs = inputs(&mut rng, &plane, 500);
+        for &input in &inputs {
+            let measured = plant.step(&mut there, input).unwrap().output;
+            learner.step(input, measured).unwrap();
+        }
+        let last = inputs[499];
+        for _ in 0..2 * k {
+            learner.step(last, 0.0).unwrap();
+        }
+        let now = learner.estimator.parameters().to_vec();
+        let (fresh, mut state) = build(plane, Operator::Mkp, &now);
+        for input in inputs {
+            fresh.step(&mut state, input).unwrap();
+        }
+        let found = learner.model.output(&learner.state);
+        assert!((found - fresh.output(&state)).abs() <= 1e-12 * (total(&now) + 1e-9));
+        let same = learner.model.clone();
+        learner.step(last, 0.0).unwrap();
+        assert_eq!(
+            learner.model, same,
+            "nothing is renewed where nothing was learned"
+        );
+    }
+}
+
+#[test]
+fn rebasing_equals_restoring() {
+    for seed in 0..200 {
+        let mut rng = rng(1300 + seed);
+        let k = levels(&mut rng, 60);
+        let plane = plane(&mut rng, k);
+        let operator = OPERATORS[rng.random_range(0..3)];
+        let (mut model, mut state) = build(plane, operator, &weights(&mut rng, k));
+        for input in inputs(&mut rng, &plane, 400) {
+            model.step(&mut state, input).unwrap();
+        }
+        model.set_weights(&weights(&mut rng, k)).unwrap();
+        assert!(
+            model.step(&mut state, 0.0).is_err(),
+            "an old state is refused"
+        );
+        let saved: Vec<f64> = state.turning_points().collect();
+        let mut restored = state.clone();
+        model.restore(&mut restored, &saved, state.input()).unwrap();
+        model.rebase(&mut state).unwrap();
+        assert_eq!(state.turning_points().collect::<Vec<_>>(), saved);
+        let scale = model.output_range().1.abs() + 1e-9;
+        for input in inputs(&mut rng, &plane, 400) {
+            let one = model.step(&mut state, input).unwrap().output;
+            let other = model.step(&mut restored, input).unwrap().output;
+            assert!(
+                (one - other).abs() <= 1e-13 * scale,
+                "seed {seed}: {one} {other}"
+            );
+        }
+    }
+}
+
+#[test]
+fn it_learns_along_the_states_of_the_operators() {
+    for seed in 0..60 {
+        let mut rng = rng(2000 + seed);
+        let k = levels(&mut rng, 30);
+        let plane = plane(&mut rng, k);
+        let operator = OPERATORS[seed as usize % 3];
+        // So large that no weight comes near zero.
+        let offline = vec![100.0; operator_count(k)];
+        let mut learner = Learner::new(plane, operator, &offline, options(GRADIENT));
+        for (n, input) in inputs(&mut rng, &plane, 600).into_iter().enumerate() {
+            if n % 100 == 99 {
+                // Others may move the state.
+                learner.model.step(&mut learner.state, plane.max()).unwrap();
+                learner
+                    .model
+                    .step(&mut learner.state, plane.level(1))
+                    .unwrap();
+            }
+            let before = learner.estimator.parameters().to_vec();
+            let offset = learner.estimator.offset();
+            let (model, state) = (&learner.model, &mut learner.state.clone());
+            let output = model.step(state, input).unwrap().output;
+            let error = rng.random_range(-1.0..1.0);
+            let outcome = learner
+                .step(input, output + offset + error)
+                .unwrap()
+                .outcome;
+            // The offset's own regressor is 1: its change is the step of all.
+            let step = learner.estimator.offset() - offset;
+            assert_eq!(outcome == Outcome::Learned, step != 0.0);
+            for j in 1..=k {
+                for i in 1..=j {
+                    let n = operator_index(i, j);
+                    let moved = learner.estimator.parameters()[n] - before[n];
+                    let phi = operator.output(learner.state.gamma(i, j).unwrap());
+                    // Rounding of a weight of about 100.
+                    assert!((moved - step * phi).abs() <= 1e-12, "operator ({i}, {j})");
+                }
+            }
+        }
+    }
+}
+
+/// A learner that has been over the plane, and an input within it to rest at.
+fn at_rest(method: Method<f64>, guards: Adaptation<f64>) -> (Learner, Vec<f64>, f64) {
+    let k = 8;
+    let plane = Plane::new(20.0, 80.0, k).unwrap();
+    let mut rng = rng(5);
+    let offline = vec![1.0; operator_count(k)];
+    let (plant, mut there) = build(plane, Operator::Mkp, &weights(&mut rng, k));
+    let guards = Adaptation { method, ..guards };
+    let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+    for input in strokes(&mut rng, &plane, 2000, 40) {
+        let measured = plant.step(&mut there, input).unwrap().output;
+        learner.step(input, measured).unwrap();
+    }
+    learner.step(50.0, 10.0).unwrap();
+    learner.step(50.0, 10.0).unwrap();
+    for _ in 0..2 * k {
+        learner.step(50.0, 10.0).unwrap();
+    }
+    let kept = learner.estimator.parameters().to_vec();
+    (learner, kept, 50.0)
+}
+
+#[test]
+fn no_drift_under_noise_without_excitation() {
+    for method in METHODS {
+        let mut rng = rng(6);
+        let (mut learner, kept, rest) = at_rest(method, Adaptation::default());
+        let offset = learner.estimator.offset();
+        // Half of `movement` to each side, in levels.
+        let half = 0.4999 * learner.estimator.options().movement * learner.model.plane().step();
+        for n in 0..1_000_000 {
+            let noise = if n < 500_000 { 0.0 } else { half };
+            let input = rest + noise * rng.random_range(-1.0..=1.0);
+            let learning = learner.step(input, rng.random_range(-30.0..30.0)).unwrap();
+            assert_ne!(learning.outcome, Outcome::Learned, "{method:?}, {n}");
+        }
+        assert_eq!(learner.estimator.parameters(), kept, "{method:?}");
+        assert_eq!(learner.estimator.offset(), offset);
+    }
+}
+
+#[test]
+fn noise_within_the_dead_zone_teaches_nothing() {
+    for method in METHODS {
+        let mut rng = rng(7);
+        let k = 8;
+        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let offline = weights(&mut rng, k);
+        let (plant, mut there) = build(plane, Operator::Mkp, &offline);
+        let guards = Adaptation {
+            dead_zone: 0.2,
+            leakage: 0.1,
+            ..options(method)
+        };
+        let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+        for input in strokes(&mut rng, &plane, 100_000, 40) {
+            // An increment has the noise of two readings.
+            let noise = rng.random_range(-0.0999..0.0999);
+            let measured = plant.step(&mut there, input).unwrap().output + noise;
+            assert_ne!(
+                learner.step(input, measured).unwrap().outcome,
+                Outcome::Learned
+            );
+        }
+        assert_eq!(learner.estimator.parameters(), offline, "{method:?}");
+        assert_eq!(learner.estimator.offset(), 0.0);
+    }
+}
+
+#[test]
+fn weights_of_zero_are_not_left_to_the_negative_side() {
+    for method in METHODS {
+        for operator in OPERATORS {
+            let mut rng = rng(8);
+            let k = most(method).min(12);
+            let plane = Plane::new(20.0, 80.0, k).unwrap();
+            let offline = vec![0.3; operator_count(k)];
+            let mut learner = Learner::new(plane, operator, &offline, options(method));
+            let mut zeros = 0;
+            for input in strokes(&mut rng, &plane, 20_000, 40) {
+                learner.step(input, rng.random_range(-1.0..1.0)).unwrap();
+                let weights = learner.estimator.parameters();
+                assert!(weights.iter().all(|weight| *weight >= 0.0));
+                zeros += weights.iter().filter(|weight| **weight == 0.0).count();
+                assert!(learner.model.inverse().is_ok());
+            }
+            assert!(
+                zeros > 0,
+                "the projection was at work: {method:?}, {operator:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn leakage_leads_back_to_the_offline_weights() {
+    for method in [GRADIENT, LEAST_SQUARES] {
+        let mut rng = rng(9);
+        let k = 6;
+        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let offline = weights(&mut rng, k);
+        let (plant, mut there) = build(plane, Operator::Mkp, &offline);
+        let guards = Adaptation {
+            leakage: 0.01,
+            trial: u32::MAX,
+            ..options(method)
+        };
+        let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+        let mut away = 0.0;
+        for (n, input) in strokes(&mut rng, &plane, 20_000, 40)
+            .into_iter()
+            .enumerate()
+        {
+            let factor = if n < 2000 { 3.0 } else { 1.0 };
+            let measured = factor * plant.step(&mut there, input).unwrap().output;
+            learner.step(input, measured).unwrap();
+            let difference = learner.estimator.parameters().iter().zip(&offline);
+            let largest = difference.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            if n == 1999 {
+                away = largest;
+            } else if n == 19_999 {
+                assert!(largest < 1e-6 * away, "{method:?}: {largest} after {away}");
+            }
+        }
+        assert!(away > 0.1);
+    }
+}
