@@ -3,7 +3,7 @@
 use super::increments::Increment;
 use super::memory::{Layout, Slices};
 use super::trial::Trial;
-use super::{Adaptation, Learning, Method, Outcome, operators, parameters, trial};
+use super::{Adaptation, Learning, Method, Outcome, operators, parameters};
 use crate::branch::Place;
 use crate::everett;
 use crate::state::{State, Turn};
@@ -57,6 +57,8 @@ pub struct Estimator<T, M> {
     /// Rows of the table that do not have the present weights yet, where it is renewed row by row.
     pub(super) rows_due: usize,
     pub(super) trial: Trial<T>,
+    /// That of the offset alone, where it is learned apart.
+    pub(super) level: Trial<T>,
     pub(super) frozen: bool,
 }
 
@@ -96,15 +98,17 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         let from = state.position();
         let output = model.step(state, input)?;
         self.follow(from, state);
-        let expected = output.output + self.offset();
-        let error = measured - expected;
+        let above = measured - output.output;
+        let offset = self.offset();
+        let error = above - offset;
         let moved = self.moves(state.position());
         let outcome = if self.frozen {
             Outcome::Frozen
         } else {
             match self.options.method {
                 Method::Increments { gain, span } => {
-                    self.learn_increment(state.position(), moved, measured, error, (gain, span))
+                    let position = (state.position(), moved);
+                    self.learn_increment(position, (measured, above), (gain, span))
                 }
                 _ if moved => self.learn(state, measured, error),
                 _ => Outcome::AtRest,
@@ -115,7 +119,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             model.rebase(state)?;
         }
         Ok(Learning {
-            output: expected,
+            output: output.output + offset,
             error,
             outcome,
             clipped: output.clipped,
@@ -154,8 +158,9 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
 
     /// Takes the present weights as the last good ones.
     pub fn keep(&mut self) {
-        trial::keep(&mut self.slices());
-        self.trial = Trial::default();
+        let all = 0..self.layout.parameters;
+        self.slices().contest(all).keep();
+        (self.trial, self.level) = (Trial::default(), Trial::default());
     }
 
     /// Goes back to the last good weights.
@@ -221,41 +226,40 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         model: &mut Model<T, C>,
         outcome: Outcome,
     ) -> (Outcome, bool) {
-        let changed = matches!(outcome, Outcome::Learned | Outcome::RolledBack);
-        if matches!(self.options.method, Method::Increments { .. }) {
-            return self.renew_row(model, outcome, changed);
+        let by_rows = matches!(self.options.method, Method::Increments { .. });
+        let sound = match outcome {
+            Outcome::RolledBack => false,
+            Outcome::Learned if by_rows => {
+                // What is left of the pass under way, at most, and a whole one.
+                self.rows_due = 2 * self.levels;
+                true
+            }
+            Outcome::Learned => {
+                self.rewrite(model);
+                let sound = model.is_finite() && self.offset().is_finite();
+                if !sound {
+                    self.take_back();
+                }
+                sound
+            }
+            _ if self.rows_due == 0 => return (outcome, false),
+            _ => true,
+        };
+        if !sound {
+            self.rewrite(model);
+            return (Outcome::RolledBack, true);
         }
-        if !changed {
-            return (outcome, false);
-        }
-        self.rewrite(model);
-        if model.is_finite() && self.offset().is_finite() {
+        if !by_rows {
             return (outcome, true);
-        }
-        self.roll_back(model);
-        (Outcome::RolledBack, true)
-    }
-
-    fn renew_row<C: AsRef<[T]> + AsMut<[T]>>(
-        &mut self,
-        model: &mut Model<T, C>,
-        outcome: Outcome,
-        changed: bool,
-    ) -> (Outcome, bool) {
-        if changed {
-            // What is left of the pass under way, at most, and a whole one.
-            self.rows_due = 2 * self.levels;
-        }
-        if self.rows_due == 0 {
-            return (outcome, false);
         }
         self.rows_due -= 1;
         let weights = &*self.slices().theta;
         match model.renew_row(|p, above, row| everett::fill_row(p, weights, above, row)) {
-            Ok(renewed) => (outcome, renewed),
+            Ok(changed) => (outcome, changed),
             Err(_) => {
                 self.take_back();
-                (Outcome::RolledBack, false)
+                self.rewrite(model);
+                (Outcome::RolledBack, true)
             }
         }
     }
@@ -263,5 +267,6 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     pub(super) fn rewrite<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
         let levels = self.levels;
         parameters::rewrite(&self.slices(), levels, model);
+        self.rows_due = 0;
     }
 }

@@ -3,7 +3,7 @@
 use super::estimator::Estimator;
 use super::increments::Increment;
 use super::least_squares::{self, Law};
-use super::trial::{self, Errors, Trial};
+use super::trial::{Errors, Trial};
 use super::vector::dot;
 use super::{Method, gradient, parameters};
 use crate::plane::operator_count;
@@ -39,17 +39,11 @@ pub enum Outcome {
 }
 
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// What an error beyond the dead zone counts.
-    fn beyond(&self, error: T) -> T {
-        let zone = self.options.dead_zone;
-        error - error.limited(-zone, zone)
-    }
-
     pub(super) fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        let counted = self.beyond(error);
+        let counted = self.options.beyond(error);
         let (options, floor) = (self.options, self.floor);
         let mut slices = self.layout.cut(self.memory.as_mut());
         let share = options.offset_share;
@@ -60,9 +54,10 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             candidate: rest - dot(slices.candidate, slices.phi),
             good: rest - dot(slices.good, slices.phi),
         };
+        let mut contest = slices.contest(0..self.layout.parameters);
         let length = options.trial;
-        if self.trial.judge(&mut slices, errors, measured, length) {
-            self.take_back();
+        if self.trial.judge(&mut contest, errors, measured, length) {
+            slices.covariance.copy_from_slice(slices.start);
             return Outcome::RolledBack;
         }
         if counted == T::ZERO {
@@ -87,71 +82,84 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         Outcome::Learned
     }
 
+    /// `above` is what was measured above `H`.
     pub(super) fn learn_increment(
         &mut self,
-        position: T,
-        moved: bool,
-        measured: T,
-        error: T,
+        (position, moved): (T, bool),
+        (measured, above): (T, T),
         (gain, span): (T, T),
     ) -> Outcome {
-        let (operator, levels, options) = (self.operator, self.levels, self.options);
-        if moved {
-            self.learn_level(error, gain);
+        let wrong_level = moved && self.learn_level(measured, above, gain);
+        match self.learn_slope(position, measured, (gain, span)) {
+            _ if wrong_level => Outcome::RolledBack,
+            Outcome::Waiting if !moved => Outcome::AtRest,
+            outcome => outcome,
         }
-        let start = Some(Increment::start(measured, position));
+    }
+
+    fn learn_slope(&mut self, position: T, measured: T, (gain, span): (T, T)) -> Outcome {
+        let (operator, levels, options) = (self.operator, self.levels, self.options);
+        let start = Increment::start(measured, position);
         let mut slices = self.layout.cut(self.memory.as_mut());
-        let Some(increment) = &mut self.increment else {
+        let Some(mut increment) = self.increment else {
             slices.anchor.copy_from_slice(slices.gamma);
-            self.increment = start;
+            self.increment = Some(start);
             return Outcome::Waiting;
         };
         if !increment.extend(position, span.larger(options.movement)) {
-            return if moved {
-                Outcome::Waiting
-            } else {
-                Outcome::AtRest
-            };
+            self.increment = Some(increment);
+            return Outcome::Waiting;
         }
+        self.increment = Some(start);
         let finished = increment.finish(&slices, operator, levels, measured);
-        self.increment = start;
-        let worse = self
-            .trial
-            .judge(&mut slices, finished.errors, measured, options.trial);
-        let zone = options.dead_zone;
-        let counted = finished.errors.now - finished.errors.now.limited(-zone, zone);
-        if !worse && counted != T::ZERO {
+        let errors = finished.errors;
+        let mut contest = slices.contest(0..self.layout.parameters - 1);
+        let length = options.trial;
+        let worse = self.trial.judge(&mut contest, errors, measured, length);
+        let counted = options.beyond(errors.now);
+        let outcome = if worse {
+            Outcome::RolledBack
+        } else if counted == T::ZERO {
+            Outcome::Waiting
+        } else {
             let law = (gain, options.leakage);
             finished.update(&mut slices, operator, levels, counted, law);
-        }
-        finished.close(&mut slices, levels);
-        if worse {
-            self.take_back();
-            Outcome::RolledBack
-        } else if counted != T::ZERO {
             Outcome::Learned
-        } else {
-            Outcome::Waiting
-        }
+        };
+        finished.close(&mut slices, levels);
+        outcome
     }
 
-    /// The offset follows the error of the level, as in the gradient with every operator on.
-    fn learn_level(&mut self, error: T, gain: T) {
-        let counted = self.beyond(error);
-        let share = self.options.offset_share;
+    /// The offset follows the error of the level, as in the gradient with every operator on: increments say nothing of
+    /// it. Says whether it was taken back.
+    fn learn_level(&mut self, measured: T, above: T, gain: T) -> bool {
+        let (options, fixed) = (self.options, self.offset);
+        let share = options.offset_share;
         let norm = share * share + T::from_index(operator_count(self.levels));
-        let slices = self.slices();
+        let mut slices = self.layout.cut(self.memory.as_mut());
         let n = slices.theta.len() - 1;
-        let moved = slices.theta[n] + gain * counted * share / norm;
+        let error = |parameter: T| above - fixed - share * parameter;
+        let errors = Errors {
+            now: error(slices.theta[n]),
+            candidate: error(slices.candidate[n]),
+            good: error(slices.good[n]),
+        };
+        let mut contest = slices.contest(n..n + 1);
+        let length = options.trial;
+        if self.level.judge(&mut contest, errors, measured, length) {
+            return true;
+        }
+        let moved = slices.theta[n] + gain * options.beyond(errors.now) * share / norm;
         if (moved * share).is_finite() {
             slices.theta[n] = moved;
         }
+        false
     }
 
     pub(super) fn take_back(&mut self) {
-        let slices = &mut self.slices();
-        trial::roll_back(slices);
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        slices.contest(0..self.layout.parameters).roll_back();
         slices.covariance.copy_from_slice(slices.start);
-        self.trial = Trial::default();
+        (self.trial, self.level) = (Trial::default(), Trial::default());
     }
 }

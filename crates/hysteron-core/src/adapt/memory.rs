@@ -1,5 +1,8 @@
 //! What an estimator keeps, in one block of memory that the caller provides.
 
+use core::ops::Range;
+
+use super::trial::Contest;
 use crate::Method;
 use crate::everett::table_len;
 use crate::plane::operator_count;
@@ -127,6 +130,17 @@ impl Layout {
             start: next(self.covariance),
             gain: next(self.gain()),
             tables: next(self.tables),
+        }
+    }
+}
+
+impl<T> Slices<'_, T> {
+    /// The parameters `which` that a trial is about.
+    pub(super) fn contest(&mut self, which: Range<usize>) -> Contest<'_, T> {
+        Contest {
+            now: &mut self.theta[which.clone()],
+            candidate: &mut self.candidate[which.clone()],
+            good: &mut self.good[which],
         }
     }
 }

@@ -130,4 +130,9 @@ impl<T: Real> Adaptation<T> {
         require(from_zero(self.movement), "movement")?;
         require(self.trial > 0, "trial")
     }
+
+    /// What an error counts beyond the dead zone.
+    pub(super) fn beyond(&self, error: T) -> T {
+        error - error.limited(-self.dead_zone, self.dead_zone)
+    }
 }

@@ -113,6 +113,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             increment: None,
             rows_due: 0,
             trial: Trial::default(),
+            level: Trial::default(),
             frozen: false,
         })
     }

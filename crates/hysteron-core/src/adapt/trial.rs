@@ -1,11 +1,10 @@
-//! The last good weights, and how others come to take their place.
+//! The last good parameters, and how others come to take their place.
 //!
-//! At the start of each trial the present weights become the candidate. Through the trial the candidate and the last
-//! good weights stand still and predict samples that neither has seen. The candidate is good in turn where it predicts them
-//! no worse, so that weights learned in the middle of a burst of wrong readings do not become the good ones as long as the
+//! At the start of each trial the present parameters become the candidate. Through the trial the candidate and the last
+//! good ones stand still and predict samples that neither has seen. The candidate is good in turn where it predicts them
+//! no worse, so that what was learned in the middle of a burst of wrong readings does not become good as long as the
 //! burst is shorter than half a trial.
 
-use super::memory::Slices;
 use crate::Real;
 
 /// Sums of squares over the samples of a trial.
@@ -22,20 +21,24 @@ pub(super) struct Trial<T> {
 /// Errors of one sample.
 #[derive(Clone, Copy)]
 pub(super) struct Errors<T> {
-    /// By the present weights.
     pub(super) now: T,
-    /// By the candidate.
     pub(super) candidate: T,
-    /// By the last good weights.
     pub(super) good: T,
 }
 
+/// Those that stand the trial.
+pub(super) struct Contest<'a, T> {
+    pub(super) now: &'a mut [T],
+    pub(super) candidate: &'a mut [T],
+    pub(super) good: &'a mut [T],
+}
+
 impl<T: Real> Trial<T> {
-    /// Adds a sample; the trial ends after `length` of them. Says whether the present weights did far worse than the
-    /// good ones, with more than four times their mean square, and have to go.
+    /// Adds a sample; the trial ends after `length` of them. Says whether the present parameters did far worse than the
+    /// good ones, with more than four times their mean square, and were taken back.
     pub(super) fn judge(
         &mut self,
-        slices: &mut Slices<'_, T>,
+        contest: &mut Contest<'_, T>,
         errors: Errors<T>,
         measured: T,
         length: u32,
@@ -58,25 +61,28 @@ impl<T: Real> Trial<T> {
         } = core::mem::take(self);
         // Sums that overflow say nothing: an outlier of that size is in all of them.
         if candidate <= good && candidate.is_finite() {
-            slices.good.copy_from_slice(slices.candidate);
+            contest.good.copy_from_slice(contest.candidate);
         }
-        let best = candidate.smaller(good);
-        if now > T::from_index(4) * (best + rounding) {
-            return true;
+        let worse = now > T::from_index(4) * (candidate.smaller(good) + rounding);
+        if worse {
+            contest.roll_back();
+        } else {
+            contest.candidate.copy_from_slice(contest.now);
         }
-        slices.candidate.copy_from_slice(slices.theta);
-        false
+        worse
     }
 }
 
-/// Takes the present weights as good.
-pub(super) fn keep<T: Real>(slices: &mut Slices<'_, T>) {
-    slices.good.copy_from_slice(slices.theta);
-    slices.candidate.copy_from_slice(slices.theta);
-}
+impl<T: Real> Contest<'_, T> {
+    /// Takes the present parameters as good.
+    pub(super) fn keep(&mut self) {
+        self.good.copy_from_slice(self.now);
+        self.candidate.copy_from_slice(self.now);
+    }
 
-/// Puts the good weights in the place of the present ones.
-pub(super) fn roll_back<T: Real>(slices: &mut Slices<'_, T>) {
-    slices.theta.copy_from_slice(slices.good);
-    slices.candidate.copy_from_slice(slices.good);
+    /// Puts the good parameters in the place of the present ones.
+    pub(super) fn roll_back(&mut self) {
+        self.now.copy_from_slice(self.good);
+        self.candidate.copy_from_slice(self.good);
+    }
 }
