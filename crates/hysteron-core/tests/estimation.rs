@@ -3,10 +3,7 @@
 
 mod common;
 
-use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, OPERATORS, build, inputs, options, rng, strokes,
-    weights,
-};
+use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, strokes, weights};
 use hysteron_core::{
     Adaptation, Estimator, Method, Operator, Outcome, Plane, estimator_len_of_parts, operator_count,
 };

@@ -3,9 +3,7 @@
 
 mod common;
 
-use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, options, rng, strokes, weights,
-};
+use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, options, rng, strokes};
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Plane, Real, State, Turn, estimator_len,
     estimator_len_of_parts, operator_count, table_len, turn_capacity,

@@ -59,9 +59,9 @@ impl<T: Real> Law<T> {
             let (row, after) = covariance.split_at_mut(n + 1);
             let (first, start_after) = start.split_at(n + 1);
             (covariance, start) = (after, start_after);
-            let scaled = gain[n] / total;
+            let scaled = forgetting * gain[n] / total;
             for ((now, &first), &gain) in row.iter_mut().zip(first).zip(gain) {
-                *now = forgetting * (*now - scaled * gain) + back * first;
+                *now = forgetting * *now - scaled * gain + back * first;
             }
         }
     }
