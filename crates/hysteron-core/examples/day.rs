@@ -53,7 +53,7 @@ struct Hour {
     weights: f64,
 }
 
-fn day(name: &str, method: Method<f64>, levels: usize) -> Result<(), Error> {
+fn day(name: &str, method: Method<f64>, levels: usize, learns: bool) -> Result<(), Error> {
     let mut rng = StdRng::seed_from_u64(1);
     let plane = Plane::new(20.0, 80.0, levels)?;
     let n = operator_count(levels);
@@ -73,6 +73,7 @@ fn day(name: &str, method: Method<f64>, levels: usize) -> Result<(), Error> {
         ..Adaptation::default()
     };
     let mut estimator = Estimator::new(options, &mut model, &offline, 0.0, memory)?;
+    estimator.freeze(!learns);
     let mut input = Input {
         rng: StdRng::seed_from_u64(2),
         levels: levels as f64,
@@ -133,21 +134,23 @@ fn main() -> Result<(), Error> {
         "| method | K | error, hour 1 / 12 / 24, % of range | error of weights (mean 0.5; 0.29 off-line) | smallest weight | largest offset, % | worst return of the inverse | learned from | rolled back | bytes |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-    day("gradient", Method::Gradient { gain: 0.1 }, 20)?;
+    let gradient = Method::Gradient { gain: 0.1 };
+    day("none: off-line", gradient, 20, false)?;
+    day("gradient", gradient, 20, true)?;
     let span = 1.0;
-    day("increments", Method::Increments { gain: 0.1, span }, 20)?;
-    for (name, forgetting) in [("0.999", 0.999), ("1", 1.0)] {
-        let least_squares = Method::LeastSquares {
-            forgetting,
-            noise: 0.2,
-            spread: 0.3,
-            correlation: 0.0,
-        };
-        day(
-            &format!("least squares, forgetting {name}"),
-            least_squares,
-            10,
-        )?;
-    }
-    Ok(())
+    day(
+        "increments",
+        Method::Increments { gain: 0.1, span },
+        20,
+        true,
+    )?;
+    let least_squares = |forgetting| Method::LeastSquares {
+        forgetting,
+        noise: 0.2,
+        spread: 0.3,
+        correlation: 0.0,
+    };
+    day("none: off-line", least_squares(1.0), 10, false)?;
+    day("least squares, λ = 0.999", least_squares(0.999), 10, true)?;
+    day("least squares, λ = 1", least_squares(1.0), 10, true)
 }
