@@ -144,7 +144,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         &self.options
     }
 
-    /// While frozen, the model predicts and nothing is learned.
+    /// While frozen, the model predicts and nothing is learned. What increments taught before still comes to the table.
     pub fn freeze(&mut self, frozen: bool) {
         self.frozen = frozen;
         self.increment = None;
