@@ -22,10 +22,10 @@ use crate::{Error, Real};
 pub enum Method<T> {
     /// Normalised gradient, `μ ← μ + g φ e/(c + κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin 1984, section 3.3), with
     /// `c` a hundredth of what `φᵀφ` is when every operator is on, so that few operators that are hardly on do not take
-    /// the whole blame. `O(K²)`: a few passes over the weights and the table. For want of
-    /// anything known about the noise, and where many parameters would make least squares too dear.
+    /// the whole blame. `O(K²)`: a few passes over the weights and the table. The first to try: it needs to know nothing of
+    /// the noise, and bears more levels than least squares.
     Gradient {
-        /// `g`, above 0 and below 2; 1 takes the whole error of the sample away. Usual: 0.1 to 0.5.
+        /// `g`, above 0 and below 2; 1 takes nearly the whole error of the sample away. Usual: 0.1 to 0.5.
         gain: T,
     },
     /// Normalised gradient on the increments between two inputs some levels apart: `Δy = Σ μ Δγ` concerns the rows
