@@ -183,6 +183,12 @@ impl Adaptive {
         Ok(self.core.reset_off(&mut self.state)?)
     }
 
+    /// Every operator on, as at the top of the plane; the weights stay.
+    pub fn saturate(&mut self) -> Result<()> {
+        self.estimator.realign();
+        Ok(self.core.reset_on(&mut self.state)?)
+    }
+
     /// While frozen, nothing is learned.
     pub fn freeze(&mut self, frozen: bool) {
         self.estimator.freeze(frozen);

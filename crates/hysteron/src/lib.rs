@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod adapt;
 mod adaptive;
 mod advice;
 mod band;
@@ -33,6 +34,9 @@ mod table;
 mod thermal;
 mod turning;
 
+pub use adapt::{
+    AdaptOptions, Adapted, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
+};
 pub use adaptive::Adaptive;
 pub use advice::{Advice, advice};
 pub use band::{Band, BandEvaluation};
