@@ -3,7 +3,8 @@
 
 use hysteron::{
     AdaptOptions, Adaptive, Columns, DriftParts, Errors, FitOptions, Learner, Model, Plane,
-    PrepareOptions, Recording, Repair, Start, Step, Turning, adapt, fit, fit_experiment, plane_of, prepare,
+    PrepareOptions, Recording, Repair, Start, Step, Turning, adapt, fit, fit_experiment, plane_of,
+    prepare,
 };
 use std::error::Error;
 use std::ops::Range;
@@ -22,33 +23,58 @@ const LEARNERS: [Learner; 4] = [
 ];
 
 fn main() -> Result<()> {
-    let folder = std::env::args().nth(1).ok_or("name the folder of the recordings")?;
+    let folder = std::env::args()
+        .nth(1)
+        .ok_or("name the folder of the recordings")?;
     let folder = PathBuf::from(folder);
     print!("{}", include_str!("adaptation.md"));
     cycles(&folder)?;
     stresses(&folder)
 }
 
-fn options(learner: Learner) -> AdaptOptions {
+fn options(learner: Learner, recording: &Recording, model: Option<&Model>) -> AdaptOptions {
+    let (_, (lo, hi)) = recording.ranges();
     let env = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<f64>().ok());
     let steps = matches!(learner, Learner::Gradient | Learner::Increments);
     let keep = |on: bool, v: Option<f64>| if on { v } else { None };
+    let spread = |model: Option<&Model>| -> Option<f64> {
+        let model = model?;
+        let plain = AdaptOptions {
+            learner,
+            correlation: keep(learner == Learner::LeastSquares, env("CORR")),
+            ..AdaptOptions::default()
+        };
+        let hysteron::Method::LeastSquares { spread, .. } =
+            plain.adaptation(model, recording).ok()?.method
+        else {
+            return None;
+        };
+        Some(spread * env("SPREADX")?)
+    };
     AdaptOptions {
         learner,
         gain: keep(steps, env("GAIN")),
         span: keep(learner == Learner::Increments, env("SPAN")),
         forgetting: keep(!steps, env("FORGET")),
         correlation: keep(learner == Learner::LeastSquares, env("CORR")),
-        spread: keep(learner == Learner::Drift, env("SHARE")),
-        noise: keep(!steps, env("NOISE")),
+        spread: if learner == Learner::Drift {
+            env("SHARE")
+        } else if !steps {
+            spread(model)
+        } else {
+            None
+        },
+        noise: keep(!steps, env("NOISE").map(|v| v * (hi - lo))),
         offset_share: env("KAPPA"),
+        trial: env("TRIAL").map(|t| t as u32),
+        dead_zone: env("ZONE").map(|v| v * (hi - lo)),
         ..AdaptOptions::default()
     }
 }
 
 /// An estimator over `recording`, as `hysteron adapt` would make it.
 fn estimator(model: &Model, recording: &Recording, learner: Learner) -> Result<Adaptive> {
-    let adaptation = options(learner).adaptation(model, recording)?;
+    let adaptation = options(learner, recording, Some(model)).adaptation(model, recording)?;
     Ok(match learner {
         Learner::Drift => DriftParts::of(model, None)?.adaptive(adaptation)?,
         _ => Adaptive::new(model, adaptation)?,
@@ -99,7 +125,10 @@ fn cycles(folder: &Path) -> Result<()> {
         }
     }
     bounds.push(whole.len());
-    let cycles: Vec<Recording> = bounds.windows(2).map(|b| part(&whole, b[0]..b[1])).collect();
+    let cycles: Vec<Recording> = bounds
+        .windows(2)
+        .map(|b| part(&whole, b[0]..b[1]))
+        .collect();
     let plane = plane_of(&whole, LEVELS)?;
     let fitted = |recording: &Recording| {
         let options = FitOptions {
@@ -111,8 +140,12 @@ fn cycles(folder: &Path) -> Result<()> {
         fit(recording, &options)
     };
     let first = fitted(&cycles[0])?;
-    let percent = |measured: &Recording, output: &[f64]| 100.0 * rmse(&measured.output, output) / (most - least);
-    let heads: Vec<String> = (2..=cycles.len()).map(|n| format!(" cycle {n} |")).collect();
+    let percent = |measured: &Recording, output: &[f64]| {
+        100.0 * rmse(&measured.output, output) / (most - least)
+    };
+    let heads: Vec<String> = (2..=cycles.len())
+        .map(|n| format!(" cycle {n} |"))
+        .collect();
     println!("\n| | {}", heads.concat());
     println!("| --- |{}", " ---: |".repeat(cycles.len() - 1));
     let line = |name: &str, cells: &[f64]| {
@@ -126,7 +159,11 @@ fn cycles(folder: &Path) -> Result<()> {
     };
     let mut state = first.saturated();
     let of_first = run(&first, &mut state, &cycles[0])?;
-    eprintln!("cycle lengths {:?}, fit of first {:.2}", bounds, percent(&cycles[0], &of_first));
+    eprintln!(
+        "cycle lengths {:?}, fit of first {:.2}",
+        bounds,
+        percent(&cycles[0], &of_first)
+    );
     let (mut fixed, mut corrected, mut refitted) = (vec![], vec![], vec![]);
     let mut last = 0.0;
     for n in 1..cycles.len() {
@@ -190,7 +227,10 @@ fn stresses(folder: &Path) -> Result<()> {
     println!("\n| from, to | fixed | refit | gradient | increments | least squares | drift |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, output, stresses) in &materials {
-        let columns = Columns { load: Some("stress_MPa"), ..Columns::new("temperature_C", output) };
+        let columns = Columns {
+            load: Some("stress_MPa"),
+            ..Columns::new("temperature_C", output)
+        };
         let loops: Vec<Recording> = stresses
             .iter()
             .map(|stress| {
@@ -208,7 +248,10 @@ fn stresses(folder: &Path) -> Result<()> {
         let plane = plane_of(&part_of(&all), LEVELS)?;
         for n in 1..loops.len() {
             let name = format!("{material}{} → {}", stresses[n - 1], stresses[n]);
-            let models = [fitted(&loops[n - 1..n], &plane)?, fitted(&loops[n..=n], &plane)?];
+            let models = [
+                fitted(&loops[n - 1..n], &plane)?,
+                fitted(&loops[n..=n], &plane)?,
+            ];
             row(&name, models, &loops[n], &LEARNERS)?;
         }
         let triples: &[[usize; 3]] = match loops.len() {
@@ -216,9 +259,15 @@ fn stresses(folder: &Path) -> Result<()> {
             _ => &[[1, 3, 2], [2, 4, 3], [1, 2, 3], [2, 3, 4]],
         };
         for &[a, b, to] in triples {
-            let name = format!("{material}{} and {} → {}", stresses[a], stresses[b], stresses[to]);
+            let name = format!(
+                "{material}{} and {} → {}",
+                stresses[a], stresses[b], stresses[to]
+            );
             let pair = [loops[a].clone(), loops[b].clone()];
-            let models = [fitted_load(&pair, &plane)?, fitted(&loops[to..=to], &plane)?];
+            let models = [
+                fitted_load(&pair, &plane)?,
+                fitted(&loops[to..=to], &plane)?,
+            ];
             row(&name, models, &loops[to], &[Learner::Drift])?;
         }
     }
@@ -226,7 +275,10 @@ fn stresses(folder: &Path) -> Result<()> {
 }
 
 fn part_of(recording: &Recording) -> Recording {
-    Recording { load: None, ..recording.clone() }
+    Recording {
+        load: None,
+        ..recording.clone()
+    }
 }
 
 fn fit_options(plane: &Plane) -> FitOptions {
@@ -257,14 +309,25 @@ fn row(name: &str, [from, to]: [Model; 2], target: &Recording, learners: &[Learn
         passes.input.extend(&target.input);
         passes.output.extend(&target.output);
     }
-    let fixed = match &from.load { Some(_) => DriftParts::of(&from, None)?.model, None => from.clone() };
-    let mut cells = vec![format!("{:.2}", judge(&fixed)?), format!("{:.2}", judge(&to)?)];
+    let fixed = match &from.load {
+        Some(_) => DriftParts::of(&from, None)?.model,
+        None => from.clone(),
+    };
+    let mut cells = vec![
+        format!("{:.2}", judge(&fixed)?),
+        format!("{:.2}", judge(&to)?),
+    ];
     for learner in LEARNERS {
         cells.push(match learners.contains(&learner) {
             true => {
-                let one = adapt(&from, &target, &options(learner))?.model;
-                let more = adapt(&from, &passes, &options(learner))?.model;
-                format!("{:.2}, {:.2}", judge(&one)?, judge(&more)?)
+                let one = adapt(&from, &target, &options(learner, &target, Some(&from)))?;
+                let more = adapt(&from, &passes, &options(learner, &target, Some(&from)))?;
+                format!("{:.2}, {:.2}", judge(&one.model)?, judge(&more.model)?)
+                    + &if std::env::var("COUNTS").is_ok() {
+                        format!(" {:?}", more.counts)
+                    } else {
+                        String::new()
+                    }
             }
             false => String::new(),
         });

@@ -1,15 +1,20 @@
 //! How a model is adapted to a recording, and what follows from both where nothing is said.
 
 use crate::recording::range;
-use crate::{Adaptation, Error, Method, Model, NOISE, Recording, Result, Start, noise};
+use crate::{Adaptation, Error, Method, Model, Recording, Result, Start, noise};
 use serde::Serialize;
 
 /// Gain of the gradient methods.
 const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
-/// Forgetting factor of least squares.
-const FORGETTING: f64 = 0.999;
+/// Forgetting factor of least squares, for weights and for shares.
+const FORGETTING: [f64; 2] = [0.999, 0.9995];
+/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err more, and alike from sample to
+/// sample.
+const MISFIT: [f64; 2] = [0.02, 0.05];
+/// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
+const OFFSET: f64 = 0.2;
 /// Levels over which deviations of weights go together.
 const CORRELATION: f64 = 2.0;
 /// By how much the output with every operator on may differ, in parts of its range.
@@ -42,13 +47,13 @@ pub enum Learner {
 /// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
 /// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
 /// | `span` | 1 | 1/8 to 8 | increments: levels between two updates |
-/// | `forgetting` | 0.999 | above 0, up to 1 | least squares: what a sample counts after the next |
-/// | `noise` | the output's [`noise`], and 1 % of `Y` at least | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
+/// | `forgetting` | weights: 0.999; shares: 0.9995 | above 0, up to 1 | least squares: what a sample counts after the next |
+/// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
 /// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
 /// | `correlation` | 2 | from 0 on | least squares of weights: levels over which deviations go together |
 /// | `dead_zone` | twice the output's [`noise`] | from 0 on | errors up to this are noise; in the output's unit |
 /// | `leakage` | 0 | 0 to 1 | share by which the weights return to the off-line ones with each update |
-/// | `offset_share` | gradient methods: 1; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
+/// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
 /// | `movement` | 0.05 | from 0 on | levels that the input has to move before a sample is learned from |
 /// | `trial` | 256 | from 1 on | samples after which the weights are judged against the last good ones |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -102,7 +107,7 @@ impl AdaptOptions {
             noise: self
                 .noise
                 .unwrap_or(rough.max(NOISE * span).max(f64::MIN_POSITIVE)),
-            spread: self.spread.unwrap_or(spread.max(f64::MIN_POSITIVE)),
+            spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
         };
         let gain = self.gain.unwrap_or(GAIN);
@@ -122,7 +127,7 @@ impl AdaptOptions {
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
-            _ => usual.offset_share,
+            _ => OFFSET * (model.plane().operators() as f64).sqrt(),
         };
         Ok(Adaptation {
             method,

@@ -3,15 +3,15 @@
 use crate::{Adaptation, Adaptive, Model, Result};
 
 /// Levels by which the weights are shifted along the diagonal of the plane.
-const SHIFTS: [isize; 6] = [-4, -2, 0, 2, 4, 6];
+const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
 
 /// Sets of weights, and the share of each, that make up a model: what an estimator with few unknowns adapts.
 ///
 /// A model that depends on a load has its load parts. For any other one, the parts are the off-line weights shifted along the
-/// diagonal of the plane by −4 to +6 levels: a stress shifts all transformation temperatures alike (Clausius-Clapeyron; Otsuka &
-/// Wayman 1998, section 2.3), so that shares from zero on follow a larger stroke, a shift, and a transformation that is spread
-/// wider. An operator shifted beyond the plane is left out: above it never switches, below it is always on, which the offset stands
-/// for.
+/// diagonal of the plane by −3, −1, 0, 1, 3 and 5 levels: a stress shifts all transformation temperatures alike (the relation of
+/// Clausius and Clapeyron), so that shares from zero on follow a larger stroke, a shift, and a transformation that is spread
+/// wider. An operator shifted beyond the plane is left out: above, it never switches, and below it is always on, as the offset is. One
+/// that would switch off below the plane does so at its lowest level.
 ///
 /// ```
 /// use hysteron::{DriftParts, Model, Operator, Plane, Sign};
@@ -39,7 +39,7 @@ impl DriftParts {
     pub fn of(model: &Model, load: Option<f64>) -> Result<Self> {
         let Some(dependence) = &model.load else {
             return match load {
-                None => Ok(Self::shifted(model, &SHIFTS)),
+                None => Ok(Self::shifted(model)),
                 Some(_) => Err(crate::load::no_load()),
             };
         };
@@ -56,25 +56,24 @@ impl DriftParts {
         })
     }
 
-    /// The weights shifted along the diagonal by so many levels; a shift of 0 has the share 1.
-    fn shifted(model: &Model, shifts: &[isize]) -> Self {
+    fn shifted(model: &Model) -> Self {
         let levels = model.plane().levels() as isize;
-        let places = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        let index = |i: isize, j: isize| (j * (j - 1) / 2 + i - 1) as usize;
         let part = |shift: &isize| {
-            let weight = |(i, j): (isize, isize)| match (i - shift, j - shift) {
-                (i, j) if i >= 1 && j <= levels => model.weights()[index(i, j)],
-                _ => 0.0,
-            };
-            places.clone().map(weight).collect()
+            let mut part = vec![0.0; model.weights().len()];
+            let places = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
+            for ((i, j), &mu) in places.zip(model.weights()) {
+                let (i, j) = ((i + shift).max(1), j + shift);
+                if (1..=levels).contains(&j) {
+                    part[(j * (j - 1) / 2 + i - 1) as usize] += mu;
+                }
+            }
+            part
         };
+        let share = |shift: &isize| if *shift == 0 { 1.0 } else { 0.0 };
         Self {
             model: model.clone(),
-            parts: shifts.iter().map(part).collect(),
-            shares: shifts
-                .iter()
-                .map(|s| f64::from(u8::from(*s == 0)))
-                .collect(),
+            parts: SHIFTS.iter().map(part).collect(),
+            shares: SHIFTS.iter().map(share).collect(),
         }
     }
 
