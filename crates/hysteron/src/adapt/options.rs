@@ -16,7 +16,7 @@ const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
 const OFFSET: f64 = 0.2;
 /// Levels over which deviations of weights go together.
-const CORRELATION: f64 = 2.0;
+const CORRELATION: f64 = 1.0;
 /// By how much the output with every operator on may differ, in parts of its range.
 const DEVIATION: f64 = 0.3;
 /// By how much a share of a part may differ.
@@ -50,7 +50,7 @@ pub enum Learner {
 /// | `forgetting` | weights: 0.999; shares: 0.9995 | above 0, up to 1 | least squares: what a sample counts after the next |
 /// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
 /// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
-/// | `correlation` | 2 | from 0 on | least squares of weights: levels over which deviations go together |
+/// | `correlation` | 1 | from 0 on | least squares of weights: levels over which deviations go together |
 /// | `dead_zone` | twice the output's [`noise`] | from 0 on | errors up to this are noise; in the output's unit |
 /// | `leakage` | 0 | 0 to 1 | share by which the weights return to the off-line ones with each update |
 /// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
@@ -101,12 +101,12 @@ impl AdaptOptions {
         let (low, high) = range(&recording.output);
         let span = (on - off).abs().max(high - low);
         let usual = Adaptation::default();
+        let shares = usize::from(self.learner == Learner::Drift);
+        // An error of zero would be certainty.
+        let misfit = rough.max(MISFIT[shares] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
-            forgetting: self.forgetting.unwrap_or(FORGETTING),
-            // An error of zero would be certainty.
-            noise: self
-                .noise
-                .unwrap_or(rough.max(NOISE * span).max(f64::MIN_POSITIVE)),
+            forgetting: self.forgetting.unwrap_or(FORGETTING[shares]),
+            noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
         };
