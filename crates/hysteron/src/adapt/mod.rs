@@ -12,6 +12,7 @@ use crate::{
 };
 use serde::Serialize;
 use serde_json::json;
+use std::path::Path;
 
 /// What came of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +71,45 @@ pub struct Drift {
     pub moved: f64,
 }
 
+impl Adapted {
+    /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
+    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`).
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
+    pub fn write_table(&self, recording: &Recording, path: &Path) -> Result<()> {
+        if recording.len() != self.outcomes.len() {
+            return Err(Error::Recording {
+                path: recording.source.as_ref().map(|source| source.path.clone()),
+                row: None,
+                column: None,
+                problem: format!(
+                    "{} samples, where the model was adapted to {}",
+                    recording.len(),
+                    self.outcomes.len()
+                ),
+            });
+        }
+        let added = ["output_model", "error", "outcome"];
+        recording.write_csv_with(path, &added, |n| {
+            let predicted = self.output_model[n];
+            let error = recording.output[n] - predicted;
+            let outcome = word(self.outcomes[n]).to_owned();
+            [predicted.to_string(), error.to_string(), outcome]
+        })
+    }
+}
+
+fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Learned => "learned",
+        Outcome::Waiting => "waiting",
+        Outcome::AtRest => "at-rest",
+        Outcome::Frozen => "frozen",
+        Outcome::RolledBack => "rolled-back",
+    }
+}
+
 /// Runs an estimator over a recording, which predicts each sample before it learns from it.
 ///
 /// ```
@@ -110,6 +150,7 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
         match learning.outcome {
             Outcome::Learned => counts.learned += 1,
             Outcome::Waiting => counts.waiting += 1,
+            // Nothing freezes an estimator here.
             Outcome::AtRest | Outcome::Frozen => counts.at_rest += 1,
             Outcome::RolledBack => counts.rolled_back += 1,
         }
@@ -223,7 +264,7 @@ fn summary(
 }
 
 /// The options as a JSON object: those of the method, and the guards.
-pub(crate) fn described(options: &Adaptation<f64>) -> serde_json::Value {
+fn described(options: &Adaptation<f64>) -> serde_json::Value {
     let mut object = match options.method {
         Method::Gradient { gain } => json!({ "gain": gain }),
         Method::Increments { gain, span } => json!({"gain": gain, "span": span}),

@@ -31,9 +31,9 @@ pub enum Learner {
     /// All weights by the normalised gradient on increments.
     Increments,
     /// All weights by recursive least squares.
-    #[default]
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares.
+    /// The shares of [`crate::DriftParts`] by recursive least squares: on measured recordings the one that errs least.
+    #[default]
     Drift,
 }
 
@@ -42,7 +42,7 @@ pub enum Learner {
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `learner` | least squares | see [`Learner`] | what follows the error, and how |
+/// | `learner` | drift | see [`Learner`] | what follows the error, and how |
 /// | `start` | off | off, on, unknown | where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less |
 /// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
 /// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
