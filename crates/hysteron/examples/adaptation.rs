@@ -2,107 +2,106 @@
 //! `cargo run --release -p hysteron --example adaptation -- ../shared/data`
 
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, DriftParts, Errors, FitOptions, Learner, Model, Plane,
-    PrepareOptions, Recording, Repair, Start, Step, Turning, adapt, fit, fit_experiment, plane_of,
-    prepare,
+    AdaptOptions, Adaptive, Columns, Direction, DriftParts, Errors, FitOptions, Learner, Model,
+    Plane, PrepareOptions, Recording, Repair, Sign, Start, State, Step, Turning, adapt, fit,
+    fit_experiment, plane_of, prepare,
 };
 use std::error::Error;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
-const LEARNERS: [Learner; 4] = [
-    Learner::Gradient,
-    Learner::Increments,
-    Learner::LeastSquares,
-    Learner::Drift,
+const LEARNERS: [(&str, Learner); 4] = [
+    ("gradient", Learner::Gradient),
+    ("increments", Learner::Increments),
+    ("least squares", Learner::LeastSquares),
+    ("drift", Learner::Drift),
+];
+
+/// Beginning and end of the names of recordings of one loop at each of several stresses, and the column of the output.
+const MATERIALS: [(&str, &[f64], &str); 2] = [
+    ("flexinol", &[50.0, 150.0, 200.0], "strain"),
+    (
+        "nitihf_bigelow",
+        &[7.0, 50.0, 100.0, 200.0, 400.0],
+        "strain_percent",
+    ),
 ];
 
 fn main() -> Result<()> {
     let folder = std::env::args()
         .nth(1)
         .ok_or("name the folder of the recordings")?;
-    let folder = PathBuf::from(folder);
-    print!("{}", include_str!("adaptation.md"));
-    cycles(&folder)?;
-    stresses(&folder)
+    let folder = Path::new(&folder);
+    println!("{}", include_str!("adaptation.md"));
+    cycles(folder)?;
+    println!("\n{}", include_str!("adaptation-stress.md"));
+    let mut pairs = Vec::new();
+    println!("| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    for (material, stresses, output) in MATERIALS {
+        let loops = Loops::read(folder, material, stresses, output)?;
+        for to in 1..stresses.len() {
+            loops.row(to - 1, to)?;
+        }
+        pairs.push(loops);
+    }
+    println!("\n{}", include_str!("adaptation-load.md"));
+    println!("| from → to, MPa | middle | at its load | fitted | drift |");
+    println!("| --- | ---: | ---: | ---: | ---: |");
+    for loops in pairs {
+        for to in 1..loops.stresses.len() {
+            if to + 1 < loops.stresses.len() {
+                loops.row_of_load([to - 1, to + 1], to)?;
+            }
+            if to >= 2 {
+                loops.row_of_load([to - 2, to - 1], to)?;
+            }
+        }
+    }
+    Ok(())
 }
 
-fn options(learner: Learner, recording: &Recording, model: Option<&Model>) -> AdaptOptions {
-    let (_, (lo, hi)) = recording.ranges();
-    let env = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<f64>().ok());
-    let steps = matches!(learner, Learner::Gradient | Learner::Increments);
-    let keep = |on: bool, v: Option<f64>| if on { v } else { None };
-    let spread = |model: Option<&Model>| -> Option<f64> {
-        let model = model?;
-        let plain = AdaptOptions {
-            learner,
-            correlation: keep(learner == Learner::LeastSquares, env("CORR")),
-            ..AdaptOptions::default()
-        };
-        let hysteron::Method::LeastSquares { spread, .. } =
-            plain.adaptation(model, recording).ok()?.method
-        else {
-            return None;
-        };
-        Some(spread * env("SPREADX")?)
-    };
+fn adapting(learner: Learner) -> AdaptOptions {
     AdaptOptions {
         learner,
-        gain: keep(steps, env("GAIN")),
-        span: keep(learner == Learner::Increments, env("SPAN")),
-        forgetting: keep(!steps, env("FORGET")),
-        correlation: keep(learner == Learner::LeastSquares, env("CORR")),
-        spread: if learner == Learner::Drift {
-            env("SHARE")
-        } else if !steps {
-            spread(model)
-        } else {
-            None
-        },
-        noise: keep(!steps, env("NOISE").map(|v| v * (hi - lo))),
-        offset_share: env("KAPPA"),
-        trial: env("TRIAL").map(|t| t as u32),
-        dead_zone: env("ZONE").map(|v| v * (hi - lo)),
         ..AdaptOptions::default()
     }
 }
 
-/// An estimator over `recording`, as `hysteron adapt` would make it.
-fn estimator(model: &Model, recording: &Recording, learner: Learner) -> Result<Adaptive> {
-    let adaptation = options(learner, recording, Some(model)).adaptation(model, recording)?;
-    Ok(match learner {
-        Learner::Drift => DriftParts::of(model, None)?.adaptive(adaptation)?,
-        _ => Adaptive::new(model, adaptation)?,
-    })
-}
-
-fn read(folder: &Path, name: &str, columns: Columns<'_>) -> Result<Recording> {
-    Ok(Recording::read(&folder.join(format!("{name}.csv")), columns, Repair::Refuse)?.0)
+fn read(folder: &Path, name: &str, output: &str) -> Result<Recording> {
+    let columns = Columns::new("temperature_C", output);
+    let path = folder.join(format!("sma_{name}.csv"));
+    Ok(Recording::read(&path, columns, Repair::Refuse)?.0)
 }
 
 fn part(recording: &Recording, range: Range<usize>) -> Recording {
-    let mut part = recording.clone();
-    let cut = |series: &[f64]| series[range.clone()].to_vec();
-    (part.input, part.output) = (cut(&recording.input), cut(&recording.output));
-    part.time = recording.time.as_deref().map(cut);
-    part.load = recording.load.as_deref().map(cut);
-    part
+    Recording {
+        input: recording.input[range.clone()].to_vec(),
+        output: recording.output[range].to_vec(),
+        ..recording.clone()
+    }
 }
 
-fn rmse(measured: &[f64], modelled: &[f64]) -> f64 {
-    Errors::between(measured, modelled, |_| true).map_or(f64::NAN, |errors| errors.rmse)
+/// RMSE in percent of a range.
+fn percent(measured: &[f64], modelled: &[f64], (low, high): (f64, f64)) -> f64 {
+    let errors = Errors::between(measured, modelled, |_| true);
+    errors.map_or(f64::NAN, |errors| 100.0 * errors.rmse / (high - low))
 }
 
-/// Thermal cycles, from one highest temperature to the next.
-fn cycles(folder: &Path) -> Result<()> {
-    let columns = Columns::new("temperature_C", "extension_mm");
-    let raw = read(folder, "sma_isobaric_cycles_1_to_4", columns)?;
-    // The readout drops its sign below zero: given back, and nothing else done.
+fn run(model: &Model, state: &mut State, input: &[f64]) -> Result<Vec<f64>> {
+    let mut output = vec![0.0; input.len()];
+    model.run(state, input, &mut output)?;
+    Ok(output)
+}
+
+/// Cycles from one highest temperature to the next, without what begins another one.
+fn split(folder: &Path) -> Result<(Plane, Vec<Recording>)> {
+    let raw = read(folder, "isobaric_cycles_1_to_4", "extension_mm")?;
     let steps = PrepareOptions {
         spikes: Step::Auto,
         resample: Step::Off,
@@ -111,227 +110,200 @@ fn cycles(folder: &Path) -> Result<()> {
         band: Step::Off,
     };
     let (whole, _) = prepare(&raw, &steps)?;
-    // The load is put on at rest, which temperature says nothing of.
-    let warm = whole.input.iter().position(|t| *t < whole.input[0] - 2.0);
-    let whole = part(&whole, warm.unwrap_or(0)..whole.len());
-    let ((low, high), (least, most)) = whole.ranges();
+    let ((low, high), _) = whole.ranges();
+    let cold = |t: &f64| *t < whole.input[0] - 0.02 * (high - low);
+    let begin = whole.input.iter().position(cold).unwrap_or(0);
     let mut turning = Turning::new(0.2 * (high - low));
-    let mut bounds = vec![0];
+    let mut bounds = vec![begin];
     for &t in &whole.input {
-        if let Some((n, hysteron::Direction::Falling)) = turning.push(t)
-            && n > 0
+        if let Some((n, Direction::Falling)) = turning.push(t)
+            && n > begin
         {
             bounds.push(n);
         }
     }
-    bounds.push(whole.len());
-    let cycles: Vec<Recording> = bounds
-        .windows(2)
-        .map(|b| part(&whole, b[0]..b[1]))
-        .collect();
-    let plane = plane_of(&whole, LEVELS)?;
-    let fitted = |recording: &Recording| {
+    let cycles = bounds.windows(2).map(|b| part(&whole, b[0]..b[1]));
+    Ok((plane_of(&whole, LEVELS)?, cycles.collect()))
+}
+
+fn cycles(folder: &Path) -> Result<()> {
+    let (plane, cycles) = split(folder)?;
+    let range = part(&cycles[0], 0..cycles[0].len()).ranges().1;
+    let fitted = |cycle: &Recording| {
         let options = FitOptions {
             start: Start::On,
             range: Some((plane.min(), plane.max())),
             levels: LEVELS,
             ..FitOptions::default()
         };
-        fit(recording, &options)
+        fit(cycle, &options)
     };
-    let first = fitted(&cycles[0])?;
-    let percent = |measured: &Recording, output: &[f64]| {
-        100.0 * rmse(&measured.output, output) / (most - least)
-    };
-    let heads: Vec<String> = (2..=cycles.len())
-        .map(|n| format!(" cycle {n} |"))
-        .collect();
-    println!("\n| | {}", heads.concat());
-    println!("| --- |{}", " ---: |".repeat(cycles.len() - 1));
     let line = |name: &str, cells: &[f64]| {
         let cells: Vec<String> = cells.iter().map(|c| format!(" {c:.2} |")).collect();
         println!("| {name} |{}", cells.concat());
     };
-    let run = |model: &Model, state: &mut hysteron::State, cycle: &Recording| -> Result<Vec<f64>> {
-        let mut output = vec![0.0; cycle.len()];
-        model.run(state, &cycle.input, &mut output)?;
-        Ok(output)
-    };
+    let heads: Vec<String> = (2..=cycles.len())
+        .map(|n| format!(" cycle {n} |"))
+        .collect();
+    println!("| |{}", heads.concat());
+    println!("| --- |{}", " ---: |".repeat(cycles.len() - 1));
+
+    let first = fitted(&cycles[0])?;
     let mut state = first.saturated();
-    let of_first = run(&first, &mut state, &cycles[0])?;
-    eprintln!(
-        "cycle lengths {:?}, fit of first {:.2}",
-        bounds,
-        percent(&cycles[0], &of_first)
-    );
-    let (mut fixed, mut corrected, mut refitted) = (vec![], vec![], vec![]);
-    let mut last = 0.0;
-    for n in 1..cycles.len() {
-        let cycle = &cycles[n];
-        let output = run(&first, &mut state, cycle)?;
-        fixed.push(percent(cycle, &output));
-        let moved: Vec<f64> = output
-            .iter()
-            .zip(&cycle.output)
-            .map(|(h, y)| {
-                let moved = h + last;
-                last = y - h;
-                moved
-            })
-            .collect();
-        corrected.push(percent(cycle, &moved));
-        let model = fitted(&cycles[n - 1])?;
-        let output = run(&model, &mut model.saturated(), cycle)?;
-        refitted.push(percent(cycle, &output));
-    }
-    line("fixed: model of cycle 1", &fixed);
-    line("fixed, and the error of the sample before", &corrected);
-    line("fitted to the cycle before", &refitted);
-    for learner in LEARNERS {
-        let mut adaptive = estimator(&first, &cycles[0], learner)?;
-        adaptive.saturate()?;
-        for &input in &cycles[0].input {
-            adaptive.predict(input)?;
+    run(&first, &mut state, &cycles[0].input)?;
+    let (mut fixed, mut corrected, mut refitted, mut last) = (vec![], vec![], vec![], 0.0);
+    for pair in cycles.windows(2) {
+        let (before, cycle) = (&pair[0], &pair[1]);
+        let output = run(&first, &mut state, &cycle.input)?;
+        fixed.push(percent(&cycle.output, &output, range));
+        let mut moved = Vec::new();
+        for (h, y) in output.iter().zip(&cycle.output) {
+            moved.push(h + last);
+            last = y - h;
         }
-        let (mut next, mut ahead) = (vec![], vec![]);
+        corrected.push(percent(&cycle.output, &moved, range));
+        let model = fitted(before)?;
+        let output = run(&model, &mut model.saturated(), &cycle.input)?;
+        refitted.push(percent(&cycle.output, &output, range));
+    }
+    line("a whole cycle ahead: model of cycle 1, fixed", &fixed);
+    line("model fitted to the cycle before", &refitted);
+    let mut sample_by_sample = vec![(
+        "sample by sample: model of cycle 1, and its error at the sample before".to_owned(),
+        corrected,
+    )];
+    for (name, learner) in LEARNERS {
+        let mut adaptive = estimator(&first, &cycles[0], learner)?;
+        let (mut ahead, mut next) = (vec![], vec![]);
         for cycle in &cycles[1..] {
             let mut frozen = adaptive.clone();
-            let output: Vec<f64> = cycle
-                .input
-                .iter()
-                .map(|&t| frozen.predict(t))
-                .collect::<hysteron::Result<_>>()?;
-            ahead.push(percent(cycle, &output));
+            let whole = cycle.input.iter().map(|&t| frozen.predict(t));
+            let whole: Vec<f64> = whole.collect::<hysteron::Result<_>>()?;
+            ahead.push(percent(&cycle.output, &whole, range));
             let samples = cycle.input.iter().zip(&cycle.output);
-            let output: Vec<f64> = samples
-                .map(|(&t, &y)| Ok(adaptive.step(t, y)?.output))
-                .collect::<hysteron::Result<_>>()?;
-            next.push(percent(cycle, &output));
+            let each = samples.map(|(&t, &y)| Ok(adaptive.step(t, y)?.output));
+            let each: Vec<f64> = each.collect::<hysteron::Result<_>>()?;
+            next.push(percent(&cycle.output, &each, range));
         }
-        line(&format!("{learner:?}, sample by sample"), &next);
-        line(&format!("{learner:?}, whole cycle ahead"), &ahead);
+        line(name, &ahead);
+        sample_by_sample.push((name.to_owned(), next));
+    }
+    for (name, cells) in sample_by_sample {
+        line(&name, &cells);
     }
     Ok(())
 }
 
-/// A model of one stress, adapted to another.
-fn stresses(folder: &Path) -> Result<()> {
-    let materials = [
-        ("sma_flexinol_", "strain", vec!["50", "150", "200"]),
-        (
-            "sma_nitihf_bigelow_",
-            "strain_percent",
-            vec!["7", "50", "100", "200", "400"],
-        ),
-    ];
-    println!("\n| from, to | fixed | refit | gradient | increments | least squares | drift |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
-    for (material, output, stresses) in &materials {
-        let columns = Columns {
-            load: Some("stress_MPa"),
-            ..Columns::new("temperature_C", output)
-        };
-        let loops: Vec<Recording> = stresses
-            .iter()
-            .map(|stress| {
-                let mut recording = read(folder, &format!("{material}{stress}MPa"), columns)?;
-                // The stress as set: what is read wanders about it.
-                recording.load = Some(vec![stress.parse()?; recording.len()]);
-                Ok(recording)
-            })
-            .collect::<Result<_>>()?;
+/// An estimator as [`adapt`] makes it, at the end of the recording that its model was fitted to.
+fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
+    let options = adapting(learner).adaptation(model, seen)?;
+    let mut adaptive = match learner {
+        Learner::Drift => DriftParts::of(model, None)?.adaptive(options)?,
+        _ => Adaptive::new(model, options)?,
+    };
+    adaptive.saturate()?;
+    for &input in &seen.input {
+        adaptive.predict(input)?;
+    }
+    Ok(adaptive)
+}
+
+/// One loop at each of several stresses.
+struct Loops {
+    material: &'static str,
+    stresses: &'static [f64],
+    loops: Vec<Recording>,
+    options: FitOptions,
+}
+
+impl Loops {
+    fn read(
+        folder: &Path,
+        material: &'static str,
+        stresses: &'static [f64],
+        output: &str,
+    ) -> Result<Self> {
+        let each = stresses.iter();
+        let each = each.map(|stress| read(folder, &format!("{material}_{stress}MPa"), output));
+        let loops: Vec<Recording> = each.collect::<Result<_>>()?;
         let mut all = loops[0].clone();
         for recording in &loops[1..] {
             all.input.extend(&recording.input);
             all.output.extend(&recording.output);
         }
-        let plane = plane_of(&part_of(&all), LEVELS)?;
-        for n in 1..loops.len() {
-            let name = format!("{material}{} → {}", stresses[n - 1], stresses[n]);
-            let models = [
-                fitted(&loops[n - 1..n], &plane)?,
-                fitted(&loops[n..=n], &plane)?,
-            ];
-            row(&name, models, &loops[n], &LEARNERS)?;
-        }
-        let triples: &[[usize; 3]] = match loops.len() {
-            3 => &[[0, 2, 1], [0, 1, 2]],
-            _ => &[[1, 3, 2], [2, 4, 3], [1, 2, 3], [2, 3, 4]],
+        let plane = plane_of(&all, LEVELS)?;
+        Ok(Self {
+            material,
+            stresses,
+            loops,
+            options: FitOptions {
+                range: Some((plane.min(), plane.max())),
+                levels: LEVELS,
+                // A strain is recovered on heating; at the lowest stress there is hardly any to tell that from.
+                sign: Some(Sign::Negative),
+                ..FitOptions::default()
+            },
+        })
+    }
+
+    /// Error of a model on a loop, run freely.
+    fn judge(&self, model: &Model, to: usize) -> Result<f64> {
+        let target = &self.loops[to];
+        let output = model.simulate(&target.input)?;
+        Ok(percent(&target.output, &output, target.ranges().1))
+    }
+
+    /// Errors of a model that was adapted to a loop, after one pass and after [`PASSES`].
+    fn adapted(&self, model: &Model, to: usize, learner: Learner) -> Result<String> {
+        let target = &self.loops[to];
+        let after = |passes: usize| -> Result<f64> {
+            let many = Recording {
+                input: target.input.repeat(passes),
+                output: target.output.repeat(passes),
+                ..target.clone()
+            };
+            self.judge(&adapt(model, &many, &adapting(learner))?.model, to)
         };
-        for &[a, b, to] in triples {
-            let name = format!(
-                "{material}{} and {} → {}",
-                stresses[a], stresses[b], stresses[to]
-            );
-            let pair = [loops[a].clone(), loops[b].clone()];
-            let models = [
-                fitted_load(&pair, &plane)?,
-                fitted(&loops[to..=to], &plane)?,
-            ];
-            row(&name, models, &loops[to], &[Learner::Drift])?;
-        }
+        Ok(format!("{:.1}, {:.1}", after(1)?, after(PASSES)?))
     }
-    Ok(())
-}
 
-fn part_of(recording: &Recording) -> Recording {
-    Recording {
-        load: None,
-        ..recording.clone()
+    fn row(&self, from: usize, to: usize) -> Result<()> {
+        let model = |n: usize| fit(&self.loops[n], &self.options);
+        let before = model(from)?;
+        let adapted = LEARNERS.map(|(_, learner)| self.adapted(&before, to, learner));
+        println!(
+            "| {} {} → {} | {:.1} | {:.1} | {} |",
+            self.material,
+            self.stresses[from],
+            self.stresses[to],
+            self.judge(&before, to)?,
+            self.judge(&model(to)?, to)?,
+            adapted.into_iter().collect::<Result<Vec<_>>>()?.join(" | "),
+        );
+        Ok(())
     }
-}
 
-fn fit_options(plane: &Plane) -> FitOptions {
-    FitOptions {
-        range: Some((plane.min(), plane.max())),
-        levels: LEVELS,
-        sign: Some(hysteron::Sign::Negative),
-        ..FitOptions::default()
+    fn row_of_load(&self, from: [usize; 2], to: usize) -> Result<()> {
+        let under = |n: usize| Recording {
+            load: Some(vec![self.stresses[n]; self.loops[n].len()]),
+            ..self.loops[n].clone()
+        };
+        let model = fit_experiment(&from.map(under), &self.options, &|_, _| Ok(()))?;
+        let middle = DriftParts::of(&model, None)?.model;
+        let known = match model.at_load(self.stresses[to]) {
+            Ok(model) => format!("{:.1}", self.judge(&model, to)?),
+            Err(_) => "outside".into(),
+        };
+        println!(
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} |",
+            self.material,
+            self.stresses[from[0]],
+            self.stresses[from[1]],
+            self.stresses[to],
+            self.judge(&middle, to)?,
+            self.judge(&fit(&self.loops[to], &self.options)?, to)?,
+            self.adapted(&model, to, Learner::Drift)?,
+        );
+        Ok(())
     }
-}
-
-fn fitted(loops: &[Recording], plane: &Plane) -> Result<Model> {
-    Ok(fit(&part_of(&loops[0]), &fit_options(plane))?)
-}
-
-fn fitted_load(loops: &[Recording], plane: &Plane) -> Result<Model> {
-    Ok(fit_experiment(loops, &fit_options(plane), &|_, _| Ok(()))?)
-}
-
-fn row(name: &str, [from, to]: [Model; 2], target: &Recording, learners: &[Learner]) -> Result<()> {
-    let target = part_of(target);
-    let (_, (low, high)) = target.ranges();
-    let judge = |model: &Model| -> Result<f64> {
-        Ok(100.0 * rmse(&target.output, &model.simulate(&target.input)?) / (high - low))
-    };
-    let mut passes = target.clone();
-    for _ in 1..PASSES {
-        passes.input.extend(&target.input);
-        passes.output.extend(&target.output);
-    }
-    let fixed = match &from.load {
-        Some(_) => DriftParts::of(&from, None)?.model,
-        None => from.clone(),
-    };
-    let mut cells = vec![
-        format!("{:.2}", judge(&fixed)?),
-        format!("{:.2}", judge(&to)?),
-    ];
-    for learner in LEARNERS {
-        cells.push(match learners.contains(&learner) {
-            true => {
-                let one = adapt(&from, &target, &options(learner, &target, Some(&from)))?;
-                let more = adapt(&from, &passes, &options(learner, &target, Some(&from)))?;
-                format!("{:.2}, {:.2}", judge(&one.model)?, judge(&more.model)?)
-                    + &if std::env::var("COUNTS").is_ok() {
-                        format!(" {:?}", more.counts)
-                    } else {
-                        String::new()
-                    }
-            }
-            false => String::new(),
-        });
-    }
-    println!("| {name} | {} |", cells.join(" | "));
-    Ok(())
 }
