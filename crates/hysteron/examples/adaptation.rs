@@ -37,9 +37,9 @@ fn main() -> Result<()> {
         .nth(1)
         .ok_or("name the folder of the recordings")?;
     let folder = Path::new(&folder);
-    println!("{}", include_str!("adaptation.md"));
+    print!("{}", include_str!("adaptation.md"));
     cycles(folder)?;
-    println!("\n{}", include_str!("adaptation-stress.md"));
+    print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!("| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
@@ -50,7 +50,7 @@ fn main() -> Result<()> {
         }
         pairs.push(loops);
     }
-    println!("\n{}", include_str!("adaptation-load.md"));
+    print!("\n{}", include_str!("adaptation-load.md"));
     println!("| from → to, MPa | middle | at its load | fitted | drift |");
     println!("| --- | ---: | ---: | ---: | ---: |");
     for loops in pairs {
@@ -63,6 +63,7 @@ fn main() -> Result<()> {
             }
         }
     }
+    print!("{}", include_str!("adaptation-end.md"));
     Ok(())
 }
 

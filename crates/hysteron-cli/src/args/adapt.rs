@@ -52,7 +52,7 @@ pub(crate) struct Tuning {
     /// increments: levels that the input travels between two updates [default: 1]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     span: Option<f64>,
-    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1 [default: 0.999, of drift 0.9995]
+    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1 [default: 0.999, of drift 0.9999]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = parse_finite)]
     forgetting: Option<f64>,
     /// least-squares, drift: standard deviation of the error of a reading and of the model, in the output's unit

@@ -9,7 +9,7 @@ const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
 /// Forgetting factor of least squares, for weights and for shares.
-const FORGETTING: [f64; 2] = [0.999, 0.9995];
+const FORGETTING: [f64; 2] = [0.999, 0.9999];
 /// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err more, and alike from sample to
 /// sample.
 const MISFIT: [f64; 2] = [0.02, 0.05];
@@ -47,7 +47,7 @@ pub enum Learner {
 /// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
 /// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
 /// | `span` | 1 | 1/8 to 8 | increments: levels between two updates |
-/// | `forgetting` | weights: 0.999; shares: 0.9995 | above 0, up to 1 | least squares: what a sample counts after the next |
+/// | `forgetting` | weights: 0.999; shares: 0.9999 | above 0, up to 1 | least squares: what a sample counts after the next |
 /// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
 /// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
 /// | `correlation` | 1 | from 0 on | least squares of weights: levels over which deviations go together |
