@@ -51,8 +51,8 @@ fn main() -> Result<()> {
         pairs.push(loops);
     }
     print!("\n{}", include_str!("adaptation-load.md"));
-    println!("| from → to, MPa | middle | at its load | fitted | drift |");
-    println!("| --- | ---: | ---: | ---: | ---: |");
+    println!("| from → to, MPa | middle | at its load | fitted | drift | drift, forgetting 1 |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -255,7 +255,7 @@ impl Loops {
     }
 
     /// Errors of a model that was adapted to a loop, after one pass and after [`PASSES`].
-    fn adapted(&self, model: &Model, to: usize, learner: Learner) -> Result<String> {
+    fn adapted(&self, model: &Model, to: usize, options: &AdaptOptions) -> Result<String> {
         let target = &self.loops[to];
         let after = |passes: usize| -> Result<f64> {
             let many = Recording {
@@ -263,7 +263,7 @@ impl Loops {
                 output: target.output.repeat(passes),
                 ..target.clone()
             };
-            self.judge(&adapt(model, &many, &adapting(learner))?.model, to)
+            self.judge(&adapt(model, &many, options)?.model, to)
         };
         Ok(format!("{:.1}, {:.1}", after(1)?, after(PASSES)?))
     }
@@ -271,7 +271,7 @@ impl Loops {
     fn row(&self, from: usize, to: usize) -> Result<()> {
         let model = |n: usize| fit(&self.loops[n], &self.options);
         let before = model(from)?;
-        let adapted = LEARNERS.map(|(_, learner)| self.adapted(&before, to, learner));
+        let adapted = LEARNERS.map(|(_, learner)| self.adapted(&before, to, &adapting(learner)));
         println!(
             "| {} {} → {} | {:.1} | {:.1} | {} |",
             self.material,
@@ -295,15 +295,21 @@ impl Loops {
             Ok(model) => format!("{:.1}", self.judge(&model, to)?),
             Err(_) => "outside".into(),
         };
+        let drift = adapting(Learner::Drift);
+        let remembering = AdaptOptions {
+            forgetting: Some(1.0),
+            ..drift
+        };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
             self.stresses[to],
             self.judge(&middle, to)?,
             self.judge(&fit(&self.loops[to], &self.options)?, to)?,
-            self.adapted(&model, to, Learner::Drift)?,
+            self.adapted(&model, to, &drift)?,
+            self.adapted(&model, to, &remembering)?,
         );
         Ok(())
     }
