@@ -247,9 +247,9 @@ fn what_cannot_be_adapted_is_refused() {
     assert!(refused(&fine, &recording, by(Learner::LeastSquares)).contains("GiB"));
 }
 
-/// A nickel-titanium-hafnium wire at 200 MPa, and then at 400.
+/// A nickel-titanium-hafnium alloy at 200 MPa, and then at 400.
 #[test]
-fn a_measured_wire_is_followed_to_another_stress() {
+fn a_measured_alloy_is_followed_to_another_stress() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let loops = [200, 400].map(|stress| folder.join(format!("sma_nitihf_bigelow_{stress}MPa.csv")));
     if !loops.iter().all(|path| path.exists()) {
