@@ -86,7 +86,7 @@ fn faults_are_named_and_nothing_is_written() {
     let rest = "--input x --output y -o none.json";
     let cases = [
         (
-            format!("adapt model.json after.csv --input x --output z -o none.json"),
+            "adapt model.json after.csv --input x --output z -o none.json".into(),
             "`z`",
         ),
         (

@@ -35,7 +35,7 @@ impl DriftParts {
     /// The parts of `model`; one that depends on a load starts at `load`, or at the middle of its range.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a load outside the model's range, or of a model without one.
+    /// [`crate::Error::Fit`] for a load outside the model's range, or of a model without one.
     pub fn of(model: &Model, load: Option<f64>) -> Result<Self> {
         let Some(dependence) = &model.load else {
             return match load {
