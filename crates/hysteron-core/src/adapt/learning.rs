@@ -43,7 +43,6 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        let counted = self.options.beyond(error);
         let (options, floor) = (self.options, self.floor);
         let mut slices = self.layout.cut(self.memory.as_mut());
         let share = options.offset_share;
@@ -57,11 +56,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         let mut contest = slices.contest(0..self.layout.parameters);
         let length = options.trial;
         if self.trial.judge(&mut contest, errors, measured, length) {
-            slices.covariance.copy_from_slice(slices.start);
+            least_squares::restart(&mut slices);
             return Outcome::RolledBack;
-        }
-        if counted == T::ZERO {
-            return Outcome::Waiting;
         }
         match options.method {
             Method::LeastSquares {
@@ -71,10 +67,18 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
                     forgetting,
                     variance: noise * noise,
                 };
+                let counted = options.beyond(rest - dot(slices.estimate, slices.phi));
+                if counted == T::ZERO {
+                    return Outcome::Waiting;
+                }
                 law.update(&mut slices, counted, options.leakage);
                 least_squares::project(&mut slices);
             }
             Method::Gradient { gain } | Method::Increments { gain, .. } => {
+                let counted = options.beyond(error);
+                if counted == T::ZERO {
+                    return Outcome::Waiting;
+                }
                 gradient::update(&mut slices, counted, (gain, options.leakage), floor);
                 gradient::project(slices.theta);
             }
@@ -159,7 +163,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     pub(super) fn take_back(&mut self) {
         let mut slices = self.layout.cut(self.memory.as_mut());
         slices.contest(0..self.layout.parameters).roll_back();
-        slices.covariance.copy_from_slice(slices.start);
+        least_squares::restart(&mut slices);
         (self.trial, self.level) = (Trial::default(), Trial::default());
     }
 }

@@ -9,8 +9,8 @@ use super::vector::{dot, dot_and_add};
 use crate::Real;
 use crate::plane::operator_index;
 
-/// Negative weights that are led back along the covariance in one sample; what is left is cut off.
-const LED_BACK: usize = 4;
+/// One negative weight for each of so many parameters is led back in a sample.
+const PARAMETERS_PER_STEP: usize = 4;
 
 /// Forgetting factor and variance of a reading.
 #[derive(Clone, Copy)]
@@ -20,10 +20,10 @@ pub(super) struct Law<T> {
 }
 
 impl<T: Real> Law<T> {
-    /// One sample: parameters and covariance move.
+    /// One sample: the estimate and the covariance move. `error` is that of the estimate.
     pub(super) fn update(self, slices: &mut Slices<'_, T>, error: T, leakage: T) {
         let Slices {
-            theta,
+            estimate,
             offline,
             phi,
             covariance,
@@ -44,8 +44,8 @@ impl<T: Real> Law<T> {
         if !(step.is_finite() && total.is_finite()) {
             return;
         }
-        for ((theta, &gain), &offline) in theta.iter_mut().zip(&**gain).zip(&**offline) {
-            *theta = *theta + step * gain + leakage * (offline - *theta);
+        for ((now, &gain), &offline) in estimate.iter_mut().zip(&**gain).zip(&**offline) {
+            *now = *now + step * gain + leakage * (offline - *now);
         }
         self.learn_and_forget(covariance, start, gain, total);
     }
@@ -67,29 +67,50 @@ impl<T: Real> Law<T> {
     }
 }
 
-/// Leads negative weights back to zero along the covariance: `θ ← θ − P_k θ_k/P_kk` is the nearest point
-/// with `θ_k = 0` in the metric of `P⁻¹`, in which the parameters that go together move together
-/// (Goodwin & Sin 1984, section 3.7; Simon 2010). `O(n)` for each.
+/// Leads negative weights back to zero along the covariance: `θ ← θ − P_k θ_k/P_kk` is the nearest point with `θ_k = 0` in the
+/// metric of `P⁻¹`, in which parameters that go together move together, and no further from any parameters that
+/// are not negative (Goodwin & Sin 1984, section 3.7; Simon 2010). `O(n)` for each, a bounded number of them.
+///
+/// What is left below zero is cut off for the model, not for the estimate: cutting has no such property, and would pile up.
 pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
-    let weights = slices.theta.len().saturating_sub(1);
-    for _ in 0..LED_BACK {
-        let mut worst = (T::ZERO, 0);
-        for (k, &theta) in slices.theta[..weights].iter().enumerate() {
-            if theta < worst.0 {
-                worst = (theta, k);
+    let Slices {
+        theta,
+        estimate,
+        covariance,
+        ..
+    } = slices;
+    let weights = estimate.len().saturating_sub(1);
+    for _ in 0..weights / PARAMETERS_PER_STEP + 1 {
+        let mut worst = (T::ZERO, T::ZERO, 0);
+        for (k, &weight) in estimate[..weights].iter().enumerate() {
+            if weight < T::ZERO {
+                let step = weight / covariance[packed(k, k)];
+                let distance = weight * step;
+                if distance > worst.0 {
+                    worst = (distance, step, k);
+                }
             }
         }
-        let (negative, k) = worst;
-        let step = negative / slices.covariance[packed(k, k)];
-        if !(step < T::ZERO && step.is_finite()) {
+        let (distance, step, k) = worst;
+        if !(distance > T::ZERO && distance.is_finite()) {
             break;
         }
-        for (n, theta) in slices.theta.iter_mut().enumerate() {
-            *theta = *theta - step * slices.covariance[packed(n, k)];
+        for (n, parameter) in estimate.iter_mut().enumerate() {
+            *parameter = *parameter - step * covariance[packed(n, k)];
         }
-        slices.theta[k] = T::ZERO;
+        estimate[k] = T::ZERO;
     }
-    super::gradient::project(slices.theta);
+    theta.copy_from_slice(estimate);
+    super::gradient::project(theta);
+}
+
+/// The estimate sets out from the parameters in force: after these were put there from elsewhere.
+pub(super) fn restart<T: Real>(slices: &mut Slices<'_, T>) {
+    if slices.estimate.is_empty() {
+        return;
+    }
+    slices.covariance.copy_from_slice(slices.start);
+    slices.estimate.copy_from_slice(slices.theta);
 }
 
 /// Place of `(a, b)` in the lower triangle of a symmetric matrix, row by row.
@@ -151,6 +172,7 @@ mod tests {
         let mut memory = [0.0; LAYOUT.len()];
         let mut slices = LAYOUT.cut(&mut memory);
         parameters::start_covariance(&mut slices, LEVELS, METHOD);
+        restart(&mut slices);
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -56,6 +56,8 @@ pub(super) struct Slices<'a, T> {
     pub(super) start: &'a mut [T],
     /// Covariance times regressor; empty for other methods.
     pub(super) gain: &'a mut [T],
+    /// The parameters of least squares before the last negative ones are cut off; empty for other methods.
+    pub(super) estimate: &'a mut [T],
     /// The tables of the parts, one after the other.
     pub(super) tables: &'a mut [T],
 }
@@ -106,7 +108,7 @@ impl Layout {
             + self.gamma
             + self.anchor
             + 2 * self.covariance
-            + self.gain()
+            + 2 * self.gain()
             + self.tables
     }
 
@@ -129,6 +131,7 @@ impl Layout {
             covariance: next(self.covariance),
             start: next(self.covariance),
             gain: next(self.gain()),
+            estimate: next(self.gain()),
             tables: next(self.tables),
         }
     }

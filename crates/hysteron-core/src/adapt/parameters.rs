@@ -103,5 +103,4 @@ pub(super) fn start_covariance<T: Real>(
             }
         }
     }
-    slices.covariance.copy_from_slice(slices.start);
 }

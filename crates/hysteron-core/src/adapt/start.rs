@@ -3,7 +3,7 @@
 use super::estimator::Estimator;
 use super::memory::Layout;
 use super::trial::Trial;
-use super::{Adaptation, Method, parameters};
+use super::{Adaptation, Method, least_squares, parameters};
 use crate::everett;
 use crate::plane::operator_count;
 use crate::{Error, Model, Real};
@@ -128,6 +128,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         slices.good.copy_from_slice(slices.theta);
         slices.candidate.copy_from_slice(slices.theta);
         parameters::start_covariance(&mut slices, levels, method);
+        least_squares::restart(&mut slices);
         self.floor = parameters::full_norm(&slices, levels) / T::from_index(100);
     }
 }
