@@ -177,6 +177,47 @@ fn least_squares_finds_the_weights_themselves() {
     assert!(learner.estimator.offset().abs() < 1e-3);
 }
 
+/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero must not come back as an error of
+/// the estimate, which grew without bound where it did.
+#[test]
+fn weights_held_at_zero_do_not_pile_up() {
+    for forgetting in [0.9999, 1.0] {
+        let mut rng = rng(17);
+        // A narrow ridge on a finer plane, moved off the one that the learner sets out from.
+        let ridge = |levels: usize, middle: f64, j: usize, i: usize| {
+            let at = |n: usize| n as f64 / levels as f64 - middle;
+            (-200.0 * (at(j).powi(2) + (at(i) + 0.2).powi(2))).exp()
+        };
+        let weights = |levels: usize, middle: f64| -> Vec<f64> {
+            let rows = (1..=levels).flat_map(|j| (1..=j).map(move |i| (j, i)));
+            let mut weights: Vec<f64> = rows.map(|(j, i)| ridge(levels, middle, j, i)).collect();
+            let total: f64 = weights.iter().sum();
+            weights.iter_mut().for_each(|weight| *weight /= total);
+            weights
+        };
+        let method = Method::LeastSquares {
+            forgetting,
+            noise: 0.003,
+            spread: 0.01,
+            correlation: 3.0,
+        };
+        let guards = Adaptation {
+            trial: u32::MAX,
+            ..options(method)
+        };
+        let mut there = build(unit_plane(37), Operator::Mkp, &weights(37, 0.7));
+        let offline = weights(12, 0.5);
+        let mut learner = Learner::new(unit_plane(12), Operator::Mkp, &offline, guards);
+        learner.estimator.freeze(true);
+        let fixed = error(&mut learner, &mut there, &mut rng, (4000, 0.0));
+        learner.estimator.freeze(false);
+        for _ in 0..10 {
+            let adapted = error(&mut learner, &mut there, &mut rng, (4000, 0.003));
+            assert!(adapted < 0.3 * fixed, "{forgetting}: {adapted} of {fixed}");
+        }
+    }
+}
+
 #[test]
 fn shares_of_parts_are_found() {
     const K: usize = 20;
