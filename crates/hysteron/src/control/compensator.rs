@@ -17,7 +17,7 @@ pub struct Compensator {
     /// Where the inverse stands; none before the first sample.
     wanted: Option<State>,
     /// The branch that the target is on.
-    target: Turning,
+    target: Option<Turning>,
 }
 
 #[derive(Debug, Clone)]
@@ -28,13 +28,16 @@ enum Kind {
 
 impl Compensator {
     /// A model that stays as it is, from every operator off.
-    #[must_use]
-    pub fn fixed(model: Model) -> Self {
+    ///
+    /// # Errors
+    /// As [`Model::inverse`], for a model that has none.
+    pub fn fixed(model: Model) -> Result<Self> {
+        model.inverse()?;
         let state = model.start();
-        Self::new(Kind::Fixed {
+        Ok(Self::new(Kind::Fixed {
             model: Box::new(model),
             state,
-        })
+        }))
     }
 
     /// A model that learns.
@@ -47,7 +50,7 @@ impl Compensator {
         Self {
             kind,
             wanted: None,
-            target: Turning::new(0.0),
+            target: None,
         }
     }
 
@@ -70,24 +73,23 @@ impl Compensator {
     /// *anticipate*; a target that goes back by up to the `tolerance` is not followed.
     ///
     /// # Errors
-    /// [`crate::Error::Core`] for a target that is not finite and weights below zero.
+    /// [`crate::Error::Core`] for a target that is not finite.
     pub fn solve(
         &mut self,
         target: f64,
         heading: Option<Direction>,
         tolerance: f64,
     ) -> Result<Solution<f64>> {
-        if self.wanted.is_none() {
-            self.target = Turning::new(tolerance);
-        }
-        self.target.push(target);
+        let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
+        branch.push(target);
+        let branch = branch.branch();
         let (state, sign) = match &self.kind {
             Kind::Fixed { model, state } => (state, model.sign()),
             Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),
         };
         let wanted = self.wanted.get_or_insert_with(|| state.clone());
         let rises = wanted.is_rising() == (sign == Sign::Positive);
-        let turned = match self.target.branch() {
+        let turned = match branch {
             Some((branch, _)) => rises != (branch == Direction::Rising),
             None => false,
         };
@@ -102,6 +104,12 @@ impl Compensator {
             Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target, policy),
             Kind::Adaptive(adaptive) => adaptive.solve(wanted, target, policy),
         }
+    }
+
+    /// Lets the inverse set out from where the input was last seen. After a time without seeing it, the input may have been
+    /// anywhere, and what was asked for in the meantime was not done.
+    pub fn set_out_again(&mut self) {
+        self.wanted = None;
     }
 
     /// The model that learns.

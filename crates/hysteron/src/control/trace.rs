@@ -7,7 +7,7 @@ pub struct LoopStatus {
     pub saturated: bool,
     /// The reference lay out of the model's reach; the nearest end was aimed at.
     pub out_of_reach: bool,
-    /// The output's reading was missing, stuck or impossible: the loop went on without it.
+    /// A reading was missing, or stuck: the loop went on without it.
     pub sensor_fault: bool,
     /// The model's weights changed.
     pub adapted: bool,

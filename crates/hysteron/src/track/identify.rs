@@ -55,7 +55,7 @@ fn profile(scenario: &Scenario, plane: Plane) -> Result<Vec<f64>> {
 
 fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> Result<Recording> {
     let mut plant = scenario.plant.build(seed)?;
-    let mut controller = Controller::new(scheme.clone());
+    let mut controller = Controller::new(scheme.clone())?;
     let (mut input, mut output) = (Vec::new(), Vec::new());
     for &command in profile {
         let reading = plant.read();

@@ -65,7 +65,6 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
         })
         .collect();
     let course = Course {
-        interval_s: scenario.interval_s,
         reference: &reference,
         headings: &headings,
         events: &events,
@@ -151,12 +150,12 @@ fn controller(
             model,
             scenario.adaptation.into(),
         )?)),
-        _ => Some(Compensator::fixed(model.clone())),
+        _ => Some(Compensator::fixed(model.clone())?),
     };
-    Ok(Controller::new(Scheme {
+    Controller::new(Scheme {
         compensator,
         rest: kind.rest(),
         pid: gains.filter(|_| kind.has_pid()),
         ..scheme.clone()
-    }))
+    })
 }

@@ -37,7 +37,7 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let steepest = steepest.ok_or_else(|| no_answer("temperature"))?;
     let slope = rise(steepest) / (wide as f64 * scenario.interval_s);
     let level = temperature[..LEVEL].iter().sum::<f64>() / LEVEL as f64;
-    if !(slope > 0.0) {
+    if slope.is_nan() || slope <= 0.0 {
         return Err(no_answer("temperature"));
     }
     let passed = (steepest - LEVEL) as f64 * scenario.interval_s;
@@ -104,7 +104,7 @@ fn average(
     let mut sums = vec![(0.0, 0.0); LEVEL + 2 * SAMPLES];
     for seed in 1..=TESTS {
         let mut plant = scenario.plant.build(seed)?;
-        let mut controller = Controller::new(scheme.clone());
+        let mut controller = Controller::new(scheme.clone())?;
         let (mut command, mut n, mut waited) = (scheme.bias, 0, 0);
         while n < sums.len() {
             let action = controller.step_command(command, plant.read())?;
