@@ -63,6 +63,12 @@ impl<T: Real> Place<T> {
         }
     }
 
+    /// Whether this is the same position on the same branch, whatever the outputs.
+    pub(crate) fn is_at(&self, other: &Self) -> bool {
+        let key = |place: &Self| (place.x, place.top, place.began, place.end);
+        key(self) == key(other)
+    }
+
     /// Works out the outputs anew along the turning points and at the present position.
     pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
         let split = |x| Split::of(x, grid.levels);

@@ -26,14 +26,14 @@ use crate::{Clipped, Error, NegativeWeights, Operator, Plane, Real};
 pub struct Model<T, C> {
     plane: Plane<T>,
     operator: Operator,
-    table: C,
-    negative: Option<NegativeWeights>,
+    pub(crate) table: C,
+    pub(crate) negative: Option<NegativeWeights>,
     /// Tells models apart, for a state holds outputs of the one that made it.
-    stamp: u64,
+    pub(crate) stamp: u64,
     /// Where the table in use begins: a model that is renewed row by row has room for two.
-    base: usize,
+    pub(crate) base: usize,
     /// The next row to renew in the other table, from 1.
-    renewed: usize,
+    pub(crate) renewed: usize,
 }
 
 /// What one step gives.
@@ -84,83 +84,6 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
             base: 0,
             renewed: 1,
         })
-    }
-
-    /// Puts other weights in the place of the present ones. `O(K²)`. States of the model have to be
-    /// [rebased](Model::rebase) after it.
-    ///
-    /// # Errors
-    /// [`Error::WeightCount`], [`Error::WeightNotFinite`]; the model is then as it was.
-    ///
-    /// ```
-    /// use hysteron_core::{Model, Operator, Plane, Turn, table_len, turn_capacity};
-    /// let plane = Plane::new(0.0, 1.0, 2)?;
-    /// let mut model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
-    /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
-    /// model.step(&mut state, 1.0)?;
-    /// model.set_weights(&[1.0, 1.0, 1.0])?;
-    /// model.rebase(&mut state)?; // the operators stay as they are
-    /// assert_eq!(model.output(&state), 3.0);
-    /// # Ok::<(), hysteron_core::Error>(())
-    /// ```
-    pub fn set_weights(&mut self, weights: &[T]) -> Result<(), Error> {
-        let levels = self.plane.levels();
-        self.negative = everett::check(levels, weights)?;
-        self.renewed = 1;
-        everett::fill(levels, weights, &mut self.table.as_mut()[self.base..]);
-        self.changed();
-        Ok(())
-    }
-
-    /// Writes the whole table anew: `row(p, above, row)` gives row `p` from the one above it. The weights that this
-    /// makes have to be finite and not negative.
-    pub(crate) fn rewrite(&mut self, mut row: impl FnMut(usize, &[T], &mut [T])) {
-        let table = &mut self.table.as_mut()[self.base..];
-        for p in 1..=self.plane.levels() {
-            let (above, here) = everett::rows(table, p);
-            row(p, above, here);
-        }
-        self.negative = None;
-        self.renewed = 1;
-        self.changed();
-    }
-
-    /// Writes one row of a second table and, after the last, changes over to it; says whether it did. `O(K)`.
-    ///
-    /// Until then the model keeps the table it has, so that at each instant it is the model of weights that are
-    /// finite and not negative. As each table is summed from the weights, no rounding piles up.
-    pub(crate) fn renew_row(&mut self, mut row: impl FnMut(usize, &[T], &mut [T])) -> bool {
-        let levels = self.plane.levels();
-        let len = everett::table_len(levels);
-        let other = len - self.base;
-        let table = &mut self.table.as_mut()[other..other + len];
-        table[0] = T::ZERO;
-        let (above, here) = everett::rows(table, self.renewed);
-        row(self.renewed, above, here);
-        self.renewed += 1;
-        if self.renewed <= levels {
-            return false;
-        }
-        self.base = other;
-        self.renewed = 1;
-        self.negative = None;
-        self.changed();
-        true
-    }
-
-    /// Whether the memory holds the second table that [`Model::renew_row`] needs.
-    pub(crate) fn check_renewable(&self) -> Result<(), Error> {
-        let needed = 2 * everett::table_len(self.plane.levels());
-        let found = self.table.as_ref().len();
-        if found < needed {
-            return Err(Error::MemoryTooSmall { needed, found });
-        }
-        Ok(())
-    }
-
-    fn changed(&mut self) {
-        // Any odd number runs through all of them; this one spreads them (Knuth 1997, section 6.4).
-        self.stamp = self.stamp.wrapping_add(0x9e37_79b9_7f4a_7c15);
     }
 }
 
@@ -259,20 +182,6 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             // Never −0, which has no place in the order of positions.
             state.travel(self.table(), x.larger(T::ZERO), input);
         }
-        Ok(())
-    }
-
-    /// Gives `state`, of this model before its weights changed or of one with other weights, the outputs of these weights. The
-    /// operators stay as they are. `O(K)`.
-    ///
-    /// # Errors
-    /// [`Error::StateMismatch`].
-    pub fn rebase<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
-    where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
-    {
-        self.fits(state)?;
-        state.rebase(self.table(), self.stamp);
         Ok(())
     }
 
@@ -384,7 +293,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
 
     /// Whether a state's memory is of the right size and kind.
     #[inline(always)]
-    fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>
+    pub(crate) fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {

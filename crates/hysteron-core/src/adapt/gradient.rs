@@ -1,15 +1,21 @@
 //! The normalised gradient (Goodwin & Sin 1984, section 3.3; Ioannou & Sun 1996, section 4.3).
 
 use super::memory::Slices;
+use super::vector::dot;
 use crate::Real;
 
-/// Moves the parameters along the regressor by the share `gain` of the error, and by `leakage` to the off-line ones.
-pub(super) fn update<T: Real>(slices: &mut Slices<'_, T>, error: T, gain: T, leakage: T) {
-    let norm = slices.phi.iter().fold(T::ZERO, |sum, &phi| sum + phi * phi);
-    if norm <= T::ZERO {
-        return; // no operator is on: the output says nothing of the weights
+/// Moves the parameters along the regressor by the share `gain` of the error, and by `leakage` to the off-line ones;
+/// `floor` is `c`.
+pub(super) fn update<T: Real>(
+    slices: &mut Slices<'_, T>,
+    error: T,
+    (gain, leakage): (T, T),
+    floor: T,
+) {
+    let step = gain * error / (floor + dot(slices.phi, slices.phi));
+    if !step.is_finite() {
+        return;
     }
-    let step = gain * error / norm;
     let each = slices.theta.iter_mut().zip(&*slices.phi);
     for ((theta, &phi), &offline) in each.zip(&*slices.offline) {
         *theta = *theta + step * phi + leakage * (offline - *theta);

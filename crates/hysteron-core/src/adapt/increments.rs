@@ -3,21 +3,23 @@
 
 use super::memory::Slices;
 use super::operators::{touched, within};
+use super::trial::Errors;
 use crate::{Operator, Real};
 
 /// An increment under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Increment<T> {
     /// The output as measured where it began.
-    began: T,
-    /// Lowest and highest position since.
+    measured: T,
+    /// The position there.
+    position: T,
+    /// Lowest and highest position since: all rows and columns in which operators can have moved.
     range: (T, T),
 }
 
-/// Errors of a finished increment, by the present and by the last good weights.
+/// A finished increment, against the present and other weights.
 pub(super) struct Finished<T> {
-    pub(super) error: T,
-    pub(super) good: T,
+    pub(super) errors: Errors<T>,
     norm: T,
     rows: (usize, usize),
 }
@@ -25,16 +27,19 @@ pub(super) struct Finished<T> {
 impl<T: Real> Increment<T> {
     pub(super) fn start(measured: T, position: T) -> Self {
         Self {
-            began: measured,
+            measured,
+            position,
             range: (position, position),
         }
     }
 
-    /// Goes on to `position`; says whether `span` levels are travelled.
+    /// Goes on to `position`; says whether that is `span` levels from where it began. Then the diagonal operators,
+    /// which have no memory, have moved by as much, so that the increment says something for sure.
     pub(super) fn extend(&mut self, position: T, span: T) -> bool {
         let (low, high) = self.range;
         self.range = (low.smaller(position), high.larger(position));
-        self.range.1 - self.range.0 >= span
+        let travelled = position - self.position;
+        travelled.larger(-travelled) >= span
     }
 
     /// What the weights say of the increment that ends with `measured`. `O(K)` for each level travelled.
@@ -47,20 +52,21 @@ impl<T: Real> Increment<T> {
     ) -> Finished<T> {
         let rows = touched(self.range.0, self.range.1, levels);
         let change = Change::of(operator, slices);
-        let (mut now, mut good, mut norm) = (T::ZERO, T::ZERO, T::ZERO);
+        let gained = measured - self.measured;
+        let (mut norm, mut now, mut candidate, mut good) = (T::ZERO, gained, gained, gained);
         within(rows.0, rows.1, levels, |n| {
             let phi = change.at(n);
-            now = now + slices.theta[n] * phi;
-            good = good + slices.good[n] * phi;
             norm = norm + phi * phi;
+            now = now - slices.theta[n] * phi;
+            candidate = candidate - slices.candidate[n] * phi;
+            good = good - slices.good[n] * phi;
         });
-        let gained = measured - self.began;
-        Finished {
-            error: gained - now,
-            good: gained - good,
-            norm,
-            rows,
-        }
+        let errors = Errors {
+            now,
+            candidate,
+            good,
+        };
+        Finished { errors, norm, rows }
     }
 }
 
@@ -75,15 +81,14 @@ impl<T: Real> Finished<T> {
         error: T,
         (gain, leakage): (T, T),
     ) {
-        if self.norm <= T::ZERO {
-            return;
-        }
         let step = gain * error / self.norm;
         within(self.rows.0, self.rows.1, levels, |n| {
             let phi = Change::of(operator, slices).at(n);
             let theta = slices.theta[n];
             let moved = theta + step * phi + leakage * (slices.offline[n] - theta);
-            slices.theta[n] = moved.larger(T::ZERO);
+            if moved.is_finite() {
+                slices.theta[n] = moved.larger(T::ZERO);
+            }
         });
     }
 

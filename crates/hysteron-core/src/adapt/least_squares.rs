@@ -1,10 +1,11 @@
-//! Recursive least squares with stabilised forgetting (Kulhavý & Zarrop 1993).
+//! Recursive least squares with regularised linear forgetting (Kulhavý & Kraus 1996; stabilised forgetting: Kulhavý & Zarrop 1993).
 //!
 //! A sample takes from the covariance what it tells, `P ← P − (Pφ)(Pφ)ᵀ/(r + φᵀPφ)`. Forgetting then leads it back to the
 //! one at the start, `P ← λP + (1 − λ)P₀`: `P` never exceeds `P₀`, stays positive because both are, and rounding
 //! is forgotten as well. Parameters that are not excited become as uncertain as they were off-line, and no more.
 
 use super::memory::Slices;
+use super::vector::{dot, dot_and_add};
 use crate::Real;
 use crate::plane::operator_index;
 
@@ -18,26 +19,9 @@ pub(super) struct Law<T> {
     pub(super) variance: T,
 }
 
-/// Fills the covariance at the start: `covariance(a, b)` of the parameters `a` and `b`, counted from 0.
-pub(super) fn reset<T: Real>(
-    slices: &mut Slices<'_, T>,
-    mut covariance: impl FnMut(usize, usize) -> T,
-) {
-    let mut entries = slices.start.iter_mut();
-    for a in 0..slices.theta.len() {
-        for b in 0..=a {
-            if let Some(entry) = entries.next() {
-                *entry = covariance(a, b);
-            }
-        }
-    }
-    slices.covariance.copy_from_slice(slices.start);
-}
-
 impl<T: Real> Law<T> {
-    /// One sample: parameters and covariance move. Says whether the numbers still make sense: rounding can, after very
-    /// many samples, take from the covariance its being positive; it has to start again then.
-    pub(super) fn update(self, slices: &mut Slices<'_, T>, error: T, leakage: T) -> bool {
+    /// One sample: parameters and covariance move.
+    pub(super) fn update(self, slices: &mut Slices<'_, T>, error: T, leakage: T) {
         let Slices {
             theta,
             offline,
@@ -48,28 +32,38 @@ impl<T: Real> Law<T> {
             ..
         } = slices;
         multiply(covariance, phi, gain);
-        let spread = dot(phi, gain);
-        if !(spread >= T::ZERO) || !spread.is_finite() {
-            return false;
+        let mut spread = dot(phi, gain);
+        if spread < T::ZERO || !spread.is_finite() {
+            // After very many samples rounding can take from the covariance its being positive.
+            covariance.copy_from_slice(start);
+            multiply(covariance, phi, gain);
+            spread = dot(phi, gain);
         }
-        if spread <= T::ZERO {
-            return true;
+        let total = self.variance + spread;
+        let step = error / total;
+        if !(step.is_finite() && total.is_finite()) {
+            return;
         }
-        let Self {
-            forgetting,
-            variance,
-        } = self;
-        let step = error / (variance + spread);
         for ((theta, &gain), &offline) in theta.iter_mut().zip(&**gain).zip(&**offline) {
             *theta = *theta + step * gain + leakage * (offline - *theta);
         }
-        add_square(covariance, gain, -(T::ONE / (variance + spread)));
-        if forgetting < T::ONE {
-            for (now, &start) in covariance.iter_mut().zip(&**start) {
-                *now = start + forgetting * (*now - start);
+        self.learn_and_forget(covariance, start, gain, total);
+    }
+
+    /// `P ← λ(P − ggᵀ/total) + (1 − λ)P₀`, in one pass.
+    fn learn_and_forget(self, covariance: &mut [T], start: &[T], gain: &[T], total: T) {
+        let forgetting = self.forgetting;
+        let back = T::ONE - forgetting;
+        let (mut covariance, mut start) = (covariance, start);
+        for n in 0..gain.len() {
+            let (row, after) = covariance.split_at_mut(n + 1);
+            let (first, start_after) = start.split_at(n + 1);
+            (covariance, start) = (after, start_after);
+            let scaled = forgetting * gain[n] / total;
+            for ((now, &first), &gain) in row.iter_mut().zip(first).zip(gain) {
+                *now = forgetting * *now - scaled * gain + back * first;
             }
         }
-        true
     }
 }
 
@@ -86,11 +80,10 @@ pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
             }
         }
         let (negative, k) = worst;
-        let own = slices.covariance[packed(k, k)];
-        if negative >= T::ZERO || own <= T::ZERO {
+        let step = negative / slices.covariance[packed(k, k)];
+        if !(step < T::ZERO && step.is_finite()) {
             break;
         }
-        let step = negative / own;
         for (n, theta) in slices.theta.iter_mut().enumerate() {
             *theta = *theta - step * slices.covariance[packed(n, k)];
         }
@@ -100,7 +93,7 @@ pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
 }
 
 /// Place of `(a, b)` in the lower triangle of a symmetric matrix, row by row.
-fn packed(a: usize, b: usize) -> usize {
+pub(super) fn packed(a: usize, b: usize) -> usize {
     operator_index(a.min(b) + 1, a.max(b) + 1)
 }
 
@@ -110,30 +103,82 @@ fn multiply<T: Real>(a: &[T], x: &[T], out: &mut [T]) {
     for n in 0..x.len() {
         let (row, after) = rest.split_at(n + 1);
         rest = after;
-        let mut sum = row[n] * x[n];
-        let xn = x[n];
-        for ((&a, &x), out) in row[..n].iter().zip(x).zip(out.iter_mut()) {
-            sum = sum + a * x;
-            *out = *out + a * xn;
-        }
-        out[n] = sum;
+        out[n] = row[n] * x[n] + dot_and_add(&row[..n], &x[..n], x[n], &mut out[..n]);
     }
 }
 
-/// `A ← A + s x xᵀ`.
-fn add_square<T: Real>(a: &mut [T], x: &[T], s: T) {
-    let mut rest = a;
-    for n in 0..x.len() {
-        let (row, after) = rest.split_at_mut(n + 1);
-        rest = after;
-        let scaled = s * x[n];
-        for (a, &x) in row.iter_mut().zip(x) {
-            *a = *a + scaled * x;
+#[cfg(test)]
+mod tests {
+    use super::super::memory::Layout;
+    use super::super::{Method, parameters};
+    use super::*;
+    use crate::operator_count;
+
+    const LEVELS: usize = 4;
+    const N: usize = operator_count(LEVELS) + 1;
+    const METHOD: Method<f64> = Method::LeastSquares {
+        forgetting: 0.95,
+        noise: 0.01,
+        spread: 2.0,
+        correlation: 2.0,
+    };
+    const LAYOUT: Layout = Layout::all(LEVELS, METHOD);
+
+    /// Whether a symmetric matrix is positive definite (Cholesky).
+    fn is_positive(at: impl Fn(usize, usize) -> f64) -> bool {
+        let mut lower = [[0.0; N]; N];
+        for a in 0..N {
+            for b in 0..=a {
+                let known: f64 = (0..b).map(|k| lower[a][k] * lower[b][k]).sum();
+                let rest = at(a, b) - known;
+                // Written so that NaN fails it.
+                if a == b && (rest <= 0.0 || rest.is_nan()) {
+                    return false;
+                }
+                lower[a][b] = if a == b {
+                    // A root by Newton's method: the core has none.
+                    (0..60).fold(rest.max(1.0), |root, _| (root + rest / root) / 2.0)
+                } else {
+                    rest / lower[b][b]
+                };
+            }
+        }
+        true
+    }
+
+    #[test]
+    fn the_covariance_stays_positive_and_never_exceeds_the_start() {
+        let mut memory = [0.0; LAYOUT.len()];
+        let mut slices = LAYOUT.cut(&mut memory);
+        parameters::start_covariance(&mut slices, LEVELS, METHOD);
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 40) as f64 / (1 << 24) as f64
+        };
+        for n in 0..20_000 {
+            // All directions, one alone, and none but the offset.
+            let kind = n / 1000 % 3;
+            for (k, phi) in slices.phi.iter_mut().enumerate() {
+                *phi = match kind {
+                    0 => random(),
+                    1 => f64::from(k == n % N),
+                    _ => f64::from(k == N - 1),
+                };
+            }
+            let law = Law {
+                forgetting: if n < 10_000 { 0.95 } else { 1.0 },
+                variance: 1e-4,
+            };
+            law.update(&mut slices, random() - 0.5, 0.0);
+            if n % 97 == 0 {
+                let (now, start) = (&*slices.covariance, &*slices.start);
+                assert!(is_positive(|a, b| now[packed(a, b)]), "after {n}");
+                // By no more than rounding.
+                let slack = |a, b| if a == b { 1e-9 } else { 0.0 };
+                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + slack(a, b);
+                assert!(is_positive(below), "after {n}");
+            }
         }
     }
-}
-
-fn dot<T: Real>(a: &[T], b: &[T]) -> T {
-    let products = a.iter().zip(b).map(|(&a, &b)| a * b);
-    products.fold(T::ZERO, |sum, product| sum + product)
 }

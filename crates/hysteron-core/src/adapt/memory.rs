@@ -1,5 +1,8 @@
 //! What an estimator keeps, in one block of memory that the caller provides.
 
+use core::ops::Range;
+
+use super::trial::Contest;
 use crate::Method;
 use crate::everett::table_len;
 use crate::plane::operator_count;
@@ -39,6 +42,8 @@ pub(super) struct Slices<'a, T> {
     pub(super) offline: &'a mut [T],
     /// The last good ones.
     pub(super) good: &'a mut [T],
+    /// Those on trial to become the good ones.
+    pub(super) candidate: &'a mut [T],
     /// The regressor: the derivative of the output with respect to each parameter.
     pub(super) phi: &'a mut [T],
     /// The operators' states; empty with parts.
@@ -97,7 +102,7 @@ impl Layout {
     }
 
     pub(super) const fn len(self) -> usize {
-        4 * self.parameters
+        5 * self.parameters
             + self.gamma
             + self.anchor
             + 2 * self.covariance
@@ -117,6 +122,7 @@ impl Layout {
             theta: next(self.parameters),
             offline: next(self.parameters),
             good: next(self.parameters),
+            candidate: next(self.parameters),
             phi: next(self.parameters),
             gamma: next(self.gamma),
             anchor: next(self.anchor),
@@ -124,6 +130,17 @@ impl Layout {
             start: next(self.covariance),
             gain: next(self.gain()),
             tables: next(self.tables),
+        }
+    }
+}
+
+impl<T> Slices<'_, T> {
+    /// The parameters `which` that a trial is about.
+    pub(super) fn contest(&mut self, which: Range<usize>) -> Contest<'_, T> {
+        Contest {
+            now: &mut self.theta[which.clone()],
+            candidate: &mut self.candidate[which.clone()],
+            good: &mut self.good[which],
         }
     }
 }

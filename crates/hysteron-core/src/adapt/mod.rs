@@ -7,12 +7,17 @@
 mod estimator;
 mod gradient;
 mod increments;
+mod learning;
 mod least_squares;
 mod memory;
 mod operators;
 mod options;
+mod parameters;
+mod start;
 mod trial;
+mod vector;
 
-pub use estimator::{Estimator, Learning, Outcome};
+pub use estimator::Estimator;
+pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_parts};
 pub use options::{Adaptation, Method};

@@ -3,27 +3,46 @@
 use crate::{Error, Real};
 
 /// How the weights follow the error `e` of the prediction; `φ` is what the operators put out, `κ` the offset's share.
+///
+/// What a sample costs at most is given with each method; one that nothing is learned from costs `O(K)` for each level that the
+/// input crossed, since it moves the operators. Two things come on top, now and then: where a state was moved by
+/// others in between, the next sample works out the operators anew, `O(K²)` for each turning point; and at the end of a
+/// trial one sample copies the parameters, or takes them back and writes the table, `O(K²)`.
+///
+/// Cost of a sample that is learned from, relative to a step of the plain [`crate::Definition`], as
+/// `cargo bench -p hysteron-core --bench adaptation` prints it on an x86-64 processor:
+///
+/// | K | gradient | increments | least squares | least squares, 6 shares |
+/// | --- | --- | --- | --- | --- |
+/// | 10 | 2.5 | 0.9 | 18 | 6 |
+/// | 20 | 1.5 | 0.3 | 52 | 2.7 |
+/// | 40 | 1.2 | 0.13 | 190 | 1.5 |
+/// | 100 | 1.3 | 0.06 | | 1.1 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method<T> {
-    /// Normalised gradient, `μ ← μ + g φ e / (κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin 1984, section 3.3).
-    /// `O(K²)` per sample.
+    /// Normalised gradient, `μ ← μ + g φ e/(c + κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin 1984, section 3.3), with
+    /// `c` a hundredth of what `φᵀφ` is when every operator is on, so that few operators that are hardly on do not take
+    /// the whole blame. `O(K²)`: a few passes over the weights and the table. The first to try: it needs to know nothing of
+    /// the noise, and bears more levels than least squares.
     Gradient {
-        /// `g`, above 0 and below 2; 1 takes the whole error of the sample away. Usual: 0.1 to 0.5.
+        /// `g`, above 0 and below 2; 1 takes nearly the whole error of the sample away. Usual: 0.1 to 0.5.
         gain: T,
     },
     /// Normalised gradient on the increments between two inputs some levels apart: `Δy = Σ μ Δγ` concerns the rows
     /// and columns that were crossed and nothing else, so that the slope is learned where it is seen and an
-    /// offset of the sensor does not matter (the time-difference scheme of Tan & Baras 2005). `O(K)` per sample and level
-    /// crossed; what was learned acts when the table has been renewed, `K` samples later. The model needs memory for
-    /// two tables.
+    /// offset of the sensor does not matter (the time-difference scheme of Tan & Baras 2005). `O(K)` for each level
+    /// crossed since the increment began, `O(K²)` for one that crossed the plane in a jump. The table is renewed a row a sample: what was
+    /// learned acts at most `2K` samples later. The model needs memory for two tables. For many levels on a small processor.
     Increments {
         /// As for [`Method::Gradient`]; the offset follows the error of the level with the same gain.
         gain: T,
-        /// Levels that the input has to travel between two updates, from 1/8 to 8. Long increments are less noisy. Usual: 1.
+        /// Levels from the beginning of an increment to its end, from 1/8 to 8. Long increments are less noisy. Usual: 1.
         span: T,
     },
-    /// Recursive least squares with stabilised forgetting (Kulhavý & Zarrop 1993): the covariance goes back to the one at the start
-    /// and never beyond it, so that it stays bounded without excitation. `O(n²)` for `n` parameters.
+    /// Recursive least squares with regularised forgetting (Kulhavý & Kraus 1996, after Kulhavý & Zarrop 1993): the covariance
+    /// goes back to the one at the start and never beyond it, so that it stays bounded without excitation. `O(n²)` for `n`
+    /// parameters, the offset among them: `O(K⁴)` for all weights, so for small `K` or for parts. It learns fastest, and with
+    /// a correlation also where the input has not been.
     LeastSquares {
         /// `λ`, above 0 and up to 1; 1 forgets nothing. Usual: 0.95 to 0.999.
         forgetting: T,
@@ -45,8 +64,8 @@ pub enum Method<T> {
 /// | `offset_share` | 1 | from 0 | `κ`: how freely the offset moves, beside one weight |
 /// | `dead_zone` | 0 | from 0 | errors up to this are noise (Peterson & Narendra 1982) |
 /// | `leakage` | 0 | 0 to 1 | share by which weights return to the off-line ones with each update (Ioannou & Kokotović 1984) |
-/// | `movement` | 0.05 | from 0 | levels that the input has to move before it counts as excitation |
-/// | `trial` | 256 | from 1 | samples after which the weights are judged against the last good ones |
+/// | `movement` | 0.05 | from 0 | levels between two samples that are learned from: less is no excitation |
+/// | `trial` | 256 | from 1 | samples on which weights are judged against the last good ones |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
@@ -57,9 +76,12 @@ pub struct Adaptation<T> {
     pub dead_zone: T,
     /// Share by which the weights return to the off-line ones with each update.
     pub leakage: T,
-    /// Half width, in levels, of the play that the input has to overcome before a sample is learned from.
+    /// Levels that the input has to lie beyond the last sample learned from. Thus noise of the input within this width teaches nothing
+    /// at rest, and what is learned depends on the way that the input went and not on how often it was sampled.
     pub movement: T,
-    /// Samples learned from after which the weights are judged.
+    /// Samples learned from in a trial. At its end the weights that it began with become the good ones if they predicted no
+    /// worse than these; and the present ones go back to the good ones if their mean square error was more than four times
+    /// as large. Weights from within a burst of wrong readings that is shorter than half a trial do not become good.
     pub trial: u32,
 }
 
@@ -107,8 +129,9 @@ impl<T: Real> Adaptation<T> {
                 correlation,
             } => {
                 require(forgetting > T::ZERO && forgetting <= T::ONE, "forgetting")?;
-                require(positive(noise), "noise")?;
-                require(positive(spread), "spread")?;
+                // The squares count: these must not vanish nor overflow either.
+                require(positive(noise * noise) && noise > T::ZERO, "noise")?;
+                require(positive(spread * spread) && spread > T::ZERO, "spread")?;
                 require(from_zero(correlation), "correlation")?;
             }
         }
@@ -117,5 +140,10 @@ impl<T: Real> Adaptation<T> {
         require(self.leakage >= T::ZERO && self.leakage <= T::ONE, "leakage")?;
         require(from_zero(self.movement), "movement")?;
         require(self.trial > 0, "trial")
+    }
+
+    /// What an error counts beyond the dead zone.
+    pub(super) fn beyond(&self, error: T) -> T {
+        error - error.limited(-self.dead_zone, self.dead_zone)
     }
 }

@@ -2,7 +2,8 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use hysteron_core::{
-    Model, Operator, Plane, State, Turn, operator_count, table_len, turn_capacity,
+    Adaptation, Error, Estimator, Learning, Method, Model, Operator, Plane, State, Turn,
+    estimator_len, operator_count, table_len, turn_capacity,
 };
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
@@ -133,4 +134,77 @@ pub fn build_f32(plane: &Plane<f64>, operator: Operator, weights: &[f64]) -> Own
         .state(vec![Turn::default(); turn_capacity(k)])
         .unwrap();
     (model, state)
+}
+
+pub const GRADIENT: Method<f64> = Method::Gradient { gain: 0.3 };
+pub const INCREMENTS: Method<f64> = Method::Increments {
+    gain: 0.3,
+    span: 1.0,
+};
+pub const LEAST_SQUARES: Method<f64> = Method::LeastSquares {
+    forgetting: 0.99,
+    noise: 0.01,
+    spread: 1.0,
+    correlation: 2.0,
+};
+pub const METHODS: [Method<f64>; 3] = [GRADIENT, INCREMENTS, LEAST_SQUARES];
+
+pub fn options(method: Method<f64>) -> Adaptation<f64> {
+    Adaptation {
+        method,
+        ..Adaptation::default()
+    }
+}
+
+/// A model with its state and the estimator of its weights.
+pub struct Learner {
+    pub model: Model<f64, Vec<f64>>,
+    pub state: State<f64, Vec<Turn<f64>>>,
+    pub estimator: Estimator<f64, Vec<f64>>,
+}
+
+impl Learner {
+    pub fn new(
+        plane: Plane<f64>,
+        operator: Operator,
+        weights: &[f64],
+        options: Adaptation<f64>,
+    ) -> Self {
+        let k = plane.levels();
+        let mut model = Model::new(plane, operator, weights, vec![0.0; 2 * table_len(k)]).unwrap();
+        let memory = vec![0.0; estimator_len(k, options.method)];
+        let estimator = Estimator::new(options, &mut model, weights, 0.0, memory).unwrap();
+        let state = model
+            .state(vec![Turn::default(); turn_capacity(k)])
+            .unwrap();
+        Self {
+            model,
+            state,
+            estimator,
+        }
+    }
+
+    pub fn step(&mut self, input: f64, measured: f64) -> Result<Learning<f64>, Error> {
+        self.estimator
+            .step(&mut self.model, &mut self.state, input, measured)
+    }
+}
+
+/// A walk of reversals over the whole plane in strokes of `samples` samples: excites every operator in time.
+pub fn strokes(rng: &mut impl Rng, plane: &Plane<f64>, count: usize, samples: usize) -> Vec<f64> {
+    let mut out = Vec::with_capacity(count);
+    let mut from = plane.bottom();
+    let mut up = true;
+    while out.len() < count {
+        let share: f64 = rng.random();
+        let to = if up {
+            from + share * (plane.max() - from)
+        } else {
+            from - share * (from - plane.bottom())
+        };
+        out.extend((1..=samples).map(|n| from + (to - from) * n as f64 / samples as f64));
+        (from, up) = (to, !up);
+    }
+    out.truncate(count);
+    out
 }

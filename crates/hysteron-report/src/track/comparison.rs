@@ -65,7 +65,7 @@ fn table(scenario: &Scenario, comparison: &Comparison, output: &Quantity) -> Tra
     };
     let mut notes = vec![format!(
         "Medians over {} runs with different noise, each with a model identified from a recording of its own; the curves are those of the first. \
-         Lag: from when the reference has gone back by a tenth of its range until the output has.",
+         Lag: from when the reference has gone back by a twentieth of its range until the output is there too.",
         scenario.seeds
     )];
     notes.extend(comparison.ratios().iter().map(|ratio| {

@@ -14,6 +14,8 @@ pub struct Window {
     pub from_s: f64,
     /// Until when, s.
     pub to_s: f64,
+    /// Whether the start, or the disturbance before, is over.
+    pub settled: bool,
 }
 
 /// What a controller did in a window.
@@ -38,33 +40,39 @@ pub struct Score {
 }
 
 /// Share of the reference's range by which something has to go back to count as turned.
-const TURNED: f64 = 0.1;
+const TURNED: f64 = 0.05;
 
 /// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
 /// settle; without disturbances the halves of the run.
 #[must_use]
 pub fn windows(scenario: &Scenario) -> Vec<Window> {
-    let window = |name: &str, from_s: f64, to_s: f64| Window {
+    let window = |name: &str, from_s: f64, to_s: f64, settled: bool| Window {
         name: name.into(),
         from_s,
         to_s,
+        settled,
     };
     let (settle, end) = (scenario.settle_s, scenario.duration_s);
     let Some(first) = scenario.disturbance.first() else {
         let middle = 0.5 * (settle + end);
         return vec![
-            window("first half", settle, middle),
-            window("second half", middle, end),
+            window("first half", settle, middle, true),
+            window("second half", middle, end, true),
         ];
     };
-    let mut windows = vec![window("before", settle, first.at_s)];
+    let mut windows = vec![window("before", settle, first.at_s, true)];
     for (n, event) in scenario.disturbance.iter().enumerate() {
         let next = scenario.disturbance.get(n + 1).map_or(end, |e| e.at_s);
         let words = event.words();
-        windows.push(window(&format!("after {words}"), event.at_s, next));
+        windows.push(window(&format!("after {words}"), event.at_s, next, false));
         let settled = event.at_s + settle;
         if settled < next && settle > 0.0 {
-            windows.push(window(&format!("after {words}, settled"), settled, next));
+            windows.push(window(
+                &format!("after {words}, settled"),
+                settled,
+                next,
+                true,
+            ));
         }
     }
     windows.retain(|window| window.from_s < window.to_s);
@@ -131,8 +139,8 @@ fn free_run(trace: &Trace, snapshot: &Snapshot, model: &Model) -> Result<Vec<f64
     frozen.simulate(&trace.input)
 }
 
-/// Median over the reversals of the reference: from when the reference has gone back by [`TURNED`] of its range until the output has, from
-/// its own extreme since.
+/// Median over the reversals of the reference: from when the reference has gone back by [`TURNED`] of its range until the output is
+/// there too.
 fn lag(trace: &Trace, inside: &[usize]) -> f64 {
     let (low, high) = crate::recording::range(&trace.reference);
     let band = TURNED * (high - low);
@@ -148,15 +156,12 @@ fn lag(trace: &Trace, inside: &[usize]) -> f64 {
     let mut lags: Vec<f64> = Vec::new();
     for (k, &(extreme, turned, heading)) in seen.iter().enumerate().skip(1) {
         let next = seen.get(k + 1).map_or(last, |(_, n, _)| *n);
-        let up = |n: usize| match heading {
-            Direction::Rising => trace.output[n],
-            Direction::Falling => -trace.output[n],
+        let up = |value: f64| match heading {
+            Direction::Rising => value,
+            Direction::Falling => -value,
         };
-        let mut furthest = up(extreme);
-        let answered = (extreme..=next).find(|&n| {
-            furthest = furthest.min(up(n));
-            up(n) - furthest >= band
-        });
+        let there = up(trace.reference[turned]);
+        let answered = (extreme..=next).find(|&n| up(trace.output[n]) >= there);
         // Not at all: as late as the next reversal.
         let answered = answered.unwrap_or(next);
         lags.push(trace.time[answered] - trace.time[turned]);

@@ -71,12 +71,14 @@ impl Comparison {
         medians
     }
 
-    /// Inverse and PID against PID, and adaptive against fixed inverse, by window.
+    /// Inverse and PID against PID, and adaptive against fixed inverse, by window; of windows that have settled only, for what a
+    /// jump of the load leaves is the same whoever controls.
     #[must_use]
     pub fn ratios(&self) -> Vec<Ratio> {
         let place = |kind: Kind| self.controllers.iter().position(|k| *k == kind);
         let mut ratios = Vec::new();
-        for (w, window) in self.windows.iter().enumerate() {
+        let windows = self.windows.iter().enumerate();
+        for (w, window) in windows.filter(|(_, window)| window.settled) {
             for (a, b) in PAIRS {
                 let (Some(one), Some(other)) = (place(a), place(b)) else {
                     continue;

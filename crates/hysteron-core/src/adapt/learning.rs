@@ -1,0 +1,165 @@
+//! What a sample teaches, and what comes of it.
+
+use super::estimator::Estimator;
+use super::increments::Increment;
+use super::least_squares::{self, Law};
+use super::trial::{Errors, Trial};
+use super::vector::dot;
+use super::{Method, gradient, parameters};
+use crate::plane::operator_count;
+use crate::state::{State, Turn};
+use crate::{Clipped, Real};
+
+/// What a sample taught.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Learning<T> {
+    /// Output that was expected before anything was learned from the sample.
+    pub output: T,
+    /// Measured less expected.
+    pub error: T,
+    /// What was done with it.
+    pub outcome: Outcome,
+    /// Whether the input lay outside the plane, and at which end.
+    pub clipped: Option<Clipped>,
+}
+
+/// What an estimator did with a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The weights moved.
+    Learned,
+    /// The error was within the dead zone, or an increment is not finished.
+    Waiting,
+    /// The input did not move: no excitation.
+    AtRest,
+    /// The estimator is frozen.
+    Frozen,
+    /// The weights did far worse than the last good ones, or were no numbers any more: these are back.
+    RolledBack,
+}
+
+impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
+    pub(super) fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        let counted = self.options.beyond(error);
+        let (options, floor) = (self.options, self.floor);
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        let share = options.offset_share;
+        parameters::regressor(&mut slices, self.operator, self.levels, share, state);
+        let rest = measured - self.offset;
+        let errors = Errors {
+            now: error,
+            candidate: rest - dot(slices.candidate, slices.phi),
+            good: rest - dot(slices.good, slices.phi),
+        };
+        let mut contest = slices.contest(0..self.layout.parameters);
+        let length = options.trial;
+        if self.trial.judge(&mut contest, errors, measured, length) {
+            slices.covariance.copy_from_slice(slices.start);
+            return Outcome::RolledBack;
+        }
+        if counted == T::ZERO {
+            return Outcome::Waiting;
+        }
+        match options.method {
+            Method::LeastSquares {
+                forgetting, noise, ..
+            } => {
+                let law = Law {
+                    forgetting,
+                    variance: noise * noise,
+                };
+                law.update(&mut slices, counted, options.leakage);
+                least_squares::project(&mut slices);
+            }
+            Method::Gradient { gain } | Method::Increments { gain, .. } => {
+                gradient::update(&mut slices, counted, (gain, options.leakage), floor);
+                gradient::project(slices.theta);
+            }
+        }
+        Outcome::Learned
+    }
+
+    /// `above` is what was measured above `H`.
+    pub(super) fn learn_increment(
+        &mut self,
+        (position, moved): (T, bool),
+        (measured, above): (T, T),
+        (gain, span): (T, T),
+    ) -> Outcome {
+        let wrong_level = moved && self.learn_level(measured, above, gain);
+        match self.learn_slope(position, measured, (gain, span)) {
+            _ if wrong_level => Outcome::RolledBack,
+            Outcome::Waiting if !moved => Outcome::AtRest,
+            outcome => outcome,
+        }
+    }
+
+    fn learn_slope(&mut self, position: T, measured: T, (gain, span): (T, T)) -> Outcome {
+        let (operator, levels, options) = (self.operator, self.levels, self.options);
+        let start = Increment::start(measured, position);
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        let Some(mut increment) = self.increment else {
+            slices.anchor.copy_from_slice(slices.gamma);
+            self.increment = Some(start);
+            return Outcome::Waiting;
+        };
+        if !increment.extend(position, span.larger(options.movement)) {
+            self.increment = Some(increment);
+            return Outcome::Waiting;
+        }
+        self.increment = Some(start);
+        let finished = increment.finish(&slices, operator, levels, measured);
+        let errors = finished.errors;
+        let mut contest = slices.contest(0..self.layout.parameters - 1);
+        let length = options.trial;
+        let worse = self.trial.judge(&mut contest, errors, measured, length);
+        let counted = options.beyond(errors.now);
+        let outcome = if worse {
+            Outcome::RolledBack
+        } else if counted == T::ZERO {
+            Outcome::Waiting
+        } else {
+            let law = (gain, options.leakage);
+            finished.update(&mut slices, operator, levels, counted, law);
+            Outcome::Learned
+        };
+        finished.close(&mut slices, levels);
+        outcome
+    }
+
+    /// The offset follows the error of the level, as in the gradient with every operator on: increments say nothing of
+    /// it. Says whether it was taken back.
+    fn learn_level(&mut self, measured: T, above: T, gain: T) -> bool {
+        let (options, fixed) = (self.options, self.offset);
+        let share = options.offset_share;
+        let norm = share * share + T::from_index(operator_count(self.levels));
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        let n = slices.theta.len() - 1;
+        let error = |parameter: T| above - fixed - share * parameter;
+        let errors = Errors {
+            now: error(slices.theta[n]),
+            candidate: error(slices.candidate[n]),
+            good: error(slices.good[n]),
+        };
+        let mut contest = slices.contest(n..n + 1);
+        let length = options.trial;
+        if self.level.judge(&mut contest, errors, measured, length) {
+            return true;
+        }
+        let moved = slices.theta[n] + gain * options.beyond(errors.now) * share / norm;
+        if (moved * share).is_finite() {
+            slices.theta[n] = moved;
+        }
+        false
+    }
+
+    pub(super) fn take_back(&mut self) {
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        slices.contest(0..self.layout.parameters).roll_back();
+        slices.covariance.copy_from_slice(slices.start);
+        (self.trial, self.level) = (Trial::default(), Trial::default());
+    }
+}

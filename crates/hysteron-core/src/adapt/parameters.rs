@@ -1,0 +1,107 @@
+//! What the parameters are: all weights, or shares of parts; and what follows from that.
+
+use super::Method;
+use super::least_squares::packed;
+use super::memory::Slices;
+use super::operators;
+use crate::everett::{fill_row, table_index, table_len};
+use crate::state::{State, Turn};
+use crate::{Model, Operator, Real};
+
+/// Writes the derivative of the output with respect to each parameter, `share` for the offset.
+pub(super) fn regressor<T, S>(
+    slices: &mut Slices<'_, T>,
+    operator: Operator,
+    levels: usize,
+    share: T,
+    state: &State<T, S>,
+) where
+    T: Real,
+    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+{
+    let n = slices.phi.len() - 1;
+    slices.phi[n] = share;
+    if slices.tables.is_empty() {
+        operators::outputs(operator, slices.gamma, &mut slices.phi[..n]);
+        return;
+    }
+    let len = table_len(levels);
+    slices.phi[..n].fill(T::ZERO);
+    state.everett_terms(|index, factor| {
+        for (phi, table) in slices.phi.iter_mut().zip(slices.tables.chunks(len)) {
+            *phi = *phi + factor * table[index];
+        }
+    });
+    // From Σ μ γ to the sum of the operators' own outputs.
+    for (phi, table) in slices.phi.iter_mut().zip(slices.tables.chunks(len)) {
+        *phi = match operator {
+            Operator::Mkp => *phi,
+            Operator::Kp | Operator::Relay => *phi + *phi - table[table_index(levels, 0)],
+        };
+    }
+}
+
+/// `φᵀφ` with every operator on, the offset apart.
+pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
+    if slices.tables.is_empty() {
+        return T::from_index(slices.gamma.len());
+    }
+    let tables = slices.tables.chunks(table_len(levels));
+    let totals = tables.map(|table| table[table_index(levels, 0)]);
+    totals.fold(T::ZERO, |sum, total| sum + total * total)
+}
+
+/// Writes the model's whole table from the parameters.
+pub(super) fn rewrite<T: Real, C: AsRef<[T]> + AsMut<[T]>>(
+    slices: &Slices<'_, T>,
+    levels: usize,
+    model: &mut Model<T, C>,
+) {
+    let Slices { theta, tables, .. } = slices;
+    if tables.is_empty() {
+        model.rewrite(|p, above, row| fill_row(p, theta, above, row));
+        return;
+    }
+    model.rewrite(|p, _, row| {
+        row.fill(T::ZERO);
+        for (&share, table) in theta.iter().zip(tables.chunks(table_len(levels))) {
+            let part = &table[table_index(p, 0)..];
+            for (entry, &part) in row.iter_mut().zip(part) {
+                *entry = *entry + share * part;
+            }
+        }
+    });
+}
+
+/// Writes the covariance at the start; nothing for methods without one.
+pub(super) fn start_covariance<T: Real>(
+    slices: &mut Slices<'_, T>,
+    levels: usize,
+    method: Method<T>,
+) {
+    let Method::LeastSquares {
+        spread,
+        correlation,
+        ..
+    } = method
+    else {
+        return;
+    };
+    let variance = spread * spread;
+    slices.start.fill(T::ZERO);
+    for n in 0..slices.theta.len() {
+        slices.start[packed(n, n)] = variance;
+    }
+    if slices.tables.is_empty() && correlation > T::ZERO {
+        let operators = || (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
+        let square = |n: usize| T::from_index(n) * T::from_index(n);
+        let mut entries = slices.start.iter_mut();
+        for (a, (i, j)) in operators().enumerate() {
+            for ((k, l), entry) in operators().take(a + 1).zip(entries.by_ref()) {
+                let distance = square(i.abs_diff(k)) + square(j.abs_diff(l));
+                *entry = variance / (T::ONE + distance / (correlation * correlation));
+            }
+        }
+    }
+    slices.covariance.copy_from_slice(slices.start);
+}

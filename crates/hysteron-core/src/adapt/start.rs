@@ -1,0 +1,140 @@
+//! How an estimator is set up.
+
+use super::estimator::Estimator;
+use super::memory::Layout;
+use super::trial::Trial;
+use super::{Adaptation, Method, parameters};
+use crate::everett;
+use crate::plane::operator_count;
+use crate::{Error, Model, Real};
+
+impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
+    /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.
+    ///
+    /// # Errors
+    /// [`Error::Adaptation`], [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::NegativeWeights`];
+    /// [`Error::InputNotFinite`] for the offset; [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for
+    /// the model's table, which has to be twice as large.
+    pub fn new<C: AsRef<[T]> + AsMut<[T]>>(
+        options: Adaptation<T>,
+        model: &mut Model<T, C>,
+        weights: &[T],
+        offset: T,
+        memory: M,
+    ) -> Result<Self, Error> {
+        let levels = model.plane().levels();
+        let layout = Layout::all(levels, options.method);
+        let mut estimator = Self::empty(options, model, layout, offset, memory)?;
+        if matches!(options.method, Method::Increments { .. }) {
+            model.check_renewable()?;
+        }
+        refuse_negative(levels, weights)?;
+        estimator.begin(weights);
+        model.set_weights(weights)?;
+        Ok(estimator)
+    }
+
+    /// An estimator of the shares of `parts`, which stand for the ways in which weights can change (loads, drift), and the offset:
+    /// `μ = Σ_k shares_k parts_k`. `parts` holds `N` weights for each of the shares, one part after the other. A
+    /// step is `O(P K²)` for the table.
+    ///
+    /// # Errors
+    /// As [`Estimator::new`]; [`Error::Adaptation`] for [`Method::Increments`], for a correlation,
+    /// and for shares that are negative or not finite, or overflow with their parts.
+    pub fn of_parts<C: AsRef<[T]> + AsMut<[T]>>(
+        options: Adaptation<T>,
+        model: &mut Model<T, C>,
+        parts: &[T],
+        shares: &[T],
+        offset: T,
+        memory: M,
+    ) -> Result<Self, Error> {
+        let levels = model.plane().levels();
+        let (n, count) = (operator_count(levels), shares.len());
+        let fit = |share: &T| *share >= T::ZERO && share.is_finite();
+        let unfit = match options.method {
+            Method::Increments { .. } => Some("method"),
+            Method::LeastSquares { correlation, .. } if correlation != T::ZERO => {
+                Some("correlation")
+            }
+            _ if count == 0 || !shares.iter().all(fit) => Some("shares"),
+            _ => None,
+        };
+        if let Some(option) = unfit {
+            return Err(Error::Adaptation { option });
+        }
+        if parts.len() != n * count {
+            let (expected, found) = (n * count, parts.len());
+            return Err(Error::WeightCount { expected, found });
+        }
+        let layout = Layout::parts(levels, options.method, count);
+        let mut estimator = Self::empty(options, model, layout, offset, memory)?;
+        let len = everett::table_len(levels);
+        let tables = estimator.slices().tables;
+        let mut size = T::ZERO;
+        for ((part, table), &share) in parts.chunks(n).zip(tables.chunks_mut(len)).zip(shares) {
+            refuse_negative(levels, part)?;
+            everett::fill(levels, part, table);
+            size = size + share * table[everett::table_index(levels, 0)];
+        }
+        if !(size + size).is_finite() {
+            return Err(Error::Adaptation { option: "shares" });
+        }
+        estimator.begin(shares);
+        estimator.rewrite(model);
+        Ok(estimator)
+    }
+
+    fn empty<C: AsRef<[T]>>(
+        options: Adaptation<T>,
+        model: &Model<T, C>,
+        layout: Layout,
+        offset: T,
+        memory: M,
+    ) -> Result<Self, Error> {
+        options.check()?;
+        if !offset.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        let (needed, found) = (layout.len(), memory.as_ref().len());
+        if found < needed {
+            return Err(Error::MemoryTooSmall { needed, found });
+        }
+        Ok(Self {
+            options,
+            operator: model.operator(),
+            levels: model.plane().levels(),
+            layout,
+            memory,
+            offset,
+            floor: T::ZERO,
+            place: None,
+            learned: T::ZERO,
+            increment: None,
+            rows_due: 0,
+            trial: Trial::default(),
+            level: Trial::default(),
+            frozen: false,
+        })
+    }
+
+    fn begin(&mut self, parameters: &[T]) {
+        let (levels, method) = (self.levels, self.options.method);
+        let mut slices = self.slices();
+        let n = parameters.len();
+        slices.theta[..n].copy_from_slice(parameters);
+        slices.theta[n] = T::ZERO;
+        slices.offline.copy_from_slice(slices.theta);
+        slices.good.copy_from_slice(slices.theta);
+        slices.candidate.copy_from_slice(slices.theta);
+        parameters::start_covariance(&mut slices, levels, method);
+        self.floor = parameters::full_norm(&slices, levels) / T::from_index(100);
+    }
+}
+
+fn refuse_negative<T: Real>(levels: usize, weights: &[T]) -> Result<(), Error> {
+    match everett::check(levels, weights)? {
+        Some(which) => Err(Error::NegativeWeights(which)),
+        None => Ok(()),
+    }
+}

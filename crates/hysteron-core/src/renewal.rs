@@ -1,0 +1,118 @@
+//! Weights that change while a model runs.
+
+use crate::everett;
+use crate::plane::operator_index;
+use crate::state::{State, Turn};
+use crate::{Error, Model, Real};
+
+impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
+    /// Puts other weights in the place of the present ones. `O(K²)`. States of the model have to be
+    /// [rebased](Model::rebase) after it.
+    ///
+    /// # Errors
+    /// [`Error::WeightCount`], [`Error::WeightNotFinite`]; the model is then as it was.
+    ///
+    /// ```
+    /// use hysteron_core::{Model, Operator, Plane, Turn, table_len, turn_capacity};
+    /// let plane = Plane::new(0.0, 1.0, 2)?;
+    /// let mut model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
+    /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
+    /// model.step(&mut state, 1.0)?;
+    /// model.set_weights(&[1.0, 1.0, 1.0])?;
+    /// model.rebase(&mut state)?; // the operators stay as they are
+    /// assert_eq!(model.output(&state), 3.0);
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    pub fn set_weights(&mut self, weights: &[T]) -> Result<(), Error> {
+        let levels = self.plane().levels();
+        self.negative = everett::check(levels, weights)?;
+        self.renewed = 1;
+        everett::fill(levels, weights, &mut self.table.as_mut()[self.base..]);
+        self.changed();
+        Ok(())
+    }
+
+    /// Writes the whole table anew: `row(p, above, row)` gives row `p` from the one above it. The weights that this
+    /// makes must not be negative; where they may overflow, [`Model::is_finite`] tells.
+    pub(crate) fn rewrite(&mut self, mut row: impl FnMut(usize, &[T], &mut [T])) {
+        let levels = self.plane().levels();
+        let table = &mut self.table.as_mut()[self.base..];
+        for p in 1..=levels {
+            let (above, here) = everett::rows(table, p);
+            row(p, above, here);
+        }
+        self.negative = None;
+        self.renewed = 1;
+        self.changed();
+    }
+
+    /// Writes one row of a second table and, after the last, changes over to it; says whether it did. `O(K)`.
+    ///
+    /// Until then the model keeps the table it has, so that at each instant it is the model of weights that are
+    /// finite and not negative. As each table is summed from the weights, no rounding piles up.
+    ///
+    /// # Errors
+    /// [`Error::WeightNotFinite`] where the weights so far overflow: the pass begins again.
+    pub(crate) fn renew_row(
+        &mut self,
+        mut row: impl FnMut(usize, &[T], &mut [T]),
+    ) -> Result<bool, Error> {
+        let levels = self.plane().levels();
+        let len = everett::table_len(levels);
+        let other = len - self.base;
+        let table = &mut self.table.as_mut()[other..other + len];
+        table[0] = T::ZERO;
+        let (above, here) = everett::rows(table, self.renewed);
+        row(self.renewed, above, here);
+        if !(here[0] + here[0]).is_finite() {
+            let index = operator_index(1, self.renewed);
+            self.renewed = 1;
+            return Err(Error::WeightNotFinite { index });
+        }
+        self.renewed += 1;
+        if self.renewed <= levels {
+            return Ok(false);
+        }
+        self.base = other;
+        self.renewed = 1;
+        self.negative = None;
+        self.changed();
+        Ok(true)
+    }
+
+    /// Whether the memory holds the second table that [`Model::renew_row`] needs.
+    pub(crate) fn check_renewable(&self) -> Result<(), Error> {
+        let needed = 2 * everett::table_len(self.plane().levels());
+        let found = self.table.as_ref().len();
+        if found < needed {
+            return Err(Error::MemoryTooSmall { needed, found });
+        }
+        Ok(())
+    }
+
+    fn changed(&mut self) {
+        // Any odd number runs through all of them; this one spreads them (Knuth 1997, section 6.4).
+        self.stamp = self.stamp.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+impl<T: Real, C: AsRef<[T]>> Model<T, C> {
+    /// Gives `state`, of this model before its weights changed or of one with other weights, the outputs of these weights. The
+    /// operators stay as they are. `O(K)`.
+    ///
+    /// # Errors
+    /// [`Error::StateMismatch`].
+    pub fn rebase<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        self.fits(state)?;
+        state.rebase(self.table(), self.stamp);
+        Ok(())
+    }
+
+    /// Whether no output can overflow, with weights that are not negative.
+    pub(crate) fn is_finite(&self) -> bool {
+        (self.total() + self.total()).is_finite()
+    }
+}

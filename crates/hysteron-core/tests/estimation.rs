@@ -1,0 +1,275 @@
+//! What the estimators find: known plants, known solutions; and what brings them back from wrong readings.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, strokes, weights};
+use hysteron_core::{
+    Adaptation, Estimator, Method, Operator, Outcome, Plane, estimator_len_of_parts, operator_count,
+};
+use rand::{Rng, RngExt};
+
+fn unit_plane(levels: usize) -> Plane<f64> {
+    Plane::new(20.0, 80.0, levels).unwrap()
+}
+
+/// Solves `A x = b` by elimination with pivots.
+fn solved(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
+    let n = b.len();
+    for k in 0..n {
+        let best = (k..n).max_by(|&p, &q| a[p][k].abs().total_cmp(&a[q][k].abs()));
+        a.swap(k, best.unwrap());
+        b.swap(k, best.unwrap());
+        let (pivot, pivot_b) = (a[k].clone(), b[k]);
+        for (row, b) in a.iter_mut().zip(&mut b).skip(k + 1) {
+            let share = row[k] / pivot[k];
+            row.iter_mut()
+                .zip(&pivot)
+                .for_each(|(x, p)| *x -= share * p);
+            *b -= share * pivot_b;
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|c| a[k][c] * b[c]).sum();
+        b[k] = (b[k] - known) / a[k][k];
+    }
+    b
+}
+
+#[test]
+fn least_squares_without_forgetting_is_the_batch_solution() {
+    const K: usize = 4;
+    let (n, noise, spread) = (operator_count(K), 0.1, 0.7);
+    for correlation in [0.0, 1.5] {
+        let mut rng = rng(11);
+        // Far from zero, so that the projection has nothing to do.
+        let offline: Vec<f64> = (0..n).map(|_| rng.random_range(4.0..6.0)).collect();
+        let plant: Vec<f64> = (0..n).map(|_| rng.random_range(4.0..6.0)).collect();
+        let (plant, mut there) = build(unit_plane(K), Operator::Mkp, &plant);
+        let method = Method::LeastSquares {
+            forgetting: 1.0,
+            noise,
+            spread,
+            correlation,
+        };
+        let guards = Adaptation {
+            trial: u32::MAX,
+            ..options(method)
+        };
+        let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &offline, guards);
+        // (Σ φφᵀ/r + P₀⁻¹) (θ − θ₀) = Σ φ (y − φᵀθ₀)/r
+        let places: Vec<_> = (1..=K).flat_map(|j| (1..=j).map(move |i| (i, j))).collect();
+        let start = |a: usize, b: usize| match (places.get(a), places.get(b)) {
+            _ if a == b => spread * spread,
+            (Some(&(i, j)), Some(&(k, l))) if correlation > 0.0 => {
+                let square = |p: usize, q: usize| (p.abs_diff(q) as f64 / correlation).powi(2);
+                spread * spread / (1.0 + square(i, k) + square(j, l))
+            }
+            _ => 0.0,
+        };
+        let start: Vec<Vec<f64>> = (0..=n)
+            .map(|a| (0..=n).map(|b| start(a, b)).collect())
+            .collect();
+        let unit = |k: usize| (0..=n).map(|a| f64::from(a == k)).collect();
+        let mut normal: Vec<Vec<f64>> = (0..=n).map(|k| solved(start.clone(), unit(k))).collect();
+        let mut right = vec![0.0; n + 1];
+        let mut learned = 0;
+        for input in strokes(&mut rng, &unit_plane(K), 3000, 25) {
+            let clean = plant.step(&mut there, input).unwrap().output;
+            let measured = clean + rng.random_range(-0.2..0.2);
+            if learner.step(input, measured).unwrap().outcome != Outcome::Learned {
+                continue;
+            }
+            learned += 1;
+            let mut phi: Vec<f64> = places
+                .iter()
+                .map(|&(i, j)| learner.state.gamma(i, j).unwrap())
+                .collect();
+            phi.push(1.0);
+            let known: f64 = phi.iter().zip(&offline).map(|(phi, mu)| phi * mu).sum();
+            for a in 0..=n {
+                for b in 0..=n {
+                    normal[a][b] += phi[a] * phi[b] / (noise * noise);
+                }
+                right[a] += phi[a] * (measured - known) / (noise * noise);
+            }
+        }
+        assert!(learned > 1000);
+        let batch = solved(normal, right);
+        for (k, found) in learner.estimator.parameters().iter().enumerate() {
+            // Rounding times the condition of the normal equations, some 1e4.
+            assert!((found - offline[k] - batch[k]).abs() < 1e-9, "weight {k}");
+        }
+        assert!((learner.estimator.offset() - batch[n]).abs() < 1e-9);
+    }
+}
+
+/// Root mean square error, in shares of the output's range, of a learner against a plant while it learns from it.
+fn error(
+    learner: &mut Learner,
+    plant: &mut common::Owned<f64>,
+    rng: &mut impl Rng,
+    (count, noise): (usize, f64),
+) -> f64 {
+    let plane = *learner.model.plane();
+    let mut squares = 0.0;
+    for input in strokes(rng, &plane, count, 40) {
+        let clean = plant.0.step(&mut plant.1, input).unwrap().output;
+        let measured = clean + noise * rng.random_range(-1.0..1.0);
+        squares += (learner.step(input, measured).unwrap().output - clean).powi(2);
+    }
+    let (low, high) = plant.0.output_range();
+    (squares / count as f64).sqrt() / (high - low)
+}
+
+#[test]
+fn known_plants_are_found() {
+    let increments = Method::Increments {
+        gain: 1.0,
+        span: 0.5,
+    };
+    let cases = [
+        (Method::Gradient { gain: 1.0 }, 10, 0.001),
+        (GRADIENT, 20, 0.001),
+        (increments, 10, 1e-6),
+        (INCREMENTS, 20, 0.001),
+        (LEAST_SQUARES, 10, 0.001),
+    ];
+    for (method, k, bound) in cases {
+        for operator in [Operator::Mkp, Operator::Kp] {
+            let mut rng = rng(12);
+            let offline = vec![0.5; operator_count(k)];
+            let plant: Vec<f64> = offline.iter().map(|_| rng.random()).collect();
+            let mut there = build(unit_plane(k), operator, &plant);
+            let mut learner = Learner::new(unit_plane(k), operator, &offline, options(method));
+            learner.estimator.freeze(true);
+            let first = error(&mut learner, &mut there, &mut rng, (4000, 0.0));
+            learner.estimator.freeze(false);
+            error(&mut learner, &mut there, &mut rng, (400_000, 0.0));
+            let last = error(&mut learner, &mut there, &mut rng, (4000, 0.0));
+            println!("{method:?}, {operator:?}, K = {k}: error {first:.5} at first, {last:.6}");
+            assert!(
+                last < bound && last < first / 20.0,
+                "{method:?}: {first} {last}"
+            );
+        }
+    }
+}
+
+#[test]
+fn least_squares_finds_the_weights_themselves() {
+    const K: usize = 6;
+    let mut rng = rng(13);
+    let plant: Vec<f64> = (0..operator_count(K)).map(|_| rng.random()).collect();
+    let mut there = build(unit_plane(K), Operator::Mkp, &plant);
+    let method = Method::LeastSquares {
+        forgetting: 0.999,
+        noise: 0.001,
+        spread: 1.0,
+        correlation: 0.0,
+    };
+    let offline = [0.5; operator_count(K)];
+    let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &offline, options(method));
+    error(&mut learner, &mut there, &mut rng, (60_000, 0.0));
+    for (found, known) in learner.estimator.parameters().iter().zip(&plant) {
+        assert!((found - known).abs() < 1e-3, "{found} {known}");
+    }
+    assert!(learner.estimator.offset().abs() < 1e-3);
+}
+
+#[test]
+fn shares_of_parts_are_found() {
+    const K: usize = 20;
+    let n = operator_count(K);
+    let least_squares = Method::LeastSquares {
+        forgetting: 0.99,
+        noise: 0.1,
+        spread: 1.0,
+        correlation: 0.0,
+    };
+    for (method, bound) in [
+        (Method::Gradient { gain: 1.0 }, 0.02),
+        (least_squares, 1e-4),
+    ] {
+        for operator in common::OPERATORS {
+            let mut rng = rng(14);
+            let parts: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
+            let scale = parts.chunks(n).map(|part| part.iter().sum::<f64>());
+            // Each of a total of 1, as the shares of loads are.
+            let totals: Vec<f64> = scale.collect();
+            let parts: Vec<f64> = (0..3 * n).map(|k| parts[k] / totals[k / n]).collect();
+            let known = [0.5, 2.0, 0.0];
+            let plant: Vec<f64> = (0..n)
+                .map(|k| (0..3).map(|part| known[part] * parts[part * n + k]).sum())
+                .collect();
+            let (plant, mut there) = build(unit_plane(K), operator, &plant);
+            let start = [1.0, 1.0, 1.0];
+            let guards = Adaptation {
+                offset_share: 0.1,
+                ..options(method)
+            };
+            let (mut model, mut state) = build(unit_plane(K), operator, &vec![1.0; n]);
+            let memory = vec![0.0; estimator_len_of_parts(K, method, 3)];
+            let mut estimator =
+                Estimator::of_parts(guards, &mut model, &parts, &start, 0.0, memory).unwrap();
+            for input in strokes(&mut rng, &unit_plane(K), 200_000, 40) {
+                let measured = plant.step(&mut there, input).unwrap().output;
+                estimator
+                    .step(&mut model, &mut state, input, measured)
+                    .unwrap();
+            }
+            for (found, known) in estimator.parameters().iter().zip(known) {
+                assert!(
+                    (found - known).abs() < bound,
+                    "{method:?}, {operator:?}: {found} {known}"
+                );
+            }
+        }
+    }
+}
+
+/// What a burst of wrong readings does to a learner: its error before and after, and how often it was rolled back.
+fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
+    const K: usize = 20;
+    let mut rng = rng(15);
+    let weights = weights(&mut rng, K);
+    let mut there = build(unit_plane(K), Operator::Mkp, &weights);
+    let guards = Adaptation {
+        trial,
+        ..options(method)
+    };
+    let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &weights, guards);
+    let before = error(&mut learner, &mut there, &mut rng, (100_000, 0.05));
+    // The sensor's wires are the wrong way round for less than half a trial.
+    let mut wrong = 0;
+    let mut rolled_back = 0;
+    let inputs = strokes(&mut rng, &unit_plane(K), 60_000, 40);
+    let mut squares = 0.0;
+    for (n, &input) in inputs.iter().enumerate() {
+        let clean = there.0.step(&mut there.1, input).unwrap().output;
+        let sign = if wrong < 100 { -1.0 } else { 1.0 };
+        let measured = sign * clean + 0.05 * rng.random_range(-1.0..1.0);
+        let learning = learner.step(input, measured).unwrap();
+        wrong += u32::from(learning.outcome == Outcome::Learned);
+        rolled_back += u32::from(learning.outcome == Outcome::RolledBack);
+        if n >= inputs.len() / 2 {
+            squares += (learning.output - clean).powi(2);
+        }
+    }
+    let range = there.0.output_range();
+    let after = (squares * 2.0 / inputs.len() as f64).sqrt() / (range.1 - range.0);
+    (before, after, rolled_back)
+}
+
+#[test]
+fn a_burst_of_wrong_readings_is_rolled_back() {
+    for method in [GRADIENT, INCREMENTS] {
+        let (before, after, rolled_back) = burst(method, 256);
+        assert_eq!(rolled_back, 1, "{method:?}");
+        assert!(after < 1.2 * before, "{method:?}: {before} {after}");
+        // Without the last good weights the damage lasts.
+        let (_, alone, none) = burst(method, u32::MAX);
+        assert_eq!(none, 0);
+        assert!(alone > 2.0 * after, "{method:?}: {alone} {after}");
+    }
+}

@@ -1,0 +1,254 @@
+//! The guards of the estimators: what teaches nothing, what is taken back, and that weights stay weights.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{
+    GRADIENT, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, inputs, options, rng, strokes,
+    weights,
+};
+use hysteron_core::{Adaptation, Method, Operator, Outcome, Plane, operator_count};
+use rand::{Rng, RngExt};
+
+fn unit_plane(levels: usize) -> Plane<f64> {
+    Plane::new(20.0, 80.0, levels).unwrap()
+}
+
+fn dense(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
+    (0..operator_count(levels)).map(|_| rng.random()).collect()
+}
+
+/// A learner that has been over the plane, and an input within it to rest at.
+fn at_rest(method: Method<f64>, guards: Adaptation<f64>) -> (Learner, Vec<f64>, f64) {
+    let k = 8;
+    let plane = Plane::new(20.0, 80.0, k).unwrap();
+    let mut rng = rng(5);
+    let offline = vec![1.0; operator_count(k)];
+    let (plant, mut there) = build(plane, Operator::Mkp, &weights(&mut rng, k));
+    let guards = Adaptation { method, ..guards };
+    let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+    for input in strokes(&mut rng, &plane, 2000, 40) {
+        let measured = plant.step(&mut there, input).unwrap().output;
+        learner.step(input, measured).unwrap();
+    }
+    learner.step(50.0, 10.0).unwrap();
+    learner.step(50.0, 10.0).unwrap();
+    for _ in 0..2 * k {
+        learner.step(50.0, 10.0).unwrap();
+    }
+    let kept = learner.estimator.parameters().to_vec();
+    (learner, kept, 50.0)
+}
+
+#[test]
+fn no_drift_under_noise_without_excitation() {
+    for method in METHODS {
+        let mut rng = rng(6);
+        let (mut learner, kept, rest) = at_rest(method, Adaptation::default());
+        let offset = learner.estimator.offset();
+        // Half of `movement` to each side, in levels.
+        let half = 0.4999 * learner.estimator.options().movement * learner.model.plane().step();
+        for n in 0..1_000_000 {
+            let noise = if n < 500_000 { 0.0 } else { half };
+            let input = rest + noise * rng.random_range(-1.0..=1.0);
+            let learning = learner.step(input, rng.random_range(-30.0..30.0)).unwrap();
+            assert_ne!(learning.outcome, Outcome::Learned, "{method:?}, {n}");
+        }
+        assert_eq!(learner.estimator.parameters(), kept, "{method:?}");
+        assert_eq!(learner.estimator.offset(), offset);
+    }
+}
+
+#[test]
+fn noise_within_the_dead_zone_teaches_nothing() {
+    for method in METHODS {
+        let mut rng = rng(7);
+        let k = 8;
+        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let offline = weights(&mut rng, k);
+        let (plant, mut there) = build(plane, Operator::Mkp, &offline);
+        let guards = Adaptation {
+            dead_zone: 0.2,
+            leakage: 0.1,
+            ..options(method)
+        };
+        let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+        for input in strokes(&mut rng, &plane, 100_000, 40) {
+            // An increment has the noise of two readings.
+            let noise = rng.random_range(-0.0999..0.0999);
+            let measured = plant.step(&mut there, input).unwrap().output + noise;
+            assert_ne!(
+                learner.step(input, measured).unwrap().outcome,
+                Outcome::Learned
+            );
+        }
+        assert_eq!(learner.estimator.parameters(), offline, "{method:?}");
+        assert_eq!(learner.estimator.offset(), 0.0);
+    }
+}
+
+#[test]
+fn weights_of_zero_are_not_left_to_the_negative_side() {
+    for method in METHODS {
+        for operator in OPERATORS {
+            let mut rng = rng(8);
+            let k = 8;
+            let plane = Plane::new(20.0, 80.0, k).unwrap();
+            let offline = vec![0.3; operator_count(k)];
+            let mut learner = Learner::new(plane, operator, &offline, options(method));
+            let mut zeros = 0;
+            for input in strokes(&mut rng, &plane, 20_000, 40) {
+                learner.step(input, rng.random_range(-1.0..1.0)).unwrap();
+                let weights = learner.estimator.parameters();
+                assert!(weights.iter().all(|weight| *weight >= 0.0));
+                zeros += weights.iter().filter(|weight| **weight == 0.0).count();
+                assert!(learner.model.inverse().is_ok());
+            }
+            assert!(
+                zeros > 0,
+                "the projection was at work: {method:?}, {operator:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn leakage_leads_back_to_the_offline_weights() {
+    for method in [GRADIENT, LEAST_SQUARES] {
+        let mut rng = rng(9);
+        let k = 6;
+        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let offline = weights(&mut rng, k);
+        let (plant, mut there) = build(plane, Operator::Mkp, &offline);
+        let guards = Adaptation {
+            leakage: 0.01,
+            trial: u32::MAX,
+            ..options(method)
+        };
+        let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
+        let mut away = 0.0;
+        for (n, input) in strokes(&mut rng, &plane, 20_000, 40)
+            .into_iter()
+            .enumerate()
+        {
+            let factor = if n < 2000 { 3.0 } else { 1.0 };
+            let measured = factor * plant.step(&mut there, input).unwrap().output;
+            learner.step(input, measured).unwrap();
+            let difference = learner.estimator.parameters().iter().zip(&offline);
+            let largest = difference.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            if n == 1999 {
+                away = largest;
+            } else if n == 19_999 {
+                assert!(largest < 1e-6 * away, "{method:?}: {largest} after {away}");
+            }
+        }
+        assert!(away > 0.1);
+    }
+}
+#[test]
+fn readings_of_any_size_leave_weights_that_are_numbers() {
+    for seed in 0..60 {
+        let mut rng = rng(40 + seed);
+        let method = METHODS[seed as usize % 3];
+        let k = 2 + seed as usize % 5;
+        let offline = weights(&mut rng, k);
+        let guards = Adaptation {
+            offset_share: [0.0, 1.0, 1e3][seed as usize / 3 % 3],
+            ..options(method)
+        };
+        let mut learner = Learner::new(
+            unit_plane(k),
+            common::OPERATORS[seed as usize / 9 % 3],
+            &offline,
+            guards,
+        );
+        for input in inputs(&mut rng, &unit_plane(k), 4000) {
+            let measured = [f64::MAX, -f64::MAX, 1e300, -1e300, 1e150, 1.0, -1e-300];
+            let measured = measured[rng.random_range(0..measured.len())];
+            learner.step(input, measured).unwrap();
+            let weights = learner.estimator.parameters();
+            assert!(
+                weights
+                    .iter()
+                    .all(|weight| *weight >= 0.0 && weight.is_finite())
+            );
+            assert!(learner.estimator.offset().is_finite());
+            assert!(
+                learner.model.output(&learner.state).is_finite(),
+                "{method:?}"
+            );
+            assert!(learner.model.output_range().1.is_finite());
+        }
+    }
+}
+
+#[test]
+fn a_few_huge_readings_are_rolled_back() {
+    for method in METHODS {
+        let mut rng = rng(50);
+        let k = 6;
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
+        let offline = vec![0.5; operator_count(k)];
+        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, options(method));
+        let mut last = 0.0_f64;
+        for (n, input) in strokes(&mut rng, &unit_plane(k), 60_000, 40)
+            .into_iter()
+            .enumerate()
+        {
+            let output = plant.step(&mut there, input).unwrap().output;
+            let huge = (20_000..20_100).contains(&n);
+            let measured = if huge { 1e300 } else { output };
+            let learning = learner.step(input, measured).unwrap();
+            if n >= 50_000 {
+                last = last.max((learning.output - output).abs());
+            }
+        }
+        let range = plant.output_range().1;
+        assert!(last < 0.05 * range, "{method:?}: {last} of {range}");
+    }
+}
+
+#[test]
+fn frozen_it_predicts_and_does_not_learn() {
+    for method in METHODS {
+        let mut rng = rng(60);
+        let k = 6;
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
+        let offline = vec![0.5; operator_count(k)];
+        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, options(method));
+        learner.estimator.freeze(true);
+        assert!(learner.estimator.is_frozen());
+        for (n, input) in strokes(&mut rng, &unit_plane(k), 40_000, 40)
+            .into_iter()
+            .enumerate()
+        {
+            let measured = plant.step(&mut there, input).unwrap().output;
+            if n == 10_000 {
+                assert_eq!(learner.estimator.parameters(), offline);
+                assert_eq!(learner.estimator.offset(), 0.0);
+                learner.estimator.freeze(false);
+            }
+            let learning = learner.step(input, measured).unwrap();
+            assert_eq!(learning.outcome == Outcome::Frozen, n < 10_000);
+            if n > 30_000 {
+                let range = plant.output_range().1;
+                assert!(
+                    learning.error.abs() < 0.05 * range,
+                    "{method:?}: {}",
+                    learning.error
+                );
+            }
+        }
+        // Kept by hand, wrecked, and taken back.
+        let kept = learner.estimator.parameters().to_vec();
+        learner.estimator.keep();
+        for input in strokes(&mut rng, &unit_plane(k), 200, 40) {
+            learner.step(input, 100.0).unwrap();
+        }
+        assert_ne!(learner.estimator.parameters(), kept);
+        learner.estimator.roll_back(&mut learner.model);
+        assert_eq!(learner.estimator.parameters(), kept);
+        learner.model.rebase(&mut learner.state).unwrap();
+        assert!((learner.model.output_range().1 - kept.iter().sum::<f64>()).abs() < 1e-12);
+    }
+}
