@@ -1,6 +1,6 @@
 //! The experiment that a plant's model is identified from: the designed profile, run through the same loop and sensors.
 
-use super::scenario::Scenario;
+use super::Scenario;
 use crate::control::{Controller, Scheme};
 use crate::design::{DesignOptions, Rates, design};
 use crate::{FitOptions, Model, Plane, Recording, Result, fit};

@@ -1,6 +1,6 @@
 //! How well a run tracked its reference, by stretches of time.
 
-use super::scenario::Scenario;
+use super::Scenario;
 use crate::control::{Snapshot, Trace};
 use crate::{Direction, Model, Result, Turning};
 use serde::Serialize;

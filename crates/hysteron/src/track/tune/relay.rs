@@ -3,7 +3,7 @@
 use super::{TESTS, middle, no_answer};
 use crate::Result;
 use crate::control::{Controller, Gains, Scheme};
-use crate::track::scenario::Scenario;
+use crate::track::Scenario;
 use crate::track::score::median;
 
 /// Where the relay's two commands lie between the lowest and the highest level.
