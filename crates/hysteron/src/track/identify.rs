@@ -63,6 +63,7 @@ fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> R
         plant.write(action.drive);
         plant.advance(scenario.interval_s);
         if let (Some(x), y) = (action.filtered.input, action.filtered.output)
+            && x.is_finite()
             && y.is_finite()
         {
             input.push(x);
