@@ -41,6 +41,9 @@ const FAULTS: [Fault; 7] = [
     Fault::BelowReach,
 ];
 
+/// Twice every fault with every controller.
+const RUNS: usize = 42;
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum With {
     Pid,
@@ -98,7 +101,8 @@ fn run(known: &Known, with: With, load_n: f64, course: &Course) -> Run {
     let mut controller = controller(known, with);
     let mut rng = ChaCha8Rng::seed_from_u64(course.seed);
     let references = scenario.references();
-    let stroke = 100.0;
+    // Ten strokes: out of reach of the model too, whatever it has learned.
+    let far = 1000.0;
     let mut run = Run::default();
     let mut last_input = None;
     for n in 0..course.count {
@@ -127,8 +131,8 @@ fn run(known: &Known, with: With, load_n: f64, course: &Course) -> Run {
         // The reference of the scenario again and again; it is whole periods.
         let reference = references[n % references.len()];
         let output = match fault {
-            Some(Fault::OutOfReach) => reference + stroke,
-            Some(Fault::BelowReach) => reference - stroke,
+            Some(Fault::OutOfReach) => reference + far,
+            Some(Fault::BelowReach) => reference - far,
             _ => reference,
         };
         let target = Target {
@@ -170,14 +174,15 @@ fn check_status(run: &Run, course: &Course, with: With, senses_input: bool) {
             assert_eq!(sensor, 1.0);
             assert_eq!(adapted, 0.0, "learned from a broken sensor");
         }
-        Fault::Dropped => assert!(sensor > 0.25),
+        // Five standard deviations of a binomial share below 30 % of 200 samples.
+        Fault::Dropped => assert!(sensor > 0.14),
         Fault::NoInput | Fault::InputStuck if senses_input => {
             assert_eq!(sensor, 1.0);
             assert_eq!(adapted, 0.0, "learned without an input");
         }
         Fault::NoInput | Fault::InputStuck => assert_eq!(sensor, 0.0),
         Fault::OutOfReach | Fault::BelowReach => {
-            assert!(saturated > 0.3, "{saturated}");
+            assert_eq!(saturated, 1.0);
             assert_eq!(reach, if with == With::Pid { 0.0 } else { 1.0 });
         }
     }
@@ -196,9 +201,9 @@ fn faults(
     let senses_input = known.inner.is_some();
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut worst = (0.0_f64, 0.0_f64);
-    for seed in 0..21 {
+    for seed in 0..RUNS {
         let fault = FAULTS[seed % FAULTS.len()];
-        let with = [With::Adaptive, With::Fixed, With::Pid][seed / FAULTS.len()];
+        let with = [With::Adaptive, With::Fixed, With::Pid][seed / FAULTS.len() % 3];
         let from = rng.random_range(start..2 * start);
         let to = from + rng.random_range(longest / 2..longest);
         let load_n = rng.random_range(loads.0..loads.1);
@@ -236,6 +241,40 @@ fn the_spring_recovers_from_every_fault() {
 
 #[test]
 fn the_relays_recover_from_every_fault() {
-    // Faults of 2 to 4 s; a period of 2 s to recover, and two to judge.
-    faults(Known::relays(), (5.0, 8.0), (1000, 400), 200, 400);
+    // Faults of 2 to 4 s; three periods of 2 s to recover, for after a target out of reach the relays stand as they never did
+    // while the model learned their load; and two to judge.
+    faults(Known::relays(), (5.0, 8.0), (1000, 400), 600, 400);
+}
+
+#[test]
+fn minutes_of_saturation_leave_nothing_behind() {
+    // A source of 1.1 A cannot bring the spring to 9 mm; five minutes later 3 mm are wanted.
+    let known = Known::spring();
+    for with in [With::Pid, With::Fixed, With::Adaptive] {
+        let mut scheme = Scheme {
+            drives: (0.0, 1.1),
+            ..known.scheme()
+        };
+        scheme.compensator = controller(known, with).compensator().cloned();
+        let mut limited = Controller::new(scheme).unwrap();
+        let mut plant = known.plant(5);
+        let (mut saturated, mut back) = (0, None);
+        for n in 0..3000 {
+            let output = if n < 1500 { 9.0 } else { 3.0 };
+            let target = Target {
+                output,
+                heading: None,
+            };
+            let action = limited.step(target, plant.read()).unwrap();
+            plant.write(action.drive);
+            plant.advance(0.2);
+            saturated += usize::from(n < 1500 && action.status.saturated);
+            if n >= 1500 && back.is_none() && plant.truth().output < 3.3 {
+                back = Some(0.2 * f64::from(n - 1500));
+            }
+        }
+        println!("{with:?}: at the limit for {saturated} of 1500 samples, back after {back:.1?} s");
+        assert!(saturated > 1400);
+        assert!(back.is_some_and(|seconds| seconds < 60.0));
+    }
 }

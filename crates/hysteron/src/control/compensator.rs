@@ -10,6 +10,9 @@ use crate::{Adaptive, Direction, Model, Outcome, Policy, Result, Sign, Solution,
 /// inverse goes back across the dead band only for a difference of this many tolerances.
 const NOT_TURNED: f64 = 8.0;
 
+/// Samples after a jump of the input from which nothing is learned.
+const JUMP: u32 = 10;
+
 /// A hysteresis model and its inverse in the loop, fixed or adapting.
 #[derive(Debug, Clone)]
 pub struct Compensator {
@@ -18,6 +21,10 @@ pub struct Compensator {
     wanted: Option<State>,
     /// The branch that the target is on.
     target: Option<Turning>,
+    /// The last input followed.
+    input: Option<f64>,
+    /// Samples for which learning rests.
+    resting: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -51,6 +58,8 @@ impl Compensator {
             kind,
             wanted: None,
             target: None,
+            input: None,
+            resting: 0,
         }
     }
 
@@ -59,13 +68,20 @@ impl Compensator {
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
     pub fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
+        let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
             (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
-            (Kind::Adaptive(adaptive), Some(measured)) => {
+            (Kind::Adaptive(adaptive), measured) => {
+                self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
+                    true => JUMP,
+                    false => self.resting.saturating_sub(1),
+                };
+                let Some(measured) = measured.filter(|_| self.resting == 0) else {
+                    return Ok((adaptive.predict(input)?, false));
+                };
                 let learning = adaptive.step(input, measured)?;
                 Ok((learning.output, learning.outcome == Outcome::Learned))
             }
-            (Kind::Adaptive(adaptive), None) => Ok((adaptive.predict(input)?, false)),
         }
     }
 

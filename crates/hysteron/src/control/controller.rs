@@ -21,7 +21,7 @@ pub struct Action {
     pub command: f64,
     /// The drive to write to the device.
     pub drive: f64,
-    /// The output that the model expected before it learned; NaN without a model.
+    /// The output that the model expected before it learned, at the input that was seen last; NaN without a model.
     pub prediction: f64,
     /// The readings as filtered; NaN where there is nothing new to be believed.
     pub filtered: Reading,
@@ -83,6 +83,8 @@ pub struct Controller {
     last: Option<f64>,
     /// Whether the drive stands at its lower and its upper limit.
     held: (bool, bool),
+    /// What the model expected when it last saw the input.
+    prediction: f64,
     /// Whether the input's sensor was taken as broken, so that it is not known how the input came to where it is.
     lost: bool,
 }
@@ -102,6 +104,7 @@ impl Controller {
             input: watch(),
             last: None,
             held: (false, false),
+            prediction: f64::NAN,
             lost: false,
             scheme,
         })
@@ -116,18 +119,17 @@ impl Controller {
         refuse_not_finite(target.output)?;
         let (output, input) = self.read(reading);
         let mut status = LoopStatus::default();
-        let mut prediction = f64::NAN;
         if let Some(compensator) = &mut self.scheme.compensator {
             if let Some(input) = input.and_then(Sight::value) {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
-                (prediction, status.adapted) = compensator.follow(input, output.value())?;
+                (self.prediction, status.adapted) = compensator.follow(input, output.value())?;
             }
             self.lost |= input == Some(Sight::Blind);
         }
         let command = self.command(target, output.value(), &mut status)?;
-        Ok(self.act(command, prediction, (output, input), status))
+        Ok(self.act(command, self.prediction, (output, input), status))
     }
 
     /// One sample that brings the input to `command`, whatever the output is: for recordings and step tests.
@@ -173,6 +175,13 @@ impl Controller {
         let drive = self.drive(command, input);
         let (low, high) = self.scheme.drives;
         self.held = (drive <= low, drive >= high);
+        let (lowest, highest) = self.scheme.commands;
+        let limits = [
+            self.held.0,
+            self.held.1,
+            command <= lowest,
+            command >= highest,
+        ];
         self.last = Some(match self.inner {
             Some(_) => command,
             None => drive,
@@ -187,7 +196,7 @@ impl Controller {
                 input: sensed,
             },
             status: LoopStatus {
-                saturated: self.held.0 || self.held.1,
+                saturated: limits.contains(&true),
                 sensor_fault: output.fault() || input.is_some_and(Sight::fault),
                 ..status
             },

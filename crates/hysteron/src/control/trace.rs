@@ -3,7 +3,7 @@
 /// What the loop had to say of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopStatus {
-    /// The drive stood at a limit.
+    /// The drive or the input asked for stood at a limit.
     pub saturated: bool,
     /// The reference lay out of the model's reach; the nearest end was aimed at.
     pub out_of_reach: bool,
