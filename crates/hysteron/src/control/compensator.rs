@@ -3,6 +3,8 @@
 //! These are two states of one model. The first follows the input as measured, for prediction and learning. The second
 //! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
 //! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
+//! But a turning point that was asked for by weights long changed stays in that memory until it is wiped out. So with weights that
+//! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
 
 use crate::{Adaptive, Direction, Model, Outcome, Policy, Result, Sign, Solution, State, Turning};
 
@@ -97,8 +99,11 @@ impl Compensator {
         tolerance: f64,
     ) -> Result<Solution<f64>> {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
-        branch.push(target);
+        let turns = branch.push(target).is_some();
         let branch = branch.branch();
+        if turns && self.adapting().is_some() {
+            self.set_out_again();
+        }
         let (state, sign) = match &self.kind {
             Kind::Fixed { model, state } => (state, model.sign()),
             Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),

@@ -65,13 +65,9 @@ impl Reference {
         let Self::Csv { file, time, column } = &self else {
             return Ok(self);
         };
-        let columns = Columns {
-            time: Some(time),
-            ..Columns::new(column, column)
-        };
-        let (recording, _) = Recording::read(&folder.join(file), columns, Repair::Refuse)?;
-        let times = recording.time.unwrap_or_default();
-        let points = times.into_iter().zip(recording.output).collect();
+        let columns = Columns::new(time, column);
+        let (table, _) = Recording::read(&folder.join(file), columns, Repair::Refuse)?;
+        let points = table.input.into_iter().zip(table.output).collect();
         Ok(Self::Ramps { points })
     }
 
