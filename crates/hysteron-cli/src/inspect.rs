@@ -146,7 +146,11 @@ fn model(args: &args::Inspect) -> Result<()> {
     ];
     if let Some(fit) = &model.fit {
         lines.push(format!(
-            "fitted to {} {}samples{}: RMSE {} ({:.2} % of the range), largest error {}",
+            "{} {} {}samples{}: RMSE {} ({:.2} % of the range), largest error {}",
+            match fit.other.get("adapted").map(|how| &how["method"]) {
+                Some(method) => format!("adapted ({}) over", method.as_str().unwrap_or("unknown")),
+                None => "fitted to".into(),
+            },
             fit.samples,
             if fit.simulated { "simulated " } else { "" },
             fit.file

@@ -1,5 +1,6 @@
 //! The `hysteron` command: a thin surface over the library, which does the work.
 
+mod adapt;
 mod args;
 mod demo;
 mod design;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => table::simulate(&args),
         Command::Invert(args) => table::invert(&args),
         Command::Evaluate(args) => evaluate::run(&args),
+        Command::Adapt(args) => adapt::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Track(args) => track::run(&args),

@@ -36,10 +36,10 @@ impl Adaptive {
     ///
     /// # Errors
     /// [`Error::Core`] for options out of range and for negative weights; [`Error::Fit`] for a model that depends on a load or
-    /// has a thermal body.
+    /// has a thermal body, and for one with so many levels that the method takes more than 4 GiB.
     pub fn new(model: &Model, options: Adaptation<f64>) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
-        let memory = vec![0.0; estimator_len(model.plane().levels(), options.method)];
+        let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
         let offset = model.sign().factor() * model.offset();
         let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
         Self::from_parts(model, core, estimator, Vec::new())
@@ -58,7 +58,7 @@ impl Adaptive {
     ) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let levels = model.plane().levels();
-        let memory = vec![0.0; estimator_len_of_parts(levels, options.method, shares.len())];
+        let memory = reserved(estimator_len_of_parts(levels, options.method, shares.len()))?;
         let offset = model.sign().factor() * model.offset();
         let all = parts.concat();
         let estimator = Estimator::of_parts(options, &mut core, &all, shares, offset, memory)?;
@@ -183,6 +183,12 @@ impl Adaptive {
         Ok(self.core.reset_off(&mut self.state)?)
     }
 
+    /// Every operator on, as at the top of the plane; the weights stay.
+    pub fn saturate(&mut self) -> Result<()> {
+        self.estimator.realign();
+        Ok(self.core.reset_on(&mut self.state)?)
+    }
+
     /// While frozen, nothing is learned.
     pub fn freeze(&mut self, frozen: bool) {
         self.estimator.freeze(frozen);
@@ -205,6 +211,22 @@ impl Adaptive {
     fn sign(&self) -> Sign {
         self.offline.sign()
     }
+}
+
+/// Bytes that an estimator may take.
+const MOST_BYTES: u128 = 4 << 30;
+
+/// An estimator's memory.
+fn reserved(numbers: usize) -> Result<Vec<f64>> {
+    let bytes = 8 * numbers as u128;
+    if bytes > MOST_BYTES {
+        return Err(Error::Fit(format!(
+            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} GiB allowed: take another method, or a model with fewer levels",
+            bytes as f64 / f64::from(1 << 30),
+            MOST_BYTES >> 30
+        )));
+    }
+    Ok(vec![0.0; numbers])
 }
 
 /// A core model with the memory that the method asks for.

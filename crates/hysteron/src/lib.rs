@@ -8,6 +8,7 @@
 //! allocation.
 #![forbid(unsafe_code)]
 
+mod adapt;
 mod adaptive;
 mod advice;
 mod band;
@@ -34,6 +35,9 @@ mod thermal;
 pub mod track;
 mod turning;
 
+pub use adapt::{
+    AdaptOptions, Adapted, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
+};
 pub use adaptive::Adaptive;
 pub use advice::{Advice, advice};
 pub use band::{Band, BandEvaluation};

@@ -170,6 +170,16 @@ impl Recording {
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
+        self.write_csv_with(path, &[], |_| [])
+    }
+
+    /// As [`Recording::write_csv`], with more columns.
+    pub(crate) fn write_csv_with<const N: usize>(
+        &self,
+        path: &Path,
+        added: &[&str; N],
+        more: impl Fn(usize) -> [String; N],
+    ) -> Result<()> {
         self.check()?;
         let mut table = TableWriter::create(Some(path))?;
         let simulated = self.origin == Origin::Simulated;
@@ -180,7 +190,8 @@ impl Recording {
             self.load.as_ref().map(|_| self.load_quantity.to_column()),
             simulated.then(|| "simulated".to_owned()),
         ];
-        table.row(names.iter().flatten())?;
+        let added = added.map(str::to_owned);
+        table.row(names.iter().flatten().chain(&added))?;
         for (n, (input, output)) in self.input.iter().zip(&self.output).enumerate() {
             let cells = [
                 self.time.as_ref().map(|time| time[n].to_string()),
@@ -189,7 +200,7 @@ impl Recording {
                 self.load.as_ref().map(|load| load[n].to_string()),
                 simulated.then(|| "1".to_owned()),
             ];
-            table.row(cells.iter().flatten())?;
+            table.row(cells.iter().flatten().chain(&more(n)))?;
         }
         table.finish()
     }

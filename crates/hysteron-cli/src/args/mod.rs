@@ -3,9 +3,11 @@
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
+mod adapt;
 mod fit;
 mod value;
 
+pub(crate) use adapt::*;
 pub(crate) use fit::*;
 pub(crate) use value::*;
 
@@ -51,6 +53,11 @@ pub(crate) enum Command {
         after_help = "Example:\n  hysteron evaluate spring.json run2.csv --input temperature --output displacement --report report"
     )]
     Evaluate(Evaluate),
+    /// Let a model learn from a recording, sample by sample, and write the adapted one
+    #[command(
+        after_help = "Example:\n  hysteron adapt spring.json run3.csv --input temperature --output displacement -o adapted.json"
+    )]
+    Adapt(Adapt),
     /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
     #[command(
         after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"

@@ -46,6 +46,29 @@ pub(crate) enum Policy {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Learner {
+    /// All weights, by the normalised gradient
+    Gradient,
+    /// All weights, by the normalised gradient on increments of the output
+    Increments,
+    /// All weights, by recursive least squares
+    LeastSquares,
+    /// A few parts: the weights shifted along the plane, or the load parts of a model with a load
+    Drift,
+}
+
+impl From<Learner> for hysteron::Learner {
+    fn from(learner: Learner) -> Self {
+        match learner {
+            Learner::Gradient => Self::Gradient,
+            Learner::Increments => Self::Increments,
+            Learner::LeastSquares => Self::LeastSquares,
+            Learner::Drift => Self::Drift,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Sign {
     /// The better one
     Auto,

@@ -90,14 +90,14 @@ impl Default for AdaptationOptions {
             method: MethodName::LeastSquares,
             gain: 0.3,
             span: 1.0,
-            forgetting: 0.998,
+            forgetting: 0.9995,
             noise: 0.3,
             spread: 0.05,
-            correlation: 4.0,
-            offset_share: 20.0,
+            correlation: 3.0,
+            offset_share: 10.0,
             dead_zone: 0.0,
             leakage: 0.0,
-            movement: 0.1,
+            movement: 0.02,
         }
     }
 }

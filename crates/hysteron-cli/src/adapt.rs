@@ -1,0 +1,97 @@
+//! `hysteron adapt`
+
+use crate::{Result, args, keep_apart, print, recording, text};
+use hysteron::{Adapted, Columns, Compared, Model};
+use serde_json::{Value, json};
+
+pub(crate) fn run(args: &args::Adapt) -> Result<()> {
+    for out in [Some(&args.out), args.table.as_ref()].into_iter().flatten() {
+        keep_apart(&args.data, out)?;
+    }
+    let model = Model::read(&args.model)?;
+    let columns = Columns {
+        input: &args.input,
+        output: &args.output,
+        time: args.time.as_deref(),
+        load: None,
+    };
+    let recording = recording::read(&args.data, columns, &args.repair)?;
+    let mut adapted = hysteron::adapt(&model, &recording, &args.into())?;
+    if let Some(adapted) = adapted
+        .model
+        .fit
+        .as_mut()
+        .and_then(|fit| fit.other.get_mut("adapted"))
+    {
+        adapted["from"]["model"] = json!(args.model);
+    }
+    if let Some(table) = &args.table {
+        adapted.write_table(&recording, table)?;
+    }
+    adapted.model.write(&args.out)?;
+    match args.json.json {
+        true => print(&to_json(args, &adapted).to_string()),
+        false => print(&to_text(args, &adapted)),
+    }
+}
+
+fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
+    json!({
+        "model": args.out,
+        "table": args.table,
+        "whole": adapted.whole,
+        "thirds": adapted.thirds,
+        "again": adapted.again,
+        "counts": adapted.counts,
+        "drift": adapted.drift,
+        "fit": adapted.model.fit,
+    })
+}
+
+fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
+    let output = &adapted.model.output;
+    let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
+    let mut line = |name: &str, compared: &Compared| {
+        let Compared { adapting, fixed } = compared;
+        rows.push(vec![
+            name.to_owned(),
+            text::with_unit(adapting.rmse, output),
+            text::with_unit(fixed.rmse, output),
+            adapting.samples.to_string(),
+        ]);
+    };
+    line("each sample before it was learned from", &adapted.whole);
+    for (name, third) in ["  first third", "  second", "  last"]
+        .iter()
+        .zip(&adapted.thirds)
+    {
+        line(name, third);
+    }
+    let again = Compared {
+        adapting: adapted.again,
+        fixed: adapted.whole.fixed,
+    };
+    line("last weights, over all of it again", &again);
+    let counts = &adapted.counts;
+    let drift = &adapted.drift;
+    [
+        format!(
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} times rolled back",
+            args.out.display(),
+            counts.learned,
+            counts.waiting,
+            counts.at_rest,
+            counts.rolled_back
+        ),
+        text::table(&rows),
+        format!(
+            "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of their sum",
+            text::number(drift.weights.0),
+            text::with_unit(drift.weights.1, output),
+            text::number(drift.offset.0),
+            text::with_unit(drift.offset.1, output),
+            100.0 * drift.moved
+        ),
+    ]
+    .join("\n")
+}

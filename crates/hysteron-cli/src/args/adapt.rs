@@ -1,0 +1,106 @@
+//! Options of `adapt`.
+
+use super::value::*;
+use super::{Json, Repair};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(crate) struct Adapt {
+    /// The model
+    pub(crate) model: PathBuf,
+    /// The recording to learn from
+    pub(crate) data: PathBuf,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time in seconds, for the table
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// Where the operators stand before the first sample; `unknown` takes off or on, with which the model errs less
+    #[arg(long, value_enum, default_value = "off")]
+    pub(crate) start: Start,
+    /// What follows the error, and how
+    #[arg(long, value_enum, default_value = "drift")]
+    pub(crate) method: Learner,
+    /// With `drift`, for a model that depends on a load: the load to start at [default: the middle of its range]
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true, value_parser = parse_finite)]
+    pub(crate) load: Option<f64>,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    #[command(flatten)]
+    pub(crate) tuning: Tuning,
+    /// Where the adapted model goes
+    #[arg(short, value_name = "ADAPTED")]
+    pub(crate) out: PathBuf,
+    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`
+    #[arg(long, value_name = "CSV")]
+    pub(crate) table: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Tuning")]
+pub(crate) struct Tuning {
+    /// gradient, increments: share of a sample's error that is taken away, above 0 and below 2 [default: 0.3]
+    #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = parse_finite)]
+    gain: Option<f64>,
+    /// increments: levels that the input travels between two updates [default: 1]
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
+    span: Option<f64>,
+    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1 [default: 0.999, of drift 0.9999]
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = parse_finite)]
+    forgetting: Option<f64>,
+    /// least-squares, drift: standard deviation of the error of a reading and of the model, in the output's unit
+    /// [default: the noise found, and at least 2 %, of drift 5 %, of the range]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
+    noise: Option<f64>,
+    /// least-squares, drift: standard deviation by which a weight (in the output's unit) or a share may differ from the
+    /// model's [default: such that the output may differ by 0.3 of its range; of a share 0.5]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = parse_finite)]
+    spread: Option<f64>,
+    /// least-squares: levels over which deviations of weights go together [default: 1]
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
+    correlation: Option<f64>,
+    /// Errors up to this are noise, in the output's unit [default: twice the noise found]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
+    dead_zone: Option<f64>,
+    /// Share by which the weights go back to the model's with each update, 0 to 1 [default: 0]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
+    leakage: Option<f64>,
+    /// How freely the offset moves beside one weight or share; with 0 it stays
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
+    offset_share: Option<f64>,
+    /// Levels that the input has to move before a sample is learned from [default: 0.05]
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
+    movement: Option<f64>,
+    /// Samples learned from after which the weights are judged against the last good ones [default: 256]
+    #[arg(long, value_name = "N")]
+    trial: Option<u32>,
+}
+
+impl From<&Adapt> for hysteron::AdaptOptions {
+    fn from(args: &Adapt) -> Self {
+        let tuning = &args.tuning;
+        Self {
+            learner: args.method.into(),
+            start: args.start.into(),
+            load: args.load,
+            gain: tuning.gain,
+            span: tuning.span,
+            forgetting: tuning.forgetting,
+            noise: tuning.noise,
+            spread: tuning.spread,
+            correlation: tuning.correlation,
+            dead_zone: tuning.dead_zone,
+            leakage: tuning.leakage,
+            offset_share: tuning.offset_share,
+            movement: tuning.movement,
+            trial: tuning.trial,
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! An estimator over a recording: each sample is predicted, then learned from.
+
+mod options;
+mod parts;
+
+pub use options::{AdaptOptions, Learner};
+pub use parts::DriftParts;
+
+use crate::{
+    Adaptation, Adaptive, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result,
+    Start,
+};
+use serde::Serialize;
+use serde_json::json;
+use std::path::Path;
+
+/// What came of an adaptation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Adapted {
+    /// The model with the last weights. Its [`FitSummary`] is that of the last weights over the whole recording; the
+    /// confidence of the off-line model does not hold any more and is gone; what was done stands under `adapted`.
+    pub model: Model,
+    /// Output predicted for each sample before it was learned from.
+    pub output_model: Vec<f64>,
+    /// What was done with each sample.
+    pub outcomes: Vec<Outcome>,
+    /// How often each outcome was.
+    pub counts: OutcomeCounts,
+    /// Errors over the whole recording.
+    pub whole: Compared,
+    /// Errors over its first, second and last third, by the number of samples; those of a third are absent where it has none.
+    pub thirds: Vec<Compared>,
+    /// Errors of the last weights over the whole recording, run again from its start: they have seen all of it.
+    pub again: Errors,
+    /// How the model has changed.
+    pub drift: Drift,
+    /// The estimator's options.
+    pub options: Adaptation<f64>,
+}
+
+/// Errors of the model that learned, before it learned from the samples compared, beside those of the model left as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Compared {
+    /// Of the model that learned.
+    pub adapting: Errors,
+    /// Of the model left as it was.
+    pub fixed: Errors,
+}
+
+/// How often each [`Outcome`] was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct OutcomeCounts {
+    /// Samples learned from.
+    pub learned: usize,
+    /// Errors within the dead zone, or increments that were not finished.
+    pub waiting: usize,
+    /// Samples at which the input did not move.
+    pub at_rest: usize,
+    /// Times the weights went back to the last good ones.
+    pub rolled_back: usize,
+}
+
+/// How far a model has gone from the one that it was.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Drift {
+    /// Sum of the weights before and after: the stroke from all operators off to all on, of MKP once and of KP and relay twice.
+    pub weights: (f64, f64),
+    /// Offset before and after.
+    pub offset: (f64, f64),
+    /// Sum of the absolute changes of the weights over the sum before; infinite where that is zero.
+    pub moved: f64,
+}
+
+impl Adapted {
+    /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
+    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`).
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
+    pub fn write_table(&self, recording: &Recording, path: &Path) -> Result<()> {
+        if recording.len() != self.outcomes.len() {
+            return Err(Error::Recording {
+                path: recording.source.as_ref().map(|source| source.path.clone()),
+                row: None,
+                column: None,
+                problem: format!(
+                    "{} samples, where the model was adapted to {}",
+                    recording.len(),
+                    self.outcomes.len()
+                ),
+            });
+        }
+        let added = ["output_model", "error", "outcome"];
+        recording.write_csv_with(path, &added, |n| {
+            let predicted = self.output_model[n];
+            let error = recording.output[n] - predicted;
+            let outcome = word(self.outcomes[n]).to_owned();
+            [predicted.to_string(), error.to_string(), outcome]
+        })
+    }
+}
+
+fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Learned => "learned",
+        Outcome::Waiting => "waiting",
+        Outcome::AtRest => "at-rest",
+        Outcome::Frozen => "frozen",
+        Outcome::RolledBack => "rolled-back",
+    }
+}
+
+/// Runs an estimator over a recording, which predicts each sample before it learns from it.
+///
+/// ```
+/// use hysteron::{AdaptOptions, Model, Operator, Plane, Recording, Sign, adapt};
+/// let plane = Plane::new(20.0, 80.0, 5)?;
+/// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
+/// let input: Vec<f64> = (0..1000).map(|n| 50.0 - 40.0 * (0.05 * f64::from(n)).cos()).collect();
+/// let output = model(1.5)?.simulate(&input)?;
+/// let adapted = adapt(&model(1.0)?, &Recording::new(input, output)?, &AdaptOptions::default())?;
+/// let last = adapted.thirds[2];
+/// assert!(last.adapting.rmse < 0.05 * last.fixed.rmse);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Fit`] for a model with a thermal body, for one that
+/// depends on a load with another learner than [`Learner::Drift`], and for options that are of no use; [`Error::Core`] for
+/// options out of range and negative weights.
+pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+    recording.check()?;
+    let adaptation = options.adaptation(model, recording)?;
+    let mut adaptive = match options.learner {
+        Learner::Drift => DriftParts::of(model, options.load)?.adaptive(adaptation)?,
+        _ => Adaptive::new(model, adaptation)?,
+    };
+    let offline = adaptive.offline().clone();
+    let (from_on, fixed) = fixed(&offline, recording, options.start)?;
+    if from_on {
+        adaptive.saturate()?;
+    }
+    let mut output_model = Vec::with_capacity(recording.len());
+    let mut outcomes = Vec::with_capacity(recording.len());
+    let mut counts = OutcomeCounts::default();
+    for (&input, &measured) in recording.input.iter().zip(&recording.output) {
+        let learning = adaptive.step(input, measured)?;
+        output_model.push(learning.output);
+        outcomes.push(learning.outcome);
+        match learning.outcome {
+            Outcome::Learned => counts.learned += 1,
+            Outcome::Waiting => counts.waiting += 1,
+            // Nothing freezes an estimator here.
+            Outcome::AtRest | Outcome::Frozen => counts.at_rest += 1,
+            Outcome::RolledBack => counts.rolled_back += 1,
+        }
+    }
+    let compare = |from: usize, to: usize| {
+        let inside = |n: usize| (from..to).contains(&n);
+        Some(Compared {
+            adapting: Errors::between(&recording.output, &output_model, inside)?,
+            fixed: Errors::between(&recording.output, &fixed, inside)?,
+        })
+    };
+    let count = recording.len();
+    let whole = compare(0, count).ok_or_else(|| Error::Fit("no samples".into()))?;
+    let thirds = (0..3)
+        .filter_map(|n| compare(n * count / 3, (n + 1) * count / 3))
+        .collect();
+    let mut last = adaptive.model()?;
+    let again = run_from(&last, from_on, recording)?;
+    let again = Errors::between(&recording.output, &again, |_| true).unwrap_or(whole.adapting);
+    last.fit = Some(summary(
+        &last,
+        &offline,
+        recording,
+        options,
+        &adaptation,
+        (&again, counts),
+    ));
+    Ok(Adapted {
+        drift: Drift::between(&offline, &last),
+        model: last,
+        output_model,
+        outcomes,
+        counts,
+        whole,
+        thirds,
+        again,
+        options: adaptation,
+    })
+}
+
+/// Whether the operators start on, and the outputs of the model left as it is.
+fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Vec<f64>)> {
+    let from = |on| run_from(model, on, recording);
+    let error = |output: &[f64]| {
+        let pairs = recording.output.iter().zip(output);
+        pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>()
+    };
+    match start {
+        Start::Off => Ok((false, from(false)?)),
+        Start::On => Ok((true, from(true)?)),
+        Start::Unknown => {
+            let (off, on) = (from(false)?, from(true)?);
+            Ok(match error(&on) < error(&off) {
+                true => (true, on),
+                false => (false, off),
+            })
+        }
+    }
+}
+
+fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> {
+    let mut state = match on {
+        true => model.saturated(),
+        false => model.start(),
+    };
+    let mut output = vec![0.0; recording.len()];
+    model.run(&mut state, &recording.input, &mut output)?;
+    Ok(output)
+}
+
+/// What the adapted model's file says of how it was obtained.
+fn summary(
+    model: &Model,
+    offline: &Model,
+    recording: &Recording,
+    options: &AdaptOptions,
+    adaptation: &Adaptation<f64>,
+    (again, counts): (&Errors, OutcomeCounts),
+) -> FitSummary {
+    let before = offline.fit.clone().unwrap_or_default();
+    let source = recording.source.as_ref();
+    let mut other = before.other;
+    other.insert(
+        "adapted".into(),
+        json!({
+            "method": options.learner,
+            "options": described(adaptation),
+            "counts": counts,
+            "from": offline.fit.as_ref().map(|fit| json!({
+                "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
+            })),
+        }),
+    );
+    FitSummary {
+        start: options.start,
+        open_at_start: 0,
+        samples: again.samples,
+        rmse: again.rmse,
+        max_abs: again.max_abs,
+        nrmse_percent: again.nrmse_percent.unwrap_or_default(),
+        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        simulated: before.simulated || recording.origin == crate::Origin::Simulated,
+        file: source.map(|source| source.path.display().to_string()),
+        sha256: source.map(|source| source.sha256.clone()),
+        other_files: Vec::new(),
+        validation: None,
+        confidence: None,
+        other,
+        ..before
+    }
+}
+
+/// The options as a JSON object: those of the method, and the guards.
+fn described(options: &Adaptation<f64>) -> serde_json::Value {
+    let mut object = match options.method {
+        Method::Gradient { gain } => json!({ "gain": gain }),
+        Method::Increments { gain, span } => json!({"gain": gain, "span": span}),
+        Method::LeastSquares {
+            forgetting,
+            noise,
+            spread,
+            correlation,
+        } => {
+            json!({"forgetting": forgetting, "noise": noise, "spread": spread, "correlation": correlation})
+        }
+    };
+    object["offset_share"] = json!(options.offset_share);
+    object["dead_zone"] = json!(options.dead_zone);
+    object["leakage"] = json!(options.leakage);
+    object["movement"] = json!(options.movement);
+    object["trial"] = json!(options.trial);
+    object
+}
+
+impl Drift {
+    fn between(before: &Model, after: &Model) -> Self {
+        let sum = |model: &Model| model.weights().iter().sum::<f64>();
+        let pairs = before.weights().iter().zip(after.weights());
+        let moved: f64 = pairs.map(|(a, b)| (b - a).abs()).sum();
+        Self {
+            weights: (sum(before), sum(after)),
+            offset: (before.offset(), after.offset()),
+            moved: moved / sum(before),
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! Models that are adapted over recordings. The measured ones stay in `../shared/data`; without them the test says so and passes.
+#![allow(clippy::unwrap_used)]
+
+use hysteron::{
+    AdaptOptions, Columns, DriftParts, FirstOrder, FitOptions, Learner, Model, Operator, Plane,
+    Recording, Repair, Sign, Start, adapt, fit, fit_experiment,
+};
+use std::path::Path;
+
+const LEARNERS: [Learner; 4] = [
+    Learner::Gradient,
+    Learner::Increments,
+    Learner::LeastSquares,
+    Learner::Drift,
+];
+
+/// Loops of different width, from the bottom of a plane from 20 to 80.
+fn input() -> Vec<f64> {
+    let wave =
+        |n: i32| 48.0 - (20.0 + 12.0 * (0.013 * f64::from(n)).cos()) * (0.05 * f64::from(n)).cos();
+    (0..2500).map(wave).collect()
+}
+
+/// A transformation about the middle of the plane, shifted by so many levels.
+fn wire(stroke: f64, shift: i32) -> Model {
+    let mut weights = Vec::new();
+    for j in 1..=12_i32 {
+        for i in 1..=j {
+            let off = f64::from((i - 3 - shift).pow(2) + (j - 7 - shift).pow(2));
+            weights.push(stroke / 12.0 * (-0.25 * off).exp());
+        }
+    }
+    let plane = Plane::new(20.0, 80.0, 12).unwrap();
+    Model::new(Operator::Mkp, plane, weights, 5.0, Sign::Negative).unwrap()
+}
+
+fn recorded(model: &Model, start: Start) -> Recording {
+    let input = input();
+    let mut output = vec![0.0; input.len()];
+    let mut state = match start {
+        Start::On => model.saturated(),
+        _ => model.start(),
+    };
+    model.run(&mut state, &input, &mut output).unwrap();
+    Recording::new(input, output).unwrap()
+}
+
+fn by(learner: Learner) -> AdaptOptions {
+    AdaptOptions {
+        learner,
+        ..AdaptOptions::default()
+    }
+}
+
+#[test]
+fn every_learner_follows_a_plant_with_another_stroke() {
+    let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
+    for learner in LEARNERS {
+        let adapted = adapt(&model, &recording, &by(learner)).unwrap();
+        let (first, last) = (adapted.thirds[0], adapted.thirds[2]);
+        // The plant is the model but for its stroke: what is left after fifty loops is what is still being learned, and with
+        // the gradient methods a long tail of it.
+        assert!(
+            last.adapting.rmse < 0.2 * last.fixed.rmse,
+            "{learner:?}: {last:?}"
+        );
+        assert!(last.adapting.rmse < first.adapting.rmse, "{learner:?}");
+        assert!(adapted.counts.learned > 0 && adapted.counts.rolled_back == 0);
+        let (before, after) = adapted.drift.weights;
+        assert!(after > 1.2 * before, "{learner:?}: {before} to {after}");
+    }
+}
+
+#[test]
+fn drift_follows_a_shift_that_it_has_no_part_for() {
+    // Two levels and a third more stroke; the parts are shifted by 1, 3 and 5.
+    let (model, recording) = (wire(1.0, 0), recorded(&wire(1.3, 2), Start::Off));
+    let adapted = adapt(&model, &recording, &by(Learner::Drift)).unwrap();
+    // A sum of shifted parts is wider than a shift: about a quarter of the error stays.
+    let last = adapted.thirds[2];
+    assert!(last.adapting.rmse < 0.25 * last.fixed.rmse, "{last:?}");
+    assert!(
+        adapted.again.rmse < 0.25 * last.fixed.rmse,
+        "{:?}",
+        adapted.again
+    );
+}
+
+/// Where no operator leaves the plane, a part is the model at an input so many levels away.
+#[test]
+fn a_shifted_part_is_a_shifted_model() {
+    let mut weights = wire(1.0, 0).weights().to_vec();
+    for (n, mu) in weights.iter_mut().enumerate() {
+        let j = (1..=12).find(|j| j * (j + 1) / 2 > n).unwrap();
+        let i = n + 1 - j * (j - 1) / 2;
+        if i < 2 || j > 9 {
+            *mu = 0.0;
+        }
+    }
+    let plane = Plane::new(20.0, 80.0, 12).unwrap();
+    let of =
+        |weights: Vec<f64>| Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive).unwrap();
+    let model = of(weights);
+    let found = DriftParts::of(&model, None).unwrap();
+    let step = 60.0 / 11.0;
+    let here: Vec<f64> = input().iter().map(|t| t.clamp(28.0, 60.0)).collect();
+    for (n, shift) in [(1, -1.0), (2, 0.0), (3, 1.0), (4, 3.0)] {
+        let there: Vec<f64> = here.iter().map(|t| t + shift * step).collect();
+        let expected = model.simulate(&here).unwrap();
+        for (a, b) in of(found.parts[n].clone())
+            .simulate(&there)
+            .unwrap()
+            .iter()
+            .zip(expected)
+        {
+            // Rounding of the shifted inputs, a few parts in 10¹⁶, over weights that sum to about one.
+            assert!((a - b).abs() < 1e-12, "shift {shift}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn the_start_is_on_or_found() {
+    // Cooled to the middle of the plane first.
+    let middle = |recording: Recording| {
+        Recording::new(
+            recording.input[94..].to_vec(),
+            recording.output[94..].to_vec(),
+        )
+        .unwrap()
+    };
+    let (model, recording) = (wire(1.0, 0), middle(recorded(&wire(1.0, 0), Start::Off)));
+    let from = |start| {
+        let options = AdaptOptions {
+            start,
+            ..by(Learner::Drift)
+        };
+        adapt(&model, &recording, &options).unwrap()
+    };
+    let [off, on] = [Start::Off, Start::On].map(|start| from(start).whole.fixed.rmse);
+    assert!(on < 0.5 * off, "{on} {off}");
+    assert_eq!(
+        from(Start::Unknown).output_model,
+        from(Start::On).output_model
+    );
+}
+
+#[test]
+fn a_load_is_found_from_the_output_alone() {
+    let at = |load: f64| Recording {
+        load: Some(vec![load; input().len()]),
+        ..recorded(&wire(1.0 + load, 0), Start::Off)
+    };
+    let options = FitOptions {
+        levels: 12,
+        range: Some((20.0, 80.0)),
+        ..FitOptions::default()
+    };
+    let model = fit_experiment(&[at(0.0), at(1.0)], &options, &|_, _| Ok(())).unwrap();
+    let target = Recording {
+        load: None,
+        ..at(0.9)
+    };
+    let adapted = adapt(&model, &target, &by(Learner::Drift)).unwrap();
+    let last = adapted.thirds[2];
+    // The two parts hold the plant up to the fit's error, well below a hundredth.
+    assert!(last.adapting.rmse < 0.05 * last.fixed.rmse, "{last:?}");
+    assert!(adapted.model.load.is_none());
+    let refused = adapt(&model, &target, &by(Learner::LeastSquares)).unwrap_err();
+    assert!(
+        refused.to_string().contains("depends on a load"),
+        "{refused}"
+    );
+    let far = AdaptOptions {
+        load: Some(2.0),
+        ..by(Learner::Drift)
+    };
+    let refused = adapt(&model, &target, &far).unwrap_err();
+    assert!(
+        refused.to_string().contains("outside the range"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn the_adapted_file_says_how_it_came_about() {
+    let options = FitOptions {
+        levels: 12,
+        bootstrap: 20,
+        ..FitOptions::default()
+    };
+    let model = fit(&recorded(&wire(1.0, 0), Start::Off), &options).unwrap();
+    assert!(model.fit.as_ref().unwrap().confidence.is_some());
+    let recording = recorded(&wire(1.4, 0), Start::Off);
+    let adapted = adapt(&model, &recording, &by(Learner::LeastSquares)).unwrap();
+    let read = Model::from_json(&adapted.model.to_json()).unwrap();
+    assert_eq!(read, adapted.model);
+    let summary = read.fit.unwrap();
+    assert!(summary.confidence.is_none() && summary.validation.is_none());
+    assert_eq!(summary.rmse, adapted.again.rmse);
+    let said = &summary.other["adapted"];
+    assert_eq!(said["method"], "least-squares");
+    assert_eq!(said["options"]["forgetting"], 0.999);
+    assert_eq!(said["counts"]["learned"], adapted.counts.learned);
+    assert_eq!(said["from"]["samples"], recording.len());
+}
+
+#[test]
+fn what_cannot_be_adapted_is_refused() {
+    let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
+    let refused = |model: &Model, recording: &Recording, options: AdaptOptions| {
+        adapt(model, recording, &options).unwrap_err().to_string()
+    };
+    let mut heated = model.clone();
+    heated.thermal = Some(FirstOrder {
+        gain: 1.0,
+        tau_heating: 1.0,
+        tau_cooling: 2.0,
+    });
+    for learner in LEARNERS {
+        let said = refused(&heated, &recording, by(learner));
+        assert!(said.contains("thermal body"), "{learner:?}: {said}");
+    }
+    let mut broken = recording.clone();
+    broken.output[3] = f64::NAN;
+    assert!(refused(&model, &broken, by(Learner::Drift)).contains("sample 3"));
+    let gain = AdaptOptions {
+        gain: Some(0.5),
+        ..by(Learner::LeastSquares)
+    };
+    assert!(refused(&model, &recording, gain).contains("`gain`"));
+    let gain = AdaptOptions {
+        gain: Some(2.5),
+        ..by(Learner::Gradient)
+    };
+    assert!(refused(&model, &recording, gain).contains("gain"));
+    let load = AdaptOptions {
+        load: Some(1.0),
+        ..by(Learner::Drift)
+    };
+    assert!(refused(&model, &recording, load).contains("`load`"));
+    // 46,000 numbers squared do not fit into 4 GiB.
+    let plane = Plane::new(20.0, 80.0, 300).unwrap();
+    let fine = Model::new(Operator::Mkp, plane, vec![1.0; 45_150], 0.0, Sign::Positive).unwrap();
+    assert!(refused(&fine, &recording, by(Learner::LeastSquares)).contains("GiB"));
+}
+
+/// A nickel-titanium-hafnium alloy at 200 MPa, and then at 400.
+#[test]
+fn a_measured_alloy_is_followed_to_another_stress() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let loops = [200, 400].map(|stress| folder.join(format!("sma_nitihf_bigelow_{stress}MPa.csv")));
+    if !loops.iter().all(|path| path.exists()) {
+        eprintln!("skipped: {} is not there", loops[0].display());
+        return;
+    }
+    let [before, after] = loops.map(|path| {
+        let columns = Columns::new("temperature_C", "strain_percent");
+        Recording::read(&path, columns, Repair::Refuse).unwrap().0
+    });
+    let model = fit(&before, &FitOptions::default()).unwrap();
+    let adapted = adapt(&model, &after, &AdaptOptions::default()).unwrap();
+    // docs/adaptation.md: a tenth.
+    assert!(
+        adapted.again.rmse < 0.25 * adapted.whole.fixed.rmse,
+        "{:?}",
+        adapted.again
+    );
+}
