@@ -1,6 +1,6 @@
 //! Faults in the loop, of random kinds, at random times, on random plants: the drive stays within its limits, the status says
 //! what is wrong while it is, and afterwards the loop is as good as one that never had the fault.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod loops;
 
@@ -229,7 +229,7 @@ fn faults(
         worst = (worst.0.max(tracking), worst.1.max(prediction));
     }
     println!("worst: tracking {:.3}, prediction {:.3}", worst.0, worst.1);
-    // As good as if nothing had happened, up to what other states of the relays cost: at worst 1.28 in 336 runs.
+    // As good as if nothing had happened, up to what other states of the relays cost: at worst 1.27 in 336 runs.
     assert!(worst.0 < 1.4 && worst.1 < 1.4);
 }
 

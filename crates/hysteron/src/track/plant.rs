@@ -39,7 +39,7 @@ impl PlantOptions {
     /// The plant with the noise of `seed`.
     ///
     /// # Errors
-    /// [`Error::Rig`] names the option that does not fit.
+    /// [`crate::Error::Rig`] names the option that does not fit.
     pub fn build(&self, seed: u64) -> Result<Box<dyn SimulatedPlant>> {
         Ok(match self {
             Self::Spring(options) => {
