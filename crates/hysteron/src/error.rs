@@ -72,6 +72,9 @@ pub enum Error {
     /// A thermal body cannot be run or identified.
     #[error("thermal body: {0}")]
     Thermal(String),
+    /// A controller cannot be made as told.
+    #[error("controller: {0}")]
+    Control(String),
     /// A scenario says something that cannot be.
     #[error("scenario: `{field}`: {problem}")]
     Scenario {
@@ -104,6 +107,7 @@ impl Error {
             Error::Design(_) => 27,
             Error::Thermal(_) => 28,
             Error::Scenario { .. } => 29,
+            Error::Control(_) => 30,
         }
     }
 }

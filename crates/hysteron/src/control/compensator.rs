@@ -3,12 +3,17 @@
 //! These are two states of one model. The first follows the input as measured, for prediction and learning. The second
 //! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
 //! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
+//! But a turning point that was asked for by weights long changed stays in that memory until it is wiped out. So with weights that
+//! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
 
 use crate::{Adaptive, Direction, Model, Outcome, Policy, Result, Sign, Solution, State, Turning};
 
 /// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
 /// inverse goes back across the dead band only for a difference of this many tolerances.
 const NOT_TURNED: f64 = 8.0;
+
+/// Samples after a jump of the input from which nothing is learned.
+const JUMP: u32 = 10;
 
 /// A hysteresis model and its inverse in the loop, fixed or adapting.
 #[derive(Debug, Clone)]
@@ -17,7 +22,11 @@ pub struct Compensator {
     /// Where the inverse stands; none before the first sample.
     wanted: Option<State>,
     /// The branch that the target is on.
-    target: Turning,
+    target: Option<Turning>,
+    /// The last input followed.
+    input: Option<f64>,
+    /// Samples for which learning rests.
+    resting: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -28,13 +37,16 @@ enum Kind {
 
 impl Compensator {
     /// A model that stays as it is, from every operator off.
-    #[must_use]
-    pub fn fixed(model: Model) -> Self {
+    ///
+    /// # Errors
+    /// As [`Model::inverse`], for a model that has none.
+    pub fn fixed(model: Model) -> Result<Self> {
+        model.inverse()?;
         let state = model.start();
-        Self::new(Kind::Fixed {
+        Ok(Self::new(Kind::Fixed {
             model: Box::new(model),
             state,
-        })
+        }))
     }
 
     /// A model that learns.
@@ -47,7 +59,9 @@ impl Compensator {
         Self {
             kind,
             wanted: None,
-            target: Turning::new(0.0),
+            target: None,
+            input: None,
+            resting: 0,
         }
     }
 
@@ -56,13 +70,20 @@ impl Compensator {
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
     pub fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
+        let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
             (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
-            (Kind::Adaptive(adaptive), Some(measured)) => {
+            (Kind::Adaptive(adaptive), measured) => {
+                self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
+                    true => JUMP,
+                    false => self.resting.saturating_sub(1),
+                };
+                let Some(measured) = measured.filter(|_| self.resting == 0) else {
+                    return Ok((adaptive.predict(input)?, false));
+                };
                 let learning = adaptive.step(input, measured)?;
                 Ok((learning.output, learning.outcome == Outcome::Learned))
             }
-            (Kind::Adaptive(adaptive), None) => Ok((adaptive.predict(input)?, false)),
         }
     }
 
@@ -70,24 +91,26 @@ impl Compensator {
     /// *anticipate*; a target that goes back by up to the `tolerance` is not followed.
     ///
     /// # Errors
-    /// [`crate::Error::Core`] for a target that is not finite and weights below zero.
+    /// [`crate::Error::Core`] for a target that is not finite.
     pub fn solve(
         &mut self,
         target: f64,
         heading: Option<Direction>,
         tolerance: f64,
     ) -> Result<Solution<f64>> {
-        if self.wanted.is_none() {
-            self.target = Turning::new(tolerance);
+        let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
+        let turns = branch.push(target).is_some();
+        let branch = branch.branch();
+        if turns && self.adapting().is_some() {
+            self.set_out_again();
         }
-        self.target.push(target);
         let (state, sign) = match &self.kind {
             Kind::Fixed { model, state } => (state, model.sign()),
             Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),
         };
         let wanted = self.wanted.get_or_insert_with(|| state.clone());
         let rises = wanted.is_rising() == (sign == Sign::Positive);
-        let turned = match self.target.branch() {
+        let turned = match branch {
             Some((branch, _)) => rises != (branch == Direction::Rising),
             None => false,
         };
@@ -102,6 +125,12 @@ impl Compensator {
             Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target, policy),
             Kind::Adaptive(adaptive) => adaptive.solve(wanted, target, policy),
         }
+    }
+
+    /// Lets the inverse set out from where the input was last seen. After a time without seeing it, the input may have been
+    /// anywhere, and what was asked for in the meantime was not done.
+    pub fn set_out_again(&mut self) {
+        self.wanted = None;
     }
 
     /// The model that learns.

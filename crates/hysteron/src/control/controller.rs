@@ -1,6 +1,8 @@
 //! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
 
-use super::{Compensator, Gains, LoopStatus, Pid, Reading, watch::Watch};
+use super::pid::limited;
+use super::watch::{Sight, Watch};
+use super::{LoopStatus, Pid, Reading, Rest, Scheme};
 use crate::{Direction, Result, Status};
 
 /// What the output should be, and where it goes next.
@@ -12,54 +14,6 @@ pub struct Target {
     pub heading: Option<Direction>,
 }
 
-/// What the inverse does where the target rests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rest {
-    /// The input rests too (equation 14).
-    #[default]
-    Hold,
-    /// The input crosses the dead band as soon as it is known that the target reverses.
-    Anticipate,
-}
-
-/// The loop inside, which brings the input (a temperature) to the one commanded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InnerLoop {
-    /// Its gains: power for each degree.
-    pub gains: Gains,
-    /// The drive is the square root of what the gains give: a current, whose heat goes with its square.
-    pub square_root: bool,
-}
-
-/// What a [`Controller`] is made of.
-#[derive(Debug, Clone)]
-pub struct Scheme {
-    /// Time between samples, s.
-    pub interval_s: f64,
-    /// The model, for feedforward through its inverse.
-    pub compensator: Option<Compensator>,
-    /// What the inverse does where the target rests.
-    pub rest: Rest,
-    /// Reversals of the target up to this size are not followed by the inverse, in the output's unit.
-    pub tolerance: f64,
-    /// Feedback of the output, added to the feedforward.
-    pub pid: Option<Gains>,
-    /// Without a model the command sets out from here.
-    pub bias: f64,
-    /// Lowest and highest input that may be commanded.
-    pub commands: (f64, f64),
-    /// Lowest and highest drive.
-    pub drives: (f64, f64),
-    /// The loop inside; without one, the command is the drive.
-    pub inner: Option<InnerLoop>,
-    /// Time constant of the filter on both readings, s; 0 for none.
-    pub filter_s: f64,
-    /// Time after which an output that reads the same to the last bit is taken as stuck, s. `None` where the sensor has no noise
-    /// to tell it from an output at rest.
-    pub stuck_s: Option<f64>,
-}
-
 /// What a controller does with a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Action {
@@ -67,15 +21,57 @@ pub struct Action {
     pub command: f64,
     /// The drive to write to the device.
     pub drive: f64,
-    /// The output that the model expected before it learned; NaN without a model.
+    /// The output that the model expected before it learned, at the input that was seen last; NaN without a model.
     pub prediction: f64,
-    /// The readings as filtered; NaN where there is none to be believed.
+    /// The readings as filtered; NaN where there is nothing new to be believed.
     pub filtered: Reading,
     /// What there is to say.
     pub status: LoopStatus,
 }
 
 /// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the drive.
+///
+/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and nothing is learned. Without news
+/// from the input's sensor the loop inside holds the drive for [`Scheme::stuck_s`] and then goes to the lowest one.
+///
+/// ```
+/// use hysteron::control::{Controller, Device, Gains, Reading, Rest, Scheme, Target};
+///
+/// /// A motor on a spring, as its driver would show it: volts in, millimetres out.
+/// struct Stage { volts: f64, mm: f64 }
+///
+/// impl Device for Stage {
+///     fn read(&mut self) -> Reading {
+///         Reading { output: self.mm, input: None } // the drive is all that is known of the input
+///     }
+///     fn write(&mut self, drive: f64) {
+///         self.volts = drive;
+///         self.mm += 0.1 * (0.5 * self.volts - self.mm); // what the physics would do until the next sample
+///     }
+/// }
+///
+/// let mut controller = Controller::new(Scheme {
+///     interval_s: 0.01,
+///     compensator: None,
+///     rest: Rest::Hold,
+///     tolerance: 0.0,
+///     pid: Some(Gains { gain: 2.0, integral_s: 0.1, derivative_s: 0.0 }),
+///     bias: 0.0,
+///     commands: (0.0, 10.0),
+///     drives: (0.0, 10.0),
+///     inner: None,
+///     filter_s: 0.0,
+///     stuck_s: None,
+/// })?;
+/// let mut device = Stage { volts: 0.0, mm: 0.0 };
+/// for _ in 0..500 {
+///     let action = controller.step(Target { output: 3.0, heading: None }, device.read())?;
+///     device.write(action.drive);
+///     // here a real loop waits for its next sample
+/// }
+/// assert!((device.mm - 3.0).abs() < 1e-3);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Controller {
     scheme: Scheme,
@@ -83,26 +79,35 @@ pub struct Controller {
     inner: Option<Pid>,
     output: Watch,
     input: Watch,
-    /// The last command.
+    /// The last input that was asked of the device.
     last: Option<f64>,
     /// Whether the drive stands at its lower and its upper limit.
     held: (bool, bool),
+    /// What the model expected when it last saw the input.
+    prediction: f64,
+    /// Whether the input's sensor was taken as broken, so that it is not known how the input came to where it is.
+    lost: bool,
 }
 
 impl Controller {
     /// A controller at rest.
-    #[must_use]
-    pub fn new(scheme: Scheme) -> Self {
-        let (interval_s, filter_s) = (scheme.interval_s, scheme.filter_s);
-        Self {
+    ///
+    /// # Errors
+    /// [`crate::Error::Control`] for numbers that no loop can run with.
+    pub fn new(scheme: Scheme) -> Result<Self> {
+        scheme.check()?;
+        let watch = || Watch::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
+        Ok(Self {
             pid: scheme.pid.map(Pid::new),
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
-            output: Watch::new(interval_s, filter_s, scheme.stuck_s),
-            input: Watch::new(interval_s, filter_s, None),
+            output: watch(),
+            input: watch(),
             last: None,
             held: (false, false),
+            prediction: f64::NAN,
+            lost: false,
             scheme,
-        }
+        })
     }
 
     /// One sample: from what is wanted and what was read to what is to be written. The drive is finite and within its
@@ -111,20 +116,20 @@ impl Controller {
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
     pub fn step(&mut self, target: Target, reading: Reading) -> Result<Action> {
-        if !target.output.is_finite() {
-            return Err(hysteron_core::Error::InputNotFinite { index: 0 }.into());
+        refuse_not_finite(target.output)?;
+        let (output, input) = self.read(reading);
+        let mut status = LoopStatus::default();
+        if let Some(compensator) = &mut self.scheme.compensator {
+            if let Some(input) = input.and_then(Sight::value) {
+                if std::mem::take(&mut self.lost) {
+                    compensator.set_out_again();
+                }
+                (self.prediction, status.adapted) = compensator.follow(input, output.value())?;
+            }
+            self.lost |= input == Some(Sight::Blind);
         }
-        let (measured, input) = self.read(reading);
-        let mut status = LoopStatus {
-            sensor_fault: measured.is_none() || (reading.input.is_some() && input.is_none()),
-            ..LoopStatus::default()
-        };
-        let mut prediction = f64::NAN;
-        if let (Some(compensator), Some(input)) = (&mut self.scheme.compensator, input) {
-            (prediction, status.adapted) = compensator.follow(input, measured)?;
-        }
-        let command = self.command(target, measured, &mut status)?;
-        Ok(self.act(command, prediction, (measured, input), status))
+        let command = self.command(target, output.value(), &mut status)?;
+        Ok(self.act(command, self.prediction, (output, input), status))
     }
 
     /// One sample that brings the input to `command`, whatever the output is: for recordings and step tests.
@@ -132,50 +137,69 @@ impl Controller {
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
     pub fn step_command(&mut self, command: f64, reading: Reading) -> Result<Action> {
-        if !command.is_finite() {
-            return Err(hysteron_core::Error::InputNotFinite { index: 0 }.into());
-        }
-        let readings = self.read(reading);
-        Ok(self.act(command, f64::NAN, readings, LoopStatus::default()))
+        refuse_not_finite(command)?;
+        let sights = self.read(reading);
+        Ok(self.act(command, f64::NAN, sights, LoopStatus::default()))
+    }
+
+    /// Time between samples, s.
+    #[must_use]
+    pub fn interval_s(&self) -> f64 {
+        self.scheme.interval_s
     }
 
     /// The model in the loop.
     #[must_use]
-    pub fn compensator(&self) -> Option<&Compensator> {
+    pub fn compensator(&self) -> Option<&super::Compensator> {
         self.scheme.compensator.as_ref()
     }
 
-    /// Output and input as filtered. Without a sensor of its own, the input is the one that was commanded.
-    fn read(&mut self, reading: Reading) -> (Option<f64>, Option<f64>) {
-        let measured = self.output.read(reading.output);
-        let input = match reading.input {
-            Some(input) => Some(input),
-            None => self.last,
+    /// Output and input. Where no sensor measures the input, it is the one that was asked for, but not for a loop around it.
+    fn read(&mut self, reading: Reading) -> (Sight, Option<Sight>) {
+        let output = self.output.read(reading.output);
+        let input = match (reading.input, self.scheme.inner) {
+            (Some(input), _) => Some(self.input.read(input)),
+            (None, Some(_)) => Some(self.input.read(f64::NAN)),
+            (None, None) => self.last.map(|last| Sight::Seen(self.input.filter(last))),
         };
-        (measured, input.and_then(|input| self.input.read(input)))
+        (output, input)
     }
 
     fn act(
         &mut self,
         command: f64,
         prediction: f64,
-        (measured, input): (Option<f64>, Option<f64>),
-        mut status: LoopStatus,
+        (output, input): (Sight, Option<Sight>),
+        status: LoopStatus,
     ) -> Action {
         let drive = self.drive(command, input);
         let (low, high) = self.scheme.drives;
         self.held = (drive <= low, drive >= high);
-        status.saturated = self.held.0 || self.held.1;
-        self.last = Some(command);
+        let (lowest, highest) = self.scheme.commands;
+        let limits = [
+            self.held.0,
+            self.held.1,
+            command <= lowest,
+            command >= highest,
+        ];
+        self.last = Some(match self.inner {
+            Some(_) => command,
+            None => drive,
+        });
+        let sensed = input.map(|input| input.value().unwrap_or(f64::NAN));
         Action {
             command,
             drive,
             prediction,
             filtered: Reading {
-                output: measured.unwrap_or(f64::NAN),
-                input,
+                output: output.value().unwrap_or(f64::NAN),
+                input: sensed,
             },
-            status,
+            status: LoopStatus {
+                saturated: limits.contains(&true),
+                sensor_fault: output.fault() || input.is_some_and(Sight::fault),
+                ..status
+            },
         }
     }
 
@@ -198,45 +222,58 @@ impl Controller {
             }
             None => scheme.bias,
         };
-        let Some(pid) = &mut self.pid else {
-            return Ok(feedforward.clamp(scheme.commands.0, scheme.commands.1));
-        };
-        Ok(match measured {
-            Some(measured) => pid.step(
+        let (low, high) = scheme.commands;
+        Ok(match (&mut self.pid, measured) {
+            (None, _) => limited(feedforward, low, high),
+            (Some(pid), None) => pid.hold(feedforward, scheme.commands),
+            (Some(pid), Some(measured)) => pid.step(
                 target.output - measured,
                 scheme.interval_s,
                 feedforward,
                 scheme.commands,
                 self.held,
             ),
-            None => pid.hold(feedforward, scheme.commands),
         })
     }
 
-    fn drive(&mut self, command: f64, input: Option<f64>) -> f64 {
+    fn drive(&mut self, command: f64, input: Option<Sight>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
-            return command.clamp(low, high);
+            return limited(command, low, high);
         };
-        // Not knowing how hot it is, it must not be heated.
-        let Some(input) = input else { return low };
-        let square = |drive: f64| {
-            if inner.square_root {
-                drive * drive
-            } else {
-                drive
+        let square = |drive: f64| match inner.square_root {
+            true => drive * drive,
+            false => drive,
+        };
+        let limits = (square(low), square(high));
+        let power = match input {
+            Some(Sight::Seen(input)) => pid.step(
+                command - input,
+                self.scheme.interval_s,
+                0.0,
+                limits,
+                (false, false),
+            ),
+            Some(Sight::Repeated | Sight::Missing) => pid.hold(0.0, limits),
+            // Not knowing how hot it is, it must not be heated.
+            Some(Sight::Blind) | None => {
+                pid.hold(0.0, limits);
+                limits.0
             }
         };
-        let power = pid.step(
-            command - input,
-            self.scheme.interval_s,
-            0.0,
-            (square(low), square(high)),
-            (false, false),
-        );
-        match inner.square_root {
-            true => power.sqrt(),
-            false => power,
-        }
+        // The root of a square may differ from it by rounding.
+        let drive = if inner.square_root {
+            power.sqrt()
+        } else {
+            power
+        };
+        limited(drive, low, high)
+    }
+}
+
+fn refuse_not_finite(value: f64) -> Result<()> {
+    match value.is_finite() {
+        true => Ok(()),
+        false => Err(hysteron_core::Error::InputNotFinite { index: 0 }.into()),
     }
 }

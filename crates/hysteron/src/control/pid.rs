@@ -1,5 +1,6 @@
 //! A PID controller for samples, with anti-windup.
 
+use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// Gains of a PID controller in its ideal form, `u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)`.
@@ -14,6 +15,23 @@ pub struct Gains {
     /// Derivative time, s; 0 for none. The derivative is filtered with an eighth of it.
     #[serde(default)]
     pub derivative_s: f64,
+}
+
+impl Gains {
+    /// Refuses what no controller can have.
+    ///
+    /// # Errors
+    /// [`Error::Control`].
+    pub fn check(&self) -> Result<()> {
+        let time = |value: f64| value >= 0.0 && value.is_finite();
+        match self.gain.is_finite() && time(self.integral_s) && time(self.derivative_s) {
+            true => Ok(()),
+            false => Err(Error::Control(format!(
+                "gain {}, integral time {} s, derivative time {} s: a finite gain and times from zero are needed",
+                self.gain, self.integral_s, self.derivative_s
+            ))),
+        }
+    }
 }
 
 /// Filter of the derivative: its time constant is the derivative time over this (Åström & Hägglund 2006, section 3.3: 2 to 20).
@@ -40,6 +58,8 @@ pub struct Pid {
     integral: f64,
     /// Error of the last sample and its filtered derivative.
     last: Option<(f64, f64)>,
+    /// What all terms came to at the last sample, within the limits.
+    correction: f64,
 }
 
 impl Pid {
@@ -50,11 +70,12 @@ impl Pid {
             gains,
             integral: 0.0,
             last: None,
+            correction: 0.0,
         }
     }
 
-    /// The output for `error` after `dt` s: `bias` and the three terms, within `limits`. `held` tells whether the actuator
-    /// behind stands at its lower and its upper limit.
+    /// The output for `error` after `dt` s: `bias` and the three terms, within `limits` whatever the numbers are. `held` tells
+    /// whether the actuator behind stands at its lower and its upper limit.
     pub fn step(
         &mut self,
         error: f64,
@@ -75,28 +96,34 @@ impl Pid {
             }
             _ => 0.0,
         };
-        self.last = Some((error, slope));
+        // Errors near the largest number overflow in the difference; the derivative starts again then.
+        self.last = (error - slope).is_finite().then_some((error, slope));
         let fixed = bias + gain * (error + derivative_s * slope);
         if integral_s > 0.0 {
             let growth = gain * error * dt / integral_s;
             let out = fixed + self.integral + growth;
             let pushes_up = growth > 0.0 && (out > high || held.1);
             let pushes_down = growth < 0.0 && (out < low || held.0);
-            if !pushes_up && !pushes_down {
+            if out.is_finite() && !pushes_up && !pushes_down {
                 self.integral += growth;
             }
             // What the integral alone would add beyond the limits serves nothing.
-            self.integral = self
-                .integral
-                .clamp((low - bias).min(0.0), (high - bias).max(0.0));
+            self.integral = limited(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
         }
-        (fixed + self.integral).clamp(low, high)
+        let out = limited(fixed + self.integral, low, high);
+        self.correction = out - bias;
+        out
     }
 
-    /// The output without a reading: what has been integrated stays, proportional and derivative rest.
-    #[must_use]
+    /// The output without a reading: what the terms came to stays, so that nothing jumps when the reading goes. When it is
+    /// back, the output moves by what the error has changed in between and no more. The derivative starts again.
     pub fn hold(&mut self, bias: f64, (low, high): (f64, f64)) -> f64 {
         self.last = None;
-        (bias + self.integral).clamp(low, high)
+        limited(bias + self.correction, low, high)
     }
+}
+
+/// Like [`f64::clamp`], but without its panic for limits in the wrong order; NaN comes out as `low`.
+pub(super) fn limited(value: f64, low: f64, high: f64) -> f64 {
+    value.max(low).min(high)
 }

@@ -9,8 +9,6 @@ const SNAPSHOTS: usize = 60;
 /// What happens in a run: the reference, and what acts on the plant.
 #[derive(Debug, Clone)]
 pub struct Course<'a> {
-    /// Time between samples, s.
-    pub interval_s: f64,
     /// The reference at each sample.
     pub reference: &'a [f64],
     /// Where it goes next at each sample ([`crate::headings`]).
@@ -41,9 +39,9 @@ pub fn run(
         let heading = course.headings.get(n).copied().flatten();
         let action = controller.step(Target { output, heading }, reading)?;
         plant.write(action.drive);
-        plant.advance(course.interval_s);
+        plant.advance(controller.interval_s());
 
-        let time = n as f64 * course.interval_s;
+        let time = n as f64 * controller.interval_s();
         trace.time.push(time);
         trace.reference.push(output);
         trace.output.push(truth.output);

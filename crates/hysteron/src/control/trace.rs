@@ -3,11 +3,11 @@
 /// What the loop had to say of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopStatus {
-    /// The drive stood at a limit.
+    /// The drive or the input asked for stood at a limit.
     pub saturated: bool,
     /// The reference lay out of the model's reach; the nearest end was aimed at.
     pub out_of_reach: bool,
-    /// The output's reading was missing, stuck or impossible: the loop went on without it.
+    /// A reading was missing, or stuck: the loop went on without it.
     pub sensor_fault: bool,
     /// The model's weights changed.
     pub adapted: bool,

@@ -1,52 +1,162 @@
 //! A sensor under watch: readings that are missing or stand still are not believed.
 
-/// Samples without a reading after which the filter starts afresh.
-const FORGET_AFTER: u32 = 10;
-
-/// Filters a sensor's readings and tells when there is none to be believed.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Watch {
-    /// Share of the way to a new reading.
-    share: f64,
-    /// Equal readings in a row that a sensor at work does not give.
-    most_equal: Option<u32>,
-    filtered: f64,
-    last: f64,
-    equal: u32,
-    missing: u32,
+/// What a sensor tells at a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sight {
+    /// Something new, filtered.
+    Seen(f64),
+    /// The last reading once more, to the last bit: chance, or the sensor begins to stick.
+    Repeated,
+    /// Nothing, but not for long.
+    Missing,
+    /// Nothing new for so long that the sensor is taken as broken.
+    Blind,
 }
 
-impl Watch {
-    /// A filter with the time constant `filter_s`; a reading that stays the same to the last bit for `stuck_s` is not believed.
-    pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
-        let samples = |time: f64| (time / interval_s).ceil().max(1.0) as u32;
-        Self {
-            share: 1.0 - (-interval_s / filter_s.max(f64::MIN_POSITIVE)).exp(),
-            most_equal: stuck_s.map(samples),
-            filtered: f64::NAN,
-            last: f64::NAN,
-            equal: 0,
-            missing: 0,
+impl Sight {
+    pub(super) fn value(self) -> Option<f64> {
+        match self {
+            Self::Seen(value) => Some(value),
+            _ => None,
         }
     }
 
-    /// The filtered reading; `None` where it is not a number, or stuck.
-    pub(super) fn read(&mut self, reading: f64) -> Option<f64> {
-        self.equal = match reading == self.last {
-            true => self.equal.saturating_add(1),
-            false => 0,
+    pub(super) fn fault(self) -> bool {
+        matches!(self, Self::Missing | Self::Blind)
+    }
+}
+
+/// Filters a sensor's readings and tells when there is none to be believed.
+///
+/// A repeated reading is held back at once, long before it is called stuck: until then the loop would integrate an error that
+/// is none and a model would learn from it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Watch {
+    interval_s: f64,
+    filter_s: f64,
+    /// Samples without news that a sensor at work does not give; none where equal readings are believed.
+    patience: Option<u32>,
+    filtered: f64,
+    last: f64,
+    /// Samples since the last news.
+    gap: u32,
+}
+
+impl Watch {
+    /// A filter with the time constant `filter_s`; without news for `stuck_s` the sensor is taken as broken.
+    pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
+        Self {
+            interval_s,
+            filter_s,
+            patience: stuck_s.map(|time| (time / interval_s).ceil().max(1.0) as u32),
+            filtered: f64::NAN,
+            last: f64::NAN,
+            gap: 0,
+        }
+    }
+
+    /// What the sensor's `reading` tells.
+    pub(super) fn read(&mut self, reading: f64) -> Sight {
+        let repeated = self.patience.is_some() && reading == self.last;
+        if reading.is_finite() && !repeated {
+            self.last = reading;
+            return Sight::Seen(self.filter(reading));
+        }
+        self.gap = self.gap.saturating_add(1);
+        if self.patience.is_none_or(|most| self.gap >= most) {
+            Sight::Blind
+        } else if repeated {
+            Sight::Repeated
+        } else {
+            Sight::Missing
+        }
+    }
+
+    /// Filters a value that is beyond doubt. After a gap it counts for the whole time that has passed.
+    pub(super) fn filter(&mut self, value: f64) -> f64 {
+        let passed = self.interval_s * (f64::from(self.gap) + 1.0);
+        self.gap = 0;
+        let kept = match self.filtered.is_nan() || self.filter_s <= 0.0 {
+            true => 0.0,
+            false => (-passed / self.filter_s).exp(),
         };
-        self.last = reading;
-        let stuck = self.most_equal.is_some_and(|most| self.equal >= most);
-        if stuck || !reading.is_finite() {
-            self.missing = self.missing.saturating_add(1);
-            return None;
+        self.filtered = match kept > 0.0 {
+            true => kept * self.filtered + (1.0 - kept) * value,
+            false => value,
+        };
+        self.filtered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_filter_is_that_of_a_first_order_body_whatever_is_lost() {
+        let mut whole = Watch::new(0.1, 0.5, Some(1.0));
+        let mut lossy = whole.clone();
+        // Of a constant after a start elsewhere both readings say the same, and the filter has come as far at the end.
+        for n in 0..20 {
+            let reading = if n == 0 {
+                0.0
+            } else {
+                1.0 + 1e-12 * f64::from(n)
+            };
+            let lost = n % 3 == 1;
+            let seen = whole.read(reading).value();
+            let sight = lossy.read(if lost { f64::NAN } else { reading });
+            assert_eq!(sight == Sight::Missing, lost);
+            if let (Some(a), Some(b)) = (seen, sight.value()) {
+                let exact = 1.0 - (-0.1 * f64::from(n) / 0.5).exp();
+                assert!((a - exact).abs() < 1e-9 && (b - exact).abs() < 1e-9);
+            }
         }
-        if self.filtered.is_nan() || self.missing > FORGET_AFTER {
-            self.filtered = reading;
+    }
+
+    #[test]
+    fn a_reading_that_stands_still_is_held_back_at_once_and_broken_after_its_time() {
+        let mut watch = Watch::new(0.1, 0.0, Some(0.3));
+        let readings = [1.0, 1.0, 1.0, 1.0, f64::NAN, 1.0, 2.0, 2.0];
+        use Sight::{Blind, Repeated, Seen};
+        let expected = [
+            Seen(1.0),
+            Repeated,
+            Repeated,
+            Blind,
+            Blind,
+            Blind,
+            Seen(2.0),
+            Repeated,
+        ];
+        assert_eq!(readings.map(|y| watch.read(y)), expected);
+    }
+
+    #[test]
+    fn lost_samples_do_not_hide_that_it_sticks() {
+        let mut watch = Watch::new(0.1, 0.0, Some(1.0));
+        let last = (0..12)
+            .map(|n| watch.read(if n % 2 == 0 { 1.0 } else { f64::NAN }))
+            .last();
+        assert_eq!(last, Some(Sight::Blind));
+    }
+
+    #[test]
+    fn without_noise_equal_readings_are_believed() {
+        let mut watch = Watch::new(0.1, 0.0, None);
+        assert_eq!(
+            [1.0, 1.0, f64::NAN].map(|y| watch.read(y)),
+            [Sight::Seen(1.0), Sight::Seen(1.0), Sight::Blind]
+        );
+    }
+
+    #[test]
+    fn huge_readings_leave_no_trace() {
+        let mut watch = Watch::new(0.1, 0.1, None);
+        for reading in [f64::MAX, f64::MIN, f64::INFINITY, f64::MAX] {
+            assert!(watch.read(reading).value().is_none_or(f64::is_finite));
         }
-        self.missing = 0;
-        self.filtered += self.share * (reading - self.filtered);
-        Some(self.filtered)
+        let seen = (0..10_000).map(|_| watch.read(1.0)).last();
+        assert_eq!(seen, Some(Sight::Seen(1.0)));
     }
 }

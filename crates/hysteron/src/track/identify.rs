@@ -1,6 +1,6 @@
 //! The experiment that a plant's model is identified from: the designed profile, run through the same loop and sensors.
 
-use super::scenario::Scenario;
+use super::Scenario;
 use crate::control::{Controller, Scheme};
 use crate::design::{DesignOptions, Rates, design};
 use crate::{FitOptions, Model, Plane, Recording, Result, fit};
@@ -55,7 +55,7 @@ fn profile(scenario: &Scenario, plane: Plane) -> Result<Vec<f64>> {
 
 fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> Result<Recording> {
     let mut plant = scenario.plant.build(seed)?;
-    let mut controller = Controller::new(scheme.clone());
+    let mut controller = Controller::new(scheme.clone())?;
     let (mut input, mut output) = (Vec::new(), Vec::new());
     for &command in profile {
         let reading = plant.read();
@@ -63,6 +63,7 @@ fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> R
         plant.write(action.drive);
         plant.advance(scenario.interval_s);
         if let (Some(x), y) = (action.filtered.input, action.filtered.output)
+            && x.is_finite()
             && y.is_finite()
         {
             input.push(x);

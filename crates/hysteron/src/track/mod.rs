@@ -1,17 +1,21 @@
 //! Controllers compared on a **simulated** plant: a scenario goes in, scores and traces come out.
 
+mod check;
 mod identify;
+mod kind;
+mod options;
+mod plant;
 mod reference;
 mod scenario;
 mod score;
 mod summary;
 mod tune;
 
+pub use kind::Kind;
+pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuning};
+pub use plant::{Event, PlantOptions};
 pub use reference::Reference;
-pub use scenario::{
-    AdaptationOptions, Event, Kind, LoopOptions, MethodName, ModelOptions, PlantOptions, Scenario,
-    Tuning,
-};
+pub use scenario::Scenario;
 pub use score::{Score, Window, windows};
 pub use summary::{Median, Ratio};
 
@@ -46,6 +50,7 @@ pub struct Comparison {
 /// # Errors
 /// As the parts: a plant outside its physics, a model that cannot be identified, a plant that does not answer.
 pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Comparison> {
+    scenario.check()?;
     let mut scheme = base(scenario)?;
     if scenario.plant.heats() {
         scheme.inner = Some(tune::inner(scenario, &scheme)?);
@@ -65,7 +70,6 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
         })
         .collect();
     let course = Course {
-        interval_s: scenario.interval_s,
         reference: &reference,
         headings: &headings,
         events: &events,
@@ -134,7 +138,7 @@ fn base(scenario: &Scenario) -> Result<Scheme> {
         drives,
         inner: None,
         filter_s: scenario.shared.filter_s,
-        stuck_s: Some(STUCK_SAMPLES * scenario.interval_s),
+        stuck_s: (scenario.plant.noisy()).then_some(STUCK_SAMPLES * scenario.interval_s),
     })
 }
 
@@ -151,12 +155,12 @@ fn controller(
             model,
             scenario.adaptation.into(),
         )?)),
-        _ => Some(Compensator::fixed(model.clone())),
+        _ => Some(Compensator::fixed(model.clone())?),
     };
-    Ok(Controller::new(Scheme {
+    Controller::new(Scheme {
         compensator,
         rest: kind.rest(),
         pid: gains.filter(|_| kind.has_pid()),
         ..scheme.clone()
-    }))
+    })
 }

@@ -1,6 +1,6 @@
 //! What the output is to follow.
 
-use crate::{Columns, Error, Recording, Repair, Result};
+use crate::{Columns, Recording, Repair, Result};
 use serde::Deserialize;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -65,57 +65,10 @@ impl Reference {
         let Self::Csv { file, time, column } = &self else {
             return Ok(self);
         };
-        let columns = Columns {
-            time: Some(time),
-            ..Columns::new(column, column)
-        };
-        let (recording, _) = Recording::read(&folder.join(file), columns, Repair::Refuse)?;
-        let times = recording.time.unwrap_or_default();
-        let points = times.into_iter().zip(recording.output).collect();
+        let columns = Columns::new(time, column);
+        let (table, _) = Recording::read(&folder.join(file), columns, Repair::Refuse)?;
+        let points = table.input.into_iter().zip(table.output).collect();
         Ok(Self::Ramps { points })
-    }
-
-    /// Refuses numbers that are no reference.
-    ///
-    /// # Errors
-    /// [`Error::Scenario`] names the field.
-    pub(super) fn check(&self, field: &str) -> Result<()> {
-        let (name, fine) = match self {
-            Self::Constant { value } => ("value", value.is_finite()),
-            Self::Sine {
-                amplitude,
-                period_s,
-                phase_deg,
-            } => {
-                let fine = amplitude.is_finite() && phase_deg.is_finite();
-                ("period_s", fine && *period_s > 0.0 && period_s.is_finite())
-            }
-            Self::Trapezoid {
-                low,
-                high,
-                ramp_s,
-                rest_s,
-            } => {
-                let fine = low.is_finite() && high.is_finite() && *rest_s >= 0.0;
-                (
-                    "ramp_s",
-                    fine && *ramp_s > 0.0 && (ramp_s + rest_s).is_finite(),
-                )
-            }
-            Self::Steps { points } | Self::Ramps { points } => {
-                let finite = points.iter().all(|(t, y)| t.is_finite() && y.is_finite());
-                let in_order = points.windows(2).all(|pair| pair[0].0 <= pair[1].0);
-                ("points", !points.is_empty() && finite && in_order)
-            }
-            Self::Csv { .. } => ("file", true),
-        };
-        match fine {
-            true => Ok(()),
-            false => Err(Error::Scenario {
-                field: format!("{field}.{name}"),
-                problem: "finite numbers are needed, a period above zero, points in the order of their times".into(),
-            }),
-        }
     }
 
     /// The value at `time`, s.

@@ -1,6 +1,6 @@
 //! How well a run tracked its reference, by stretches of time.
 
-use super::scenario::Scenario;
+use super::Scenario;
 use crate::control::{Snapshot, Trace};
 use crate::{Direction, Model, Result, Turning};
 use serde::Serialize;
@@ -161,7 +161,10 @@ fn lag(trace: &Trace, inside: &[usize]) -> f64 {
             Direction::Falling => -value,
         };
         let there = up(trace.reference[turned]);
-        let answered = (extreme..=next).find(|&n| up(trace.output[n]) >= there);
+        // From its own extreme on: an output that is late passes the same value on its way there.
+        let furthest = |a: &usize, b: &usize| up(trace.output[*a]).total_cmp(&up(trace.output[*b]));
+        let begins = (extreme..=next).min_by(furthest).unwrap_or(extreme);
+        let answered = (begins..=next).find(|&n| up(trace.output[n]) >= there);
         // Not at all: as late as the next reversal.
         let answered = answered.unwrap_or(next);
         lags.push(trace.time[answered] - trace.time[turned]);
@@ -177,5 +180,79 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
         0 => f64::NAN,
         _ if n % 2 == 1 => values[n / 2],
         _ => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::control::LoopStatus;
+    use crate::{Operator, Plane, Sign};
+
+    fn score(trace: &Trace, from_s: f64, to_s: f64) -> Score {
+        let plane = Plane::new(0.0, 1.0, 2).unwrap();
+        let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
+        let window = Window {
+            name: String::new(),
+            from_s,
+            to_s,
+            settled: true,
+        };
+        Score::of(trace, &window, (0.0, 2.0), &model).unwrap()
+    }
+
+    fn trace(reference: Vec<f64>, output: Vec<f64>) -> Trace {
+        let count = reference.len();
+        Trace {
+            time: (0..count).map(|n| 0.5 * n as f64).collect(),
+            measured: output.clone(),
+            input: vec![0.0; count],
+            command: vec![0.0; count],
+            drive: (0..count).map(|n| (n % 2) as f64).collect(),
+            prediction: vec![f64::NAN; count],
+            status: vec![LoopStatus::default(); count],
+            snapshots: Vec::new(),
+            reference,
+            output,
+        }
+    }
+
+    #[test]
+    fn errors_by_hand() {
+        let mut trace = trace(vec![0.0; 8], vec![9.0, 9.0, 3.0, -4.0, 0.0, 0.0, 9.0, 9.0]);
+        trace.prediction[2] = 4.0;
+        trace.prediction[3] = -5.0;
+        trace.status[4].saturated = true;
+        trace.status[5].sensor_fault = true;
+        trace.status[7].sensor_fault = true;
+        // Samples 2 to 5.
+        let score = score(&trace, 1.0, 3.0);
+        assert_eq!(score.rmse, 2.5);
+        assert_eq!(score.max_abs, 4.0);
+        assert_eq!(score.prediction_rmse, 1.0);
+        assert_eq!(score.frozen_rmse, 1.0);
+        assert_eq!(score.saturated, 0.25);
+        assert_eq!(score.faults, 0.25);
+        // Three changes of half the range over four samples.
+        assert_eq!(score.drive_travel, 3.0 / 8.0);
+        assert!(score.lag_s.is_nan());
+    }
+
+    #[test]
+    fn the_lag_by_hand() {
+        // A triangle of 40 samples a leg, and an output that is 6 samples late.
+        let wave = |n: i32| f64::from(40 - (n.rem_euclid(80) - 40).abs());
+        let reference = (0..400).map(wave).collect();
+        let late = (0..400).map(|n| wave((n - 6).max(0))).collect();
+        let score = score(&trace(reference, late), 0.0, 200.0);
+        assert_eq!(score.lag_s, 3.0);
+    }
+
+    #[test]
+    fn the_median_by_hand() {
+        assert!(median(&mut []).is_nan());
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
     }
 }

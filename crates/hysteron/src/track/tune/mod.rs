@@ -7,7 +7,7 @@
 mod relay;
 mod step;
 
-use super::scenario::{Scenario, Tuning};
+use super::{Scenario, Tuning};
 use crate::control::{Gains, InnerLoop, Scheme};
 use crate::{Error, Result};
 

@@ -3,7 +3,7 @@
 use super::{TESTS, middle, no_answer};
 use crate::Result;
 use crate::control::{Controller, Gains, Scheme};
-use crate::track::scenario::Scenario;
+use crate::track::Scenario;
 use crate::track::score::median;
 
 /// Where the relay's two commands lie between the lowest and the highest level.
@@ -36,7 +36,7 @@ fn oscillation(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<(f64, 
     let (bottom, top) = scenario.model.range;
     let commands = COMMANDS.map(|share| bottom + share * (top - bottom));
     let mut plant = scenario.plant.build(seed)?;
-    let mut controller = Controller::new(scheme.clone());
+    let mut controller = Controller::new(scheme.clone())?;
     let mut high = true;
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
     // Sample at which each period ended, and half the output's way in it.

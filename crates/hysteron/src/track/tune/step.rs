@@ -7,7 +7,7 @@
 use super::{TESTS, middle, no_answer};
 use crate::Result;
 use crate::control::{Controller, Gains, InnerLoop, Scheme};
-use crate::track::scenario::Scenario;
+use crate::track::Scenario;
 
 /// Samples of a test before and after the step.
 const SAMPLES: usize = 200;
@@ -15,6 +15,8 @@ const SAMPLES: usize = 200;
 const LEVEL: usize = 50;
 /// Size of the outer step in levels of the plane.
 const LEVELS: f64 = 2.0;
+/// What tells an answer of the output from its noise, in standard deviations of the mean test.
+const ANSWER: f64 = 3.0;
 /// Samples within which the output has to come to the middle of the reference.
 const PATIENCE: usize = 100_000;
 
@@ -36,8 +38,11 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let steepest = (LEVEL..temperature.len() - wide).max_by(|a, b| rise(*a).total_cmp(&rise(*b)));
     let steepest = steepest.ok_or_else(|| no_answer("temperature"))?;
     let slope = rise(steepest) / (wide as f64 * scenario.interval_s);
-    let level = temperature[..LEVEL].iter().sum::<f64>() / LEVEL as f64;
-    if !(slope > 0.0) {
+    let (level, _) = steady(&temperature[..LEVEL]);
+    // Less than a level in the whole test is noise, or a heater that cannot do what the model is asked for.
+    let (bottom, top) = scenario.model.range;
+    let one = (top - bottom) / (scenario.model.levels - 1) as f64;
+    if steady(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0 {
         return Err(no_answer("temperature"));
     }
     let passed = (steepest - LEVEL) as f64 * scenario.interval_s;
@@ -69,18 +74,22 @@ pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
     })?;
     let output: Vec<f64> = mean.iter().map(|(_, output)| *output).collect();
     let begin = LEVEL + SAMPLES;
-    let level = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
-    let before = level(&output[begin - LEVEL..begin]);
-    let after = level(&output[output.len() - LEVEL..]);
+    let (before, noise) = steady(&output[begin - LEVEL..begin]);
+    let (after, _) = steady(&output[output.len() - LEVEL..]);
+    if (after - before).abs() < ANSWER * noise {
+        return Err(no_answer("output"));
+    }
     let gain = (after - before) / step;
     let reached = |share: f64| {
         let there = |y: &f64| (y - before) / (after - before) >= share;
-        let first = output[begin..].iter().position(there).unwrap_or(0).max(1);
+        let first = output[begin..].iter().position(there)?.max(1);
         let (y, z) = (output[begin + first - 1], output[begin + first]);
         let part = (before + share * (after - before) - y) / (z - y);
-        (first as f64 - 1.0 + part.clamp(0.0, 1.0)) * scenario.interval_s
+        Some((first as f64 - 1.0 + part.clamp(0.0, 1.0)) * scenario.interval_s)
     };
-    let (early, late) = (reached(0.283), reached(0.632));
+    let (Some(early), Some(late)) = (reached(0.283), reached(0.632)) else {
+        return Err(no_answer("output"));
+    };
     let lag = 1.5 * (late - early);
     let delay = (late - lag).max(0.5 * scenario.interval_s);
     if !(gain.is_finite() && gain != 0.0 && lag > 0.0) {
@@ -104,17 +113,25 @@ fn average(
     let mut sums = vec![(0.0, 0.0); LEVEL + 2 * SAMPLES];
     for seed in 1..=TESTS {
         let mut plant = scenario.plant.build(seed)?;
-        let mut controller = Controller::new(scheme.clone());
+        let mut controller = Controller::new(scheme.clone())?;
         let (mut command, mut n, mut waited) = (scheme.bias, 0, 0);
+        // What was read last stands in for lost samples.
+        let (mut input, mut output) = (f64::NAN, f64::NAN);
         while n < sums.len() {
             let action = controller.step_command(command, plant.read())?;
             plant.write(action.drive);
             plant.advance(scenario.interval_s);
-            let output = action.filtered.output;
-            let on;
-            (on, command) = next(command, n, output);
+            let heard = |new: f64, last: f64| if new.is_nan() { last } else { new };
+            input = heard(action.filtered.input.unwrap_or(f64::NAN), input);
+            output = heard(action.filtered.output, output);
+            // Before anything was heard there is no test.
+            let deaf = output.is_nan() || (action.filtered.input.is_some() && input.is_nan());
+            let mut on = false;
+            if !deaf {
+                (on, command) = next(command, n, output);
+            }
             if on {
-                sums[n].0 += action.filtered.input.unwrap_or(f64::NAN);
+                sums[n].0 += input;
                 sums[n].1 += output;
                 n += 1;
             } else {
@@ -127,4 +144,12 @@ fn average(
     }
     let each = 1.0 / TESTS as f64;
     Ok(sums.iter().map(|(x, y)| (x * each, y * each)).collect())
+}
+
+/// Mean and standard deviation of a stretch.
+fn steady(samples: &[f64]) -> (f64, f64) {
+    let count = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / count;
+    let square = samples.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
+    (mean, (square / count).sqrt())
 }
