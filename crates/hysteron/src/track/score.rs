@@ -1,6 +1,6 @@
 //! How well a run tracked its reference, by stretches of time.
 
-use super::Scenario;
+use super::{Event, Scenario};
 use crate::control::{Snapshot, Trace};
 use crate::{Model, Result, Turning};
 use serde::Serialize;
@@ -64,9 +64,16 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
         ];
     };
     let mut windows = vec![window("before", settle, first.at_s, true)];
-    for (n, event) in scenario.disturbance.iter().enumerate() {
-        let next = scenario.disturbance.get(n + 1).map_or(end, |e| e.at_s);
-        let words = event.words();
+    // What happens at the same time is one event.
+    let events: Vec<&[Event]> = scenario
+        .disturbance
+        .chunk_by(|a, b| a.at_s == b.at_s)
+        .collect();
+    for (n, together) in events.iter().enumerate() {
+        let next = events.get(n + 1).map_or(end, |later| later[0].at_s);
+        let event = &together[0];
+        let words: Vec<String> = together.iter().map(Event::words).collect();
+        let words = words.join(", ");
         windows.push(window(&format!("after {words}"), event.at_s, next, false));
         let settled = event.at_s + settle;
         if settled < next && settle > 0.0 {
@@ -78,7 +85,8 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
             ));
         }
     }
-    windows.retain(|window| window.from_s < window.to_s);
+    let two_samples = 2.0 * scenario.interval_s;
+    windows.retain(|window| window.to_s - window.from_s >= two_samples);
     windows
 }
 
