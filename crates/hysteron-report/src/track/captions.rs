@@ -71,7 +71,7 @@ fn reversal(view: &View<'_>) -> String {
     };
     format!(
         "The reversal of the reference at {}: of those before the first event, the one with the largest difference of lag. The lag is the \
-         shift in time by which the branch of the reference that follows comes closest to the {}, a constant error left out. The dashed line is the reversal.",
+         time by which the {} goes back by a twentieth of the range later than the reference, each from its own extreme. The dashed line is the reversal.",
         view.time.value(reversal.time),
         view.output.name
     )

@@ -64,7 +64,7 @@ fn table(scenario: &Scenario, comparison: &Comparison, output: &Quantity) -> Tra
     };
     let notes = vec![format!(
         "Medians over {} runs with different noise, each with a model identified from a recording of its own; the curves are those of the first. \
-         Lag: the shift in time by which the reference after a reversal comes closest to the output. Ratios: medians over the runs.",
+         Lag: from when the reference has gone back by a twentieth of its range after a reversal until the output has. Ratios: medians over the runs.",
         scenario.seeds
     )];
     let known = |value: f64| Some(value).filter(|value| !value.is_nan());

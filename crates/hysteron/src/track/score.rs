@@ -2,7 +2,7 @@
 
 use super::{Event, Scenario};
 use crate::control::{Snapshot, Trace};
-use crate::{Model, Result, Turning};
+use crate::{Direction, Model, Result, Turning};
 use serde::Serialize;
 
 /// A stretch of time that errors are taken over.
@@ -42,8 +42,8 @@ pub struct Score {
 /// Share of the reference's range by which something has to go back to count as turned.
 const TURNED: f64 = 0.05;
 
-/// Shifts in time that are tried to each side.
-const SHIFTS: usize = 200;
+/// Share of the range within which it still rests.
+const RESTS: f64 = 0.002;
 
 /// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
 /// settle; without disturbances the halves of the run.
@@ -163,54 +163,47 @@ pub struct ReversalLag {
     pub lag: f64,
 }
 
-/// The lag after each reversal of the reference from `from_s` to `to_s`: the shift in time by which the branch of the reference
-/// comes closest to the output. A constant error is left out, for it is not a lag; so a single noisy crossing decides nothing.
+/// The lag after each reversal of the reference from `from_s` to `to_s`: from when the reference has gone back by a twentieth
+/// of its range until the output has, each from its own extreme since the reference left its rest. So a constant error is no lag, nor
+/// is what the output did while the reference rested.
 #[must_use]
 pub fn reversal_lags(trace: &Trace, from_s: f64, to_s: f64) -> Vec<ReversalLag> {
     let (low, high) = crate::recording::range(&trace.reference);
-    let mut turning = Turning::new(TURNED * (high - low));
+    let (band, rest) = (TURNED * (high - low), RESTS * (high - low));
+    let mut turning = Turning::new(band);
     let inside: Vec<usize> = (0..trace.time.len())
         .filter(|n| (from_s..to_s).contains(&trace.time[*n]))
         .collect();
-    let turns = inside
-        .iter()
-        .filter_map(|&n| turning.push(trace.reference[n]));
+    let turns = inside.iter().filter_map(|&n| {
+        let (at, heading) = turning.push(trace.reference[n])?;
+        Some((inside[at], n, heading))
+    });
     // The first is where the window begins.
-    let mut turns: Vec<usize> = turns.map(|(at, _)| inside[at]).skip(1).collect();
-    turns.extend(inside.last());
-    let branches = turns.windows(2).filter(|ends| ends[1] > ends[0] + 1);
-    branches
-        .map(|ends| ReversalLag {
-            time: trace.time[ends[0]],
-            until: trace.time[ends[1]],
-            lag: shift(trace, ends[0], ends[1]),
-        })
-        .collect()
-}
-
-/// The shift, s, with the smallest variance of the output less the reference before it, over the samples `first..=last`.
-fn shift(trace: &Trace, first: usize, last: usize) -> f64 {
-    let most = (last - first) / 2;
-    let every = (most / SHIFTS).max(1) as isize;
-    let variance = |shift: isize| {
-        let differences = (first..=last).map(|n| {
-            let before = (n as isize - shift).clamp(0, trace.reference.len() as isize - 1);
-            trace.output[n] - trace.reference[before as usize]
+    let turns: Vec<(usize, usize, Direction)> = turns.skip(1).collect();
+    let last = inside.last().copied().unwrap_or(0);
+    let mut lags = Vec::new();
+    for (k, &(extreme, turned, heading)) in turns.iter().enumerate() {
+        let next = turns.get(k + 1).map_or(last, |(at, ..)| *at);
+        let up = |value: f64| match heading {
+            Direction::Rising => value,
+            Direction::Falling => -value,
+        };
+        let there = up(trace.reference[extreme]) + rest;
+        let rested = (extreme..turned).rfind(|&n| up(trace.reference[n]) <= there);
+        let mut furthest = f64::INFINITY;
+        let answered = (rested.unwrap_or(extreme)..=next).find(|&n| {
+            let output = up(trace.output[n]);
+            furthest = furthest.min(output);
+            output - furthest >= band
         });
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for difference in differences {
-            sum += difference;
-            squares += difference * difference;
-        }
-        let count = (last - first + 1) as f64;
-        squares / count - (sum / count).powi(2)
-    };
-    let most = most as isize / every;
-    let best = (-most..=most)
-        .map(|k| (variance(k * every), k * every))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
-    let interval = (trace.time[last] - trace.time[first]) / (last - first) as f64;
-    best.map_or(f64::NAN, |(_, shift)| shift as f64 * interval)
+        lags.push(ReversalLag {
+            time: trace.time[rested.unwrap_or(extreme)],
+            until: trace.time[next],
+            // Not at all: as late as the next reversal.
+            lag: trace.time[answered.unwrap_or(next)] - trace.time[turned],
+        });
+    }
+    lags
 }
 
 /// The median; NaN of nothing.
