@@ -277,6 +277,14 @@ fn what_cannot_be_adapted_is_refused() {
     assert!(refused(&fine, &recording, by(Learner::LeastSquares)).contains("GiB"));
 }
 
+#[test]
+fn two_samples_have_no_thirds() {
+    let two = Recording::new(vec![20.0, 30.0], vec![5.0, 4.9]).unwrap();
+    let adapted = adapt(&wire(1.0, 0), &two, &by(Learner::Drift)).unwrap();
+    assert_eq!(adapted.outcomes.len(), 2);
+    assert!(adapted.thirds.is_empty());
+}
+
 /// A nickel-titanium-hafnium alloy at 200 MPa, and then at 400.
 #[test]
 fn a_measured_alloy_is_followed_to_another_stress() {
