@@ -1,12 +1,28 @@
 //! `hysteron adapt`
 
 use crate::{Result, args, keep_apart, print, recording, text};
-use hysteron::{Adapted, Columns, Compared, Model};
+use hysteron::{Adapted, AtomicFile, Columns, Compared, Model};
 use serde_json::{Value, json};
+use std::io::Write;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
-    for out in [Some(&args.out), args.table.as_ref()].into_iter().flatten() {
-        keep_apart(&args.data, out)?;
+    keep_apart(&args.data, &args.out)?;
+    if let Some(table) = &args.table {
+        keep_apart(&args.data, table)?;
+        keep_apart(&args.model, table)?;
+        if *table == args.out {
+            return Err(format!(
+                "{}: the model and the table need a file each",
+                table.display()
+            )
+            .into());
+        }
+        if args.json.json && table.as_os_str() == "-" {
+            return Err(
+                "with --json nothing but that goes to standard output: name a file for --table"
+                    .into(),
+            );
+        }
     }
     let model = Model::read(&args.model)?;
     let columns = Columns {
@@ -25,10 +41,13 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     {
         adapted["from"]["model"] = json!(args.model);
     }
+    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
+    let mut model = AtomicFile::create(&args.out)?;
     if let Some(table) = &args.table {
         adapted.write_table(&recording, table)?;
     }
-    adapted.model.write(&args.out)?;
+    model.write_all(adapted.model.to_json().as_bytes())?;
+    model.commit()?;
     match args.json.json {
         true => print(&to_json(args, &adapted).to_string()),
         false => print(&to_text(args, &adapted)),

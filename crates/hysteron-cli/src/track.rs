@@ -22,6 +22,10 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     if let Some(seeds) = args.seeds {
         scenario.seeds = seeds;
     }
+    // Before the runs, which can take minutes.
+    if let Some(folder) = &args.out {
+        make_folder(folder)?;
+    }
     let bar = progress::stages();
     let comparison = track(&scenario, &|done, all| {
         progress::stage(&bar, "runs", done as f64 / all as f64);
@@ -38,10 +42,6 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
 }
 
 fn write(scenario: &Scenario, comparison: &Comparison, folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|source| hysteron::Error::File {
-        path: folder.into(),
-        source,
-    })?;
     comparison.write_scores(&folder.join("scores.csv"))?;
     comparison.model.write(&folder.join("model.json"))?;
     for (kind, trace) in comparison.controllers.iter().zip(&comparison.traces) {
@@ -56,6 +56,16 @@ fn write(scenario: &Scenario, comparison: &Comparison, folder: &Path) -> Result<
         report.join("index.html").display()
     );
     Ok(())
+}
+
+fn make_folder(folder: &Path) -> Result<()> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(format!("{}: this is a file: name a folder", folder.display()).into());
+    }
+    std::fs::create_dir_all(folder).map_err(|source| {
+        let path = folder.into();
+        hysteron::Error::File { path, source }.into()
+    })
 }
 
 fn to_json(scenario: &Scenario, comparison: &Comparison) -> serde_json::Value {

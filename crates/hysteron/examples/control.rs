@@ -114,7 +114,8 @@ the scenario's runs, which differ in the noise of the sensors and in the recordi
   the spring). What the jump of the load itself leaves is the same whoever controls.
 - **Prediction**: what the model in the loop expected of each sample before it learned from it. **Frozen**: the same, with the weights
   as they were when the window began and nothing learned since.
-- **Lag**: from when the reference has gone back by a twentieth of its range after a reversal until the output is there too.
+- **Lag**: the shift in time by which the branch of the reference after a reversal comes closest to the output, a constant error left out;
+  below zero the output runs ahead.
 - **Drive travel**: mean change of the drive from sample to sample, in % of its range.";
 
 const STEP: &str = "

@@ -60,8 +60,7 @@ pub(super) fn caption(figure: Figure, view: &View<'_>) -> String {
     }
 }
 
-const BEYOND: &str =
-    "Bars at an edge mark samples beyond it: large errors that do not last do not set the scale.";
+const BEYOND: &str = "Bars at an edge mark samples beyond it: errors that do not last, or of a minority of the controllers, do not set the scale.";
 
 const STRIP: &str = " The strip below a panel marks the samples at which the loop reported a drive at its limit, a reference out of \
                      the model's reach or a fault of the sensor; rows that no controller needs are left out.";
@@ -70,12 +69,10 @@ fn reversal(view: &View<'_>) -> String {
     let Some(reversal) = &view.reversal else {
         return String::new();
     };
-    let time = view.report.runs.first();
-    let time = time.and_then(|run| run.trace.time.get(reversal.sample));
     format!(
-        "The reversal of the reference at {}: of those in the last third, the one with the largest difference of lag. The lag is the \
-         time by which the {} turns later than the reference, each once it has gone back by a twentieth of the way to the next reversal. The dashed line is the reversal.",
-        view.time.value(time.copied().unwrap_or(f64::NAN)),
+        "The reversal of the reference at {}: of those before the first event, the one with the largest difference of lag. The lag is the \
+         shift in time by which the branch of the reference that follows comes closest to the {}, a constant error left out. The dashed line is the reversal.",
+        view.time.value(reversal.time),
         view.output.name
     )
 }

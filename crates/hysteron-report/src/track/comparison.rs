@@ -2,7 +2,6 @@
 
 use super::report::{NamedTrace, TrackReport, TrackTable};
 use crate::error::ReportError;
-use crate::number::significant;
 use hysteron::Quantity;
 use hysteron::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
@@ -63,23 +62,25 @@ fn table(scenario: &Scenario, comparison: &Comparison, output: &Quantity) -> Tra
         cells.extend(ends.map(|w| number(w, |m| m.score.lag_s)));
         (comparison.controllers[k].words().to_owned(), cells)
     };
-    let mut notes = vec![format!(
+    let notes = vec![format!(
         "Medians over {} runs with different noise, each with a model identified from a recording of its own; the curves are those of the first. \
-         Lag: from when the reference has gone back by a twentieth of its range until the output is there too.",
+         Lag: the shift in time by which the reference after a reversal comes closest to the output. Ratios: medians over the runs.",
         scenario.seeds
     )];
-    notes.extend(comparison.ratios().iter().map(|ratio| {
-        format!(
-            "{}: {} has {} times the RMSE of {}.",
-            ratio.window,
-            ratio.controller,
-            significant(ratio.rmse, 2),
-            ratio.compared_with
-        )
-    }));
+    let known = |value: f64| Some(value).filter(|value| !value.is_nan());
+    let ratios = comparison.ratios();
+    let ratios = ratios.iter().map(|ratio| {
+        let name = format!(
+            "{}: {} / {}",
+            ratio.window, ratio.controller, ratio.compared_with
+        );
+        (name, vec![known(ratio.rmse), known(ratio.prediction_rmse)])
+    });
     TrackTable {
         headers,
         rows: (0..comparison.controllers.len()).map(row).collect(),
         notes,
+        ratio_headers: vec!["tracking RMSE".into(), "prediction RMSE".into()],
+        ratios: ratios.collect(),
     }
 }

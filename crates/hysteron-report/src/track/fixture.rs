@@ -72,6 +72,8 @@ impl Fixture {
                     .iter()
                     .map(|c| (c.name.into(), vec![Some(0.1 * c.lag), None]))
                     .collect(),
+                ratio_headers: vec!["tracking RMSE".into()],
+                ratios: vec![("before: inverse / PID".into(), vec![Some(0.25)])],
                 notes: vec!["Medians over 20 seeds.".into()],
             },
             plane,

@@ -101,7 +101,7 @@ fn figure(
         &mut sheet,
         view,
         &headings,
-        &y,
+        [&view.time_axis, &y],
         height(runs.len()),
         [room, beside],
     );

@@ -30,7 +30,7 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         (table(view))
         (facts(view))
         @for (name, figures) in SECTIONS { (section(name, figures, view, drawn)) }
-        @if view.reversal.is_none() { p { "The reference does not reverse in its last third: there is no lag to show." } }
+        @if view.reversal.is_none() { p { "The reference does not reverse before the first event: there is no lag to show." } }
         @if view.adapting().next().is_none() { p { "No controller adapted its weights." } }
     };
     let simulated = view.report.simulated.then_some(simulated);
@@ -60,6 +60,15 @@ fn table(view: &View<'_>) -> Markup {
             } }
         }
         @for note in &table.notes { p.lead { (note) } }
+        @if !table.ratios.is_empty() {
+            div.wide { table {
+                thead { tr { th scope="col" { "Ratio" } @for header in &table.ratio_headers { th scope="col" { (header) } } } }
+                tbody { @for (name, values) in &table.ratios { tr {
+                    th scope="row" { (name) }
+                    @for value in values { td { (value.map_or("–".into(), |value| significant(value, 2))) } }
+                } } }
+            } }
+        }
     }
 }
 

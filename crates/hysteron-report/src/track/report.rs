@@ -27,6 +27,10 @@ pub struct TrackTable {
     pub rows: Vec<(String, Vec<Option<f64>>)>,
     /// Sentences that stand below the table.
     pub notes: Vec<String>,
+    /// What the columns of the second table hold.
+    pub ratio_headers: Vec<String>,
+    /// Controllers beside each other, as many numbers as headers.
+    pub ratios: Vec<(String, Vec<Option<f64>>)>,
 }
 
 /// Runs of several controllers over the same reference and the same disturbances, to be shown.

@@ -1,188 +1,125 @@
 //! The reversal of the reference after which the controllers differ most in their lag, close up.
 
 use super::figure::Figure;
-use super::report::NamedTrace;
-use super::stack::WIDTH;
+use super::report::TrackReport;
+use super::series::{beyond, named, robust};
+use super::stack::{WIDTH, height, stack};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::canvas::Rect;
-use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
-use crate::draw::style::{GUIDE, LINES, REFERENCE, Stroke};
+use crate::draw::sheet::Key;
+use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
 use crate::figures::time_axis;
-use hysteron::{Direction, Turning};
-use std::ops::Range;
+use crate::view::View as Recorded;
+use hysteron::track::{ReversalLag, reversal_lags};
 
-/// Reversals by less than this part of the reference's range are not looked at.
-const SMALLEST: f64 = 0.05;
-/// A series has turned once it has gone back by this part of the way to the next reversal.
-const TURNED: f64 = 0.05;
-/// Curves in one panel, at most: more cannot be told apart in grey.
-const TOGETHER: usize = 6;
-const HEIGHT: f64 = 300.0;
+/// The part of a run before the first event, or of all of it, in which the start has died down.
+const BEGUN: f64 = 1.0 / 3.0;
+/// What is shown before the reversal, as a part of the branch after it.
+const BEFORE: f64 = 0.25;
 
 /// A reversal of the reference and what followed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Reversal {
-    /// The sample at which the reference turns.
-    pub(super) sample: usize,
-    /// For each run, how long after the reference its output turned, s; `None` where it did not before the next reversal.
-    pub(super) lags: Vec<Option<f64>>,
-    /// The samples to show.
-    window: Range<usize>,
+    /// When the reference turns, s.
+    pub(super) time: f64,
+    /// When it turns again.
+    until: f64,
+    /// For each run, the lag after it, s.
+    pub(super) lags: Vec<f64>,
 }
 
-/// Of the reversals in the last third of the runs, the one with the largest difference of lag.
-pub(super) fn find(runs: &[NamedTrace<'_>]) -> Option<Reversal> {
-    let reference = &runs.first()?.trace.reference;
-    let span = Span::of(reference);
-    let mut turning = Turning::new(SMALLEST * (span.high - span.low));
-    let mut turns: Vec<(usize, Direction)> =
-        reference.iter().filter_map(|&r| turning.push(r)).collect();
-    let (direction, extreme) = turning.branch()?;
-    turns.push((extreme, direction));
-    let late = reference.len() * 2 / 3;
-    let candidates = turns.windows(2).filter_map(|pair| match pair {
-        // The start counts as a turn, but nothing turns there.
-        &[(sample, direction), (next, _)] if sample >= late.max(1) && next > sample => {
-            Some(reversal(runs, sample, next, direction))
-        }
-        _ => None,
-    });
+/// Of the reversals before the first event, the one with the largest difference of lag.
+pub(super) fn find(report: &TrackReport<'_>) -> Option<Reversal> {
+    let last = report.runs.first()?.trace.time.last()?;
+    let to = report.events.first().map_or(*last, |(time, _)| *time);
+    let from = BEGUN * to;
+    let of_runs: Vec<Vec<ReversalLag>> = report
+        .runs
+        .iter()
+        .map(|run| reversal_lags(run.trace, from, to))
+        .collect();
+    let reversal = |n: usize| {
+        let lags: Vec<&ReversalLag> = of_runs.iter().filter_map(|lags| lags.get(n)).collect();
+        let first = lags.first()?;
+        Some(Reversal {
+            time: first.time,
+            until: first.until,
+            lags: lags.iter().map(|lag| lag.lag).collect(),
+        })
+    };
     let spread = |reversal: &Reversal| {
-        let rest = duration(runs, &(reversal.sample..reversal.window.end));
-        let lags = reversal.lags.iter().map(|lag| lag.unwrap_or(rest));
-        let (low, high) = lags.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), lag| {
-            (low.min(lag), high.max(lag))
-        });
-        high - low
+        let span = Span::of(&reversal.lags);
+        span.high - span.low
     };
-    candidates.max_by(|a, b| spread(a).total_cmp(&spread(b)))
-}
-
-fn reversal(runs: &[NamedTrace<'_>], sample: usize, next: usize, direction: Direction) -> Reversal {
-    let part = sample..next + 1;
-    let turned = |series: &[f64], way: f64| {
-        let series = series.get(part.clone())?;
-        turn(series, way, direction).map(|n| sample + n)
-    };
-    let lag = |run: &NamedTrace<'_>| {
-        let trace = run.trace;
-        let from = trace.reference.get(sample)?;
-        let way = TURNED * (trace.reference.get(next)? - from).abs();
-        let [asked, done] = [&trace.reference, &trace.output].map(|series| turned(series, way));
-        let [asked, done] = [trace.time.get(asked?)?, trace.time.get(done?)?];
-        Some(done - asked).filter(|lag| lag.is_finite())
-    };
-    let followed = runs.iter().filter_map(|run| {
-        let way =
-            TURNED * (run.trace.reference.get(next)? - run.trace.reference.get(sample)?).abs();
-        turned(&run.trace.output, way)
-    });
-    let length = next - sample;
-    let slowest = followed.map(|at| at - sample).max().unwrap_or(length);
-    let after = (3 * slowest).max(length / 4).clamp(4, length.max(4));
-    Reversal {
-        sample,
-        lags: runs.iter().map(lag).collect(),
-        window: sample.saturating_sub((after / 2).max(2))
-            ..(sample + after + 1).min(runs.first().map_or(0, |run| run.trace.time.len())),
-    }
-}
-
-/// The first sample at which `series` has gone back by `way` in `direction` from its furthest point so far.
-fn turn(series: &[f64], way: f64, direction: Direction) -> Option<usize> {
-    let sign = match direction {
-        Direction::Rising => 1.0,
-        Direction::Falling => -1.0,
-    };
-    let mut furthest = f64::INFINITY;
-    series.iter().position(|value| {
-        let value = sign * value;
-        furthest = furthest.min(value);
-        value - furthest > way
-    })
-}
-
-fn duration(runs: &[NamedTrace<'_>], part: &Range<usize>) -> f64 {
-    let time = runs
-        .first()
-        .and_then(|run| run.trace.time.get(part.clone()));
-    match time {
-        Some([first, .., last]) => last - first,
-        _ => 0.0,
-    }
+    (0..of_runs.first()?.len())
+        .filter_map(reversal)
+        .max_by(|a, b| spread(a).total_cmp(&spread(b)))
 }
 
 pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let reversal = view.reversal.as_ref()?;
     let runs = view.report.runs;
-    let part = |series: &'_ [f64]| series.get(reversal.window.clone()).unwrap_or(&[]).to_vec();
-    let time = part(&runs.first()?.trace.time);
-    let reference = part(&runs.first()?.trace.reference);
+    let time = &runs.first()?.trace.time;
+    let begin = reversal.time - BEFORE * (reversal.until - reversal.time);
+    let window =
+        time.partition_point(|t| *t < begin)..time.partition_point(|t| *t <= reversal.until);
+    let part = |series: &'_ [f64]| series.get(window.clone()).unwrap_or(&[]).to_vec();
+    let time = part(time);
+    let references: Vec<Vec<f64>> = runs.iter().map(|run| part(&run.trace.reference)).collect();
     let outputs: Vec<Vec<f64>> = runs.iter().map(|run| part(&run.trace.output)).collect();
-    let values = outputs.iter().flatten().chain(&reference);
-    let y = Axis::new(&view.output, Span::of(values).padded(0.05));
-    let x = time_axis(&view.time, Span::of(&time));
+    let pairs = outputs.iter().zip(&references);
+    let errors: Vec<Vec<f64>> = pairs.map(|(y, r)| Recorded::discrepancy(y, r)).collect();
+    let (error, cut) = robust(errors.iter().map(Vec::as_slice));
+    let asked = Span::of(references.iter().flatten());
+    let span = Span {
+        low: asked.low + error.low,
+        high: asked.high + error.high,
+    }
+    .padded(0.04);
+    let [x, y] = [
+        time_axis(&view.time, Span::of(&time)),
+        Axis::new(&view.output, span),
+    ];
 
     let mut sheet = view.sheet(Figure::Reversal, WIDTH);
-    let mut bottom = sheet.top;
-    let groups = runs.chunks(TOGETHER).zip(outputs.chunks(TOGETHER));
-    for (group, (runs, outputs)) in groups.enumerate() {
-        let first = group * TOGETHER;
-        let mut keys: Vec<Key> = vec![Key::Line(REFERENCE, "reference".into())];
-        keys.extend(runs.iter().enumerate().map(|(n, run)| {
-            let lag = reversal.lags.get(first + n).copied().flatten();
-            Key::Line(
-                stroke(n),
-                format!("{}: {}", run.name, lag_in_words(view, lag)),
-            )
-        }));
-        sheet.legend(&keys);
-        let left = MARGIN + left_of(&y, HEIGHT);
-        let area = Rect {
-            x: left,
-            y: sheet.top,
-            width: WIDTH - MARGIN - left,
-            height: HEIGHT,
-        };
-        let labels = Labels { x: true, y: true };
-        let panel = Panel::draw(&mut sheet.canvas, area, x.clone(), y.clone(), labels);
-        panel.curve(&mut sheet.canvas, &time, &reference, &REFERENCE);
-        for (n, output) in outputs.iter().enumerate() {
-            panel.curve(&mut sheet.canvas, &time, output, &stroke(n));
-        }
-        if let Some(time) = runs
-            .first()
-            .and_then(|run| run.trace.time.get(reversal.sample))
-        {
-            let at = panel.px(*time);
-            if at.is_finite() {
-                let (top, bottom) = (area.y, area.bottom());
-                sheet.canvas.line([at, top], [at, bottom], &GUIDE);
-            }
-        }
-        bottom = area.bottom() + BELOW + 4.0;
-        sheet.top = bottom + 8.0;
+    let mut keys = vec![
+        Key::Line(REFERENCE, "reference".into()),
+        Key::Line(FOLLOWER, view.output.name.clone()),
+    ];
+    keys.extend(cut.then(|| Key::Line(BEYOND, "beyond the axis".into())));
+    sheet.legend(&keys);
+    let lags = reversal.lags.iter();
+    let headings: Vec<_> = runs
+        .iter()
+        .zip(lags)
+        .map(|(run, lag)| named(run, format!("lag {}", view.time.value(*lag))))
+        .collect();
+    let panels_height = height(runs.len());
+    let (panels, bottom) = stack(
+        &mut sheet,
+        view,
+        &headings,
+        [&x, &y],
+        panels_height,
+        [0.0; 2],
+    );
+    for ((panel, output), reference) in panels.iter().zip(&outputs).zip(&references) {
+        panel.curve(&mut sheet.canvas, &time, reference, &REFERENCE);
+        panel.curve(&mut sheet.canvas, &time, output, &FOLLOWER);
+        beyond(&mut sheet, panel, &time, output, span);
+        let at = panel.px(reversal.time);
+        let (top, bottom) = (panel.area.y, panel.area.bottom());
+        sheet.canvas.line([at, top], [at, bottom], &GUIDE);
     }
     Some(view.finish(Figure::Reversal, sheet, bottom))
-}
-
-/// The darkest first, so that few curves stand out best.
-fn stroke(n: usize) -> Stroke {
-    LINES[LINES.len() - 1 - n % TOGETHER]
-}
-
-fn lag_in_words(view: &View<'_>, lag: Option<f64>) -> String {
-    lag.map_or("does not turn".into(), |lag| {
-        format!("lag {}", view.time.value(lag))
-    })
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
 
+    use super::super::fixture::{FOUR, Fixture};
+    use super::super::report::NamedTrace;
     use super::*;
     use hysteron::control::Trace;
 
@@ -200,42 +137,40 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_lag_is_that_of_the_output_behind_the_reference() {
-        let traces = [late(2), late(7)];
-        let runs = traces
-            .each_ref()
-            .map(|trace| NamedTrace { name: "run", trace });
-        let found = find(&runs).unwrap();
-        assert!(
-            found.sample >= 160 && found.sample.is_multiple_of(20),
-            "{}",
-            found.sample
-        );
-        assert_eq!(found.lags, [Some(1.0), Some(3.5)]);
-        assert!(found.window.contains(&found.sample));
-    }
-
-    #[test]
-    fn a_reference_that_does_not_turn_late_has_no_reversal() {
-        let mut trace = late(2);
-        trace.reference[120..].fill(0.0);
-        let run = NamedTrace {
-            name: "run",
-            trace: &trace,
-        };
-        assert_eq!(find(&[run]), None);
+    fn found(traces: &[Trace], events: &[(f64, String)]) -> Option<Reversal> {
+        let runs: Vec<_> = traces
+            .iter()
+            .map(|trace| NamedTrace { name: "run", trace })
+            .collect();
+        Fixture::new(&FOUR, 10).report(true, |report| {
+            let mut report = report.clone();
+            (report.runs, report.events) = (&runs, events);
+            find(&report)
+        })
     }
 
     #[test]
     fn the_reversal_with_the_largest_difference_is_chosen() {
         let (quick, mut slow) = (late(1), late(1));
-        // Stands still for a while after the reversal at sample 200.
-        let held = slow.output[201];
-        slow.output[201..212].fill(held);
-        let runs = [&quick, &slow].map(|trace| NamedTrace { name: "run", trace });
-        let found = find(&runs).unwrap();
-        assert_eq!(found.sample, 200);
-        assert!(found.lags[1] > found.lags[0]);
+        // Four samples later than the other after the reversal at sample 160.
+        let later = late(5);
+        slow.output[160..180].copy_from_slice(&later.output[160..180]);
+        let reversal = found(&[quick, slow], &[]).unwrap();
+        assert_eq!((reversal.time, reversal.until), (80.0, 90.0));
+        assert_eq!(reversal.lags, [0.5, 2.5]);
+    }
+
+    #[test]
+    fn only_reversals_before_the_first_event_are_looked_at() {
+        let events = [(62.0, "load".to_owned())];
+        let reversal = found(&[late(1), late(3)], &events).unwrap();
+        assert!(reversal.time < 62.0, "{}", reversal.time);
+    }
+
+    #[test]
+    fn a_reference_that_does_not_turn_has_no_reversal() {
+        let mut trace = late(2);
+        trace.reference.fill(0.0);
+        assert_eq!(found(&[trace], &[]), None);
     }
 }

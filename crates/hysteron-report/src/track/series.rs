@@ -23,7 +23,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
     let outputs = || runs.iter().flat_map(|run| &run.trace.output);
     let mut span = Span::of(references().chain(outputs()));
     let errors: Vec<Vec<f64>> = runs.iter().map(error_of).collect();
-    let (error, cut) = robust(errors.iter().flatten());
+    let (error, cut) = robust(errors.iter().map(Vec::as_slice));
     if cut {
         // As far from the reference as the errors that can be seen.
         let asked = Span::of(references());
@@ -46,7 +46,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
         &mut sheet,
         view,
         &headings,
-        &y,
+        [&view.time_axis, &y],
         height(runs.len()),
         [0.0; 2],
     );
@@ -79,7 +79,7 @@ pub(super) fn prediction(view: &View<'_>) -> Option<String> {
 }
 
 fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64>)]) -> String {
-    let (span, cut) = robust(runs.iter().flat_map(|(_, values)| values));
+    let (span, cut) = robust(runs.iter().map(|(_, values)| values.as_slice()));
     let y = Axis::new(&view.output.renamed("error"), span);
     let mut sheet = view.sheet(figure, WIDTH);
     let difference = match figure {
@@ -97,7 +97,7 @@ fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64
         &mut sheet,
         view,
         &headings,
-        &y,
+        [&view.time_axis, &y],
         height(runs.len()),
         [0.0; 2],
     );
@@ -110,7 +110,7 @@ fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64
     view.finish(figure, sheet, bottom)
 }
 
-fn named(run: &NamedTrace<'_>, remark: String) -> Heading {
+pub(super) fn named(run: &NamedTrace<'_>, remark: String) -> Heading {
     Heading {
         name: run.name.to_owned(),
         remark,
@@ -134,13 +134,18 @@ fn rms_and_largest(view: &View<'_>, values: &[f64]) -> String {
     )
 }
 
-/// A range around zero in which most of `values` can be told apart, and whether it leaves some out.
-pub(super) fn robust<'a>(values: impl Iterator<Item = &'a f64>) -> (Span, bool) {
-    let mut finite: Vec<f64> = values.copied().filter(|value| value.is_finite()).collect();
-    let all = Span::of(&finite).with(0.0).padded(0.06);
-    finite.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));
-    let rank = (SEEN * finite.len().saturating_sub(1) as f64) as usize;
-    let seen = ROOM * finite.get(rank).map_or(0.0, |value| value.abs());
+/// A range around zero in which most of the values of most panels can be told apart, and whether it leaves some out.
+///
+/// Half of the panels decide: a few controllers that are far off throughout must not make the others illegible.
+pub(super) fn robust<'a>(panels: impl Iterator<Item = &'a [f64]> + Clone) -> (Span, bool) {
+    let all = Span::of(panels.clone().flatten()).with(0.0).padded(0.06);
+    let mut seen: Vec<f64> = panels.filter_map(far).collect();
+    seen.sort_unstable_by(f64::total_cmp);
+    let seen = ROOM
+        * seen
+            .get(seen.len().saturating_sub(1) / 2)
+            .copied()
+            .unwrap_or(0.0);
     let cut = Span {
         low: all.low.max(-seen),
         high: all.high.min(seen),
@@ -153,8 +158,17 @@ pub(super) fn robust<'a>(values: impl Iterator<Item = &'a f64>) -> (Span, bool) 
     }
 }
 
+/// How far from zero most of the values lie.
+fn far(values: &[f64]) -> Option<f64> {
+    let finite = values.iter().filter(|value| value.is_finite());
+    let mut sizes: Vec<f64> = finite.map(|value| value.abs()).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    let rank = (SEEN * sizes.len().saturating_sub(1) as f64) as usize;
+    sizes.get(rank).copied()
+}
+
 /// Marks at the edge where `values` leave the panel.
-fn beyond(sheet: &mut Sheet, panel: &Panel, time: &[f64], values: &[f64], span: Span) {
+pub(super) fn beyond(sheet: &mut Sheet, panel: &Panel, time: &[f64], values: &[f64], span: Span) {
     let area = panel.area;
     type Leaves = fn(f64, Span) -> bool;
     let edges: [(f64, Leaves); 2] = [

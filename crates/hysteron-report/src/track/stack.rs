@@ -40,11 +40,10 @@ pub(super) fn stack(
     sheet: &mut Sheet,
     view: &View<'_>,
     headings: &[Heading],
-    y: &Axis,
+    [x, y]: [&Axis; 2],
     height: f64,
     [below, beside]: [f64; 2],
 ) -> (Vec<Panel>, f64) {
-    let x = view.time_axis.clone();
     let left = MARGIN + left_of(y, height).max(beside);
     let mut area = Rect {
         x: left,
@@ -52,7 +51,7 @@ pub(super) fn stack(
         width: WIDTH - MARGIN - left,
         height,
     };
-    area.y = events(sheet, view, &x, area);
+    area.y = events(sheet, view, x, area);
     let first = area.y + HEADING;
     let mut panels = Vec::new();
     for (n, heading) in headings.iter().enumerate() {

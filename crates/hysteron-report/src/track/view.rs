@@ -38,7 +38,7 @@ impl<'a> View<'a> {
             output: label(&report.output, "output"),
             drive: label(&report.drive, "drive"),
             time,
-            reversal: reversal::find(report.runs),
+            reversal: reversal::find(report),
         }
     }
 

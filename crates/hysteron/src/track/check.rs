@@ -1,7 +1,12 @@
 //! What a scenario may say.
 
-use super::{LoopOptions, Reference, Scenario};
-use crate::{Adaptation, Error, Result};
+use super::{AdaptationOptions, LoopOptions, MethodName, Reference, Scenario};
+use crate::{Adaptation, Error, Model, Result};
+
+/// Most levels of a model that is identified anew for each run.
+const MOST_LEVELS: usize = 100;
+/// No output is as large; its square still is a number.
+const LARGEST: f64 = 1e100;
 
 impl Scenario {
     /// Refuses what cannot be run.
@@ -15,14 +20,18 @@ impl Scenario {
             "the time between samples must be above zero",
         )?;
         let samples = self.duration_s / self.interval_s;
-        let fine = (10.0..=1e7).contains(&samples);
+        let fine = (10.0..=1e6).contains(&samples);
         require(
             fine,
             "duration_s",
-            "from 10 to 10 million samples are needed",
+            "from 10 to a million samples of interval_s are needed",
         )?;
-        let fine = self.settle_s >= 0.0 && self.settle_s < self.duration_s;
-        require(fine, "settle_s", "must lie between 0 and the duration")?;
+        let fine = self.settle_s >= 0.0 && self.settle_s < 0.9 * self.duration_s;
+        require(
+            fine,
+            "settle_s",
+            "must lie between 0 and nine tenths of the duration",
+        )?;
         require(
             (1..=1000).contains(&self.seeds),
             "seeds",
@@ -33,8 +42,29 @@ impl Scenario {
         for (n, part) in self.reference.iter().enumerate() {
             part.check(&format!("reference[{n}]"))?;
         }
+        let references = self.references();
+        if let Some(n) = references
+            .iter()
+            .position(|r| r.is_nan() || r.abs() >= LARGEST)
+        {
+            let time = n as f64 * self.interval_s;
+            return refuse(
+                "reference",
+                &format!("at {time} s it is {:e}, which is no output", references[n]),
+            );
+        }
         let some = !self.controllers.is_empty();
         require(some, "controllers", "at least one is needed")?;
+        let mut seen = Vec::new();
+        for kind in &self.controllers {
+            let name = kind.name();
+            require(
+                !seen.contains(kind),
+                "controllers",
+                &format!("`{name}` stands there twice"),
+            )?;
+            seen.push(*kind);
+        }
         self.check_model()?;
         let LoopOptions {
             filter_s,
@@ -43,10 +73,21 @@ impl Scenario {
         } = self.shared;
         require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
         require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
-        let adaptation: Adaptation<f64> = self.adaptation.into();
-        adaptation
-            .check()
-            .or_else(|error| refuse("adaptation", &error.to_string()))?;
+        for name in [
+            MethodName::Gradient,
+            MethodName::Increments,
+            MethodName::LeastSquares,
+        ] {
+            // Also of the methods not taken: a number that is wrong was meant to say something.
+            let adaptation: Adaptation<f64> = AdaptationOptions {
+                method: name,
+                ..self.adaptation
+            }
+            .into();
+            adaptation
+                .check()
+                .or_else(|error| refuse("adaptation", &error.to_string()))?;
+        }
         self.check_events()
     }
 
@@ -55,10 +96,40 @@ impl Scenario {
         options
             .plane()
             .or_else(|error| refuse("model", &error.to_string()))?;
+        let fine = options.levels <= MOST_LEVELS;
+        require(
+            fine,
+            "model.levels",
+            &format!("more than {MOST_LEVELS} take minutes for each run"),
+        )?;
+        self.check_file()?;
         let (heating, cooling) = options.rates;
         let fine = positive(heating) && positive(cooling);
         require(fine, "model.rates", "both must be above zero")?;
         require(from_zero(options.smooth), "model.smooth", NOT_NEGATIVE)
+    }
+
+    fn check_file(&self) -> Result<()> {
+        let options = &self.model;
+        let Some(file) = &options.file else {
+            return Ok(());
+        };
+        let model = Model::read(file)?;
+        let refuse =
+            |problem: &str| refuse("model.file", &format!("{}: {problem}", file.display()));
+        if let Err(error) = model.inverse() {
+            return refuse(&error.to_string());
+        }
+        let plane = model.plane();
+        if (plane.min(), plane.max()) != options.range || plane.levels() != options.levels {
+            return refuse(&format!(
+                "its plane has {} levels from {} to {}: say so in model.levels and model.range",
+                plane.levels(),
+                plane.min(),
+                plane.max()
+            ));
+        }
+        Ok(())
     }
 
     /// On a plant, so that what it does not know is refused before anything is run.
@@ -70,11 +141,14 @@ impl Scenario {
         let mut last = 0.0;
         for (n, event) in self.disturbance.iter().enumerate() {
             let field = format!("disturbance[{n}]");
-            let fine = event.at_s >= last && event.at_s < self.duration_s;
+            // At the same time, or with two samples between.
+            let apart = 2.0 * self.interval_s;
+            let fine = (event.at_s == last || event.at_s >= last + apart)
+                && event.at_s <= self.duration_s - apart;
             require(
                 fine,
                 &format!("{field}.at_s"),
-                "must be in order and within the duration",
+                "must be in order, the same as before or two samples later at least, and two samples before the end",
             )?;
             last = event.at_s;
             let whats = event.disturbances();

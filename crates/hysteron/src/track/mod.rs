@@ -19,7 +19,7 @@ pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuni
 pub use plant::{Event, PlantOptions};
 pub use reference::Reference;
 pub use scenario::Scenario;
-pub use score::{Score, Window};
+pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
 use crate::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};

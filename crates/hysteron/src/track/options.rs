@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelOptions {
-    /// Number of levels, from 2 to [`MAX_LEVELS`](crate::MAX_LEVELS).
+    /// Number of levels, from 2 to 100.
     pub levels: usize,
     /// Lowest and highest level, in the input's unit.
     pub range: (f64, f64),
@@ -17,7 +17,7 @@ pub struct ModelOptions {
     pub smooth: f64,
     /// How fast the input rises and falls in the experiment, in its unit per second; both above 0.
     pub rates: (f64, f64),
-    /// A model file to use instead of an experiment. Its plane should be the one named here: commands are limited by that.
+    /// A model file to use instead of an experiment. Its plane must be the one named here.
     pub file: Option<PathBuf>,
 }
 

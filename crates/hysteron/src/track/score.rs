@@ -1,8 +1,8 @@
 //! How well a run tracked its reference, by stretches of time.
 
-use super::Scenario;
+use super::{Event, Scenario};
 use crate::control::{Snapshot, Trace};
-use crate::{Direction, Model, Result, Turning};
+use crate::{Model, Result, Turning};
 use serde::Serialize;
 
 /// A stretch of time that errors are taken over.
@@ -29,7 +29,7 @@ pub struct Score {
     pub prediction_rmse: f64,
     /// The same with the weights as they were when the window began, and never learned since; NaN without a model.
     pub frozen_rmse: f64,
-    /// Median delay of the output's reversals behind the reference's, s; NaN without a reversal.
+    /// Median lag of the output after reversals of the reference, s ([`reversal_lags`]); NaN without a reversal.
     pub lag_s: f64,
     /// Mean change of the drive from sample to sample, as a share of its range.
     pub drive_travel: f64,
@@ -41,6 +41,9 @@ pub struct Score {
 
 /// Share of the reference's range by which something has to go back to count as turned.
 const TURNED: f64 = 0.05;
+
+/// Shifts in time that are tried to each side.
+const SHIFTS: usize = 200;
 
 /// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
 /// settle; without disturbances the halves of the run.
@@ -61,9 +64,16 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
         ];
     };
     let mut windows = vec![window("before", settle, first.at_s, true)];
-    for (n, event) in scenario.disturbance.iter().enumerate() {
-        let next = scenario.disturbance.get(n + 1).map_or(end, |e| e.at_s);
-        let words = event.words();
+    // What happens at the same time is one event.
+    let events: Vec<&[Event]> = scenario
+        .disturbance
+        .chunk_by(|a, b| a.at_s == b.at_s)
+        .collect();
+    for (n, together) in events.iter().enumerate() {
+        let next = events.get(n + 1).map_or(end, |later| later[0].at_s);
+        let event = &together[0];
+        let words: Vec<String> = together.iter().map(Event::words).collect();
+        let words = words.join(", ");
         windows.push(window(&format!("after {words}"), event.at_s, next, false));
         let settled = event.at_s + settle;
         if settled < next && settle > 0.0 {
@@ -75,7 +85,8 @@ pub fn windows(scenario: &Scenario) -> Vec<Window> {
             ));
         }
     }
-    windows.retain(|window| window.from_s < window.to_s);
+    let two_samples = 2.0 * scenario.interval_s;
+    windows.retain(|window| window.to_s - window.from_s >= two_samples);
     windows
 }
 
@@ -118,12 +129,14 @@ impl Score {
             }
             None => prediction_rmse,
         };
+        let lags = reversal_lags(trace, window.from_s, window.to_s);
+        let mut lags: Vec<f64> = lags.iter().map(|lag| lag.lag).collect();
         Ok(Self {
             rmse: rms(inside.iter().map(error).collect()),
             max_abs: inside.iter().map(error).fold(0.0, |a, e| a.max(e.abs())),
             prediction_rmse,
             frozen_rmse,
-            lag_s: lag(trace, &inside),
+            lag_s: median(&mut lags),
             drive_travel: travel.sum::<f64>() / inside.len() as f64 / (drives.1 - drives.0),
             saturated: status(|s| s.saturated),
             faults: status(|s| s.sensor_fault),
@@ -139,37 +152,65 @@ fn free_run(trace: &Trace, snapshot: &Snapshot, model: &Model) -> Result<Vec<f64
     frozen.simulate(&trace.input)
 }
 
-/// Median over the reversals of the reference: from when the reference has gone back by [`TURNED`] of its range until the output is
-/// there too.
-fn lag(trace: &Trace, inside: &[usize]) -> f64 {
+/// How far the output runs behind the reference after a reversal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReversalLag {
+    /// When the reference turned, s.
+    pub time: f64,
+    /// Until when the branch after it lasts, s.
+    pub until: f64,
+    /// The lag, s; below zero where the output runs ahead.
+    pub lag: f64,
+}
+
+/// The lag after each reversal of the reference from `from_s` to `to_s`: the shift in time by which the branch of the reference
+/// comes closest to the output. A constant error is left out, for it is not a lag; so a single noisy crossing decides nothing.
+#[must_use]
+pub fn reversal_lags(trace: &Trace, from_s: f64, to_s: f64) -> Vec<ReversalLag> {
     let (low, high) = crate::recording::range(&trace.reference);
-    let band = TURNED * (high - low);
-    let mut turning = Turning::new(band);
-    // Where each reversal is seen, and to where the reference then goes.
-    let mut seen: Vec<(usize, usize, Direction)> = Vec::new();
-    for &n in inside {
-        if let Some((at, heading)) = turning.push(trace.reference[n]) {
-            seen.push((inside[at], n, heading));
+    let mut turning = Turning::new(TURNED * (high - low));
+    let inside: Vec<usize> = (0..trace.time.len())
+        .filter(|n| (from_s..to_s).contains(&trace.time[*n]))
+        .collect();
+    let turns = inside
+        .iter()
+        .filter_map(|&n| turning.push(trace.reference[n]));
+    // The first is where the window begins.
+    let mut turns: Vec<usize> = turns.map(|(at, _)| inside[at]).skip(1).collect();
+    turns.extend(inside.last());
+    let branches = turns.windows(2).filter(|ends| ends[1] > ends[0] + 1);
+    branches
+        .map(|ends| ReversalLag {
+            time: trace.time[ends[0]],
+            until: trace.time[ends[1]],
+            lag: shift(trace, ends[0], ends[1]),
+        })
+        .collect()
+}
+
+/// The shift, s, with the smallest variance of the output less the reference before it, over the samples `first..=last`.
+fn shift(trace: &Trace, first: usize, last: usize) -> f64 {
+    let most = (last - first) / 2;
+    let every = (most / SHIFTS).max(1) as isize;
+    let variance = |shift: isize| {
+        let differences = (first..=last).map(|n| {
+            let before = (n as isize - shift).clamp(0, trace.reference.len() as isize - 1);
+            trace.output[n] - trace.reference[before as usize]
+        });
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for difference in differences {
+            sum += difference;
+            squares += difference * difference;
         }
-    }
-    let last = inside.last().copied().unwrap_or(0);
-    let mut lags: Vec<f64> = Vec::new();
-    for (k, &(extreme, turned, heading)) in seen.iter().enumerate().skip(1) {
-        let next = seen.get(k + 1).map_or(last, |(_, n, _)| *n);
-        let up = |value: f64| match heading {
-            Direction::Rising => value,
-            Direction::Falling => -value,
-        };
-        let there = up(trace.reference[turned]);
-        // From its own extreme on: an output that is late passes the same value on its way there.
-        let furthest = |a: &usize, b: &usize| up(trace.output[*a]).total_cmp(&up(trace.output[*b]));
-        let begins = (extreme..=next).min_by(furthest).unwrap_or(extreme);
-        let answered = (begins..=next).find(|&n| up(trace.output[n]) >= there);
-        // Not at all: as late as the next reversal.
-        let answered = answered.unwrap_or(next);
-        lags.push(trace.time[answered] - trace.time[turned]);
-    }
-    median(&mut lags)
+        let count = (last - first + 1) as f64;
+        squares / count - (sum / count).powi(2)
+    };
+    let most = most as isize / every;
+    let best = (-most..=most)
+        .map(|k| (variance(k * every), k * every))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let interval = (trace.time[last] - trace.time[first]) / (last - first) as f64;
+    best.map_or(f64::NAN, |(_, shift)| shift as f64 * interval)
 }
 
 /// The median; NaN of nothing.

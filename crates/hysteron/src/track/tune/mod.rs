@@ -33,11 +33,20 @@ fn middle(scenario: &Scenario) -> f64 {
     0.5 * (low + high)
 }
 
-fn no_answer(what: &str) -> Error {
-    Error::Scenario {
-        field: "plant".into(),
-        problem: format!(
-            "its {what} does not answer a step of the drive, so that no PID can be tuned"
+fn no_answer(what: &str, samples: usize, scenario: &Scenario) -> Error {
+    let time = samples as f64 * scenario.interval_s;
+    refused(
+        "plant",
+        format!(
+            "its {what} does not answer a step within {time} s ({samples} samples), or less than its noise, so that no PID can be tuned: \
+             a longer interval_s, a stronger drive or a better sensor is needed"
         ),
+    )
+}
+
+fn refused(field: &str, problem: String) -> Error {
+    Error::Scenario {
+        field: field.into(),
+        problem,
     }
 }

@@ -1,6 +1,6 @@
 //! The relay test (Åström & Hägglund 1984), and gains by Tyreus & Luyben 1992.
 
-use super::{TESTS, middle, no_answer};
+use super::{TESTS, middle, refused};
 use crate::Result;
 use crate::control::{Controller, Gains, Scheme};
 use crate::track::Scenario;
@@ -38,7 +38,8 @@ fn oscillation(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<(f64, 
     let mut plant = scenario.plant.build(seed)?;
     let mut controller = Controller::new(scheme.clone())?;
     let mut high = true;
-    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut range, mut all) = (none, none);
     // Sample at which each period ended, and half the output's way in it.
     let mut periods: Vec<(usize, f64)> = Vec::new();
     for n in 0..PATIENCE {
@@ -47,12 +48,13 @@ fn oscillation(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<(f64, 
         plant.advance(scenario.interval_s);
         let output = action.filtered.output;
         range = (range.0.min(output), range.1.max(output));
+        all = (all.0.min(output), all.1.max(output));
         if high && output > middle + band {
             high = false;
         } else if !high && output < middle - band {
             high = true;
             periods.push((n, 0.5 * (range.1 - range.0)));
-            range = (f64::INFINITY, f64::NEG_INFINITY);
+            range = none;
         }
         if periods.len() == SETTLED + COUNTED + 1 {
             break;
@@ -60,7 +62,17 @@ fn oscillation(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<(f64, 
     }
     let Some([first, rest @ ..]) = periods.get(SETTLED..).filter(|rest| rest.len() > COUNTED)
     else {
-        return Err(no_answer("output"));
+        return Err(match all.0 <= all.1 {
+            true => refused(
+                "reference",
+                format!(
+                    "between the inputs {} and {} (model.range) the output goes from {:.4} to {:.4}, and does not cross {middle:.4}, the middle of the reference, \
+                     again and again, so that no PID can be tuned there",
+                    commands[0], commands[1], all.0, all.1
+                ),
+            ),
+            false => refused("plant", "the sensor of its output gives no readings".into()),
+        });
     };
     let count = rest.len() as f64;
     let last = rest.last().map_or(first.0, |(n, _)| *n);

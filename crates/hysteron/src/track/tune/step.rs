@@ -36,13 +36,13 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let wide = SAMPLES / 10;
     let rise = |n: usize| temperature[n + wide] - temperature[n];
     let steepest = (LEVEL..temperature.len() - wide).max_by(|a, b| rise(*a).total_cmp(&rise(*b)));
-    let steepest = steepest.ok_or_else(|| no_answer("temperature"))?;
+    let steepest = steepest.ok_or_else(|| no_answer("temperature", SAMPLES, scenario))?;
     let slope = rise(steepest) / (wide as f64 * scenario.interval_s);
     let (level, _) = steady(&temperature[..LEVEL]);
     // Less than a level in the whole test is noise, or a heater that cannot do what the model is asked for.
     let one = scenario.model.plane()?.step();
     if steady(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0 {
-        return Err(no_answer("temperature"));
+        return Err(no_answer("temperature", SAMPLES, scenario));
     }
     let passed = (steepest - LEVEL) as f64 * scenario.interval_s;
     let delay = (passed - (temperature[steepest] - level) / slope).max(scenario.interval_s);
@@ -75,7 +75,7 @@ pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
     let (before, noise) = steady(&output[begin - LEVEL..begin]);
     let (after, _) = steady(&output[output.len() - LEVEL..]);
     if (after - before).abs() < ANSWER * noise {
-        return Err(no_answer("output"));
+        return Err(no_answer("output", SAMPLES, scenario));
     }
     let gain = (after - before) / step;
     let reached = |share: f64| {
@@ -86,12 +86,12 @@ pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
         Some((first as f64 - 1.0 + part.clamp(0.0, 1.0)) * scenario.interval_s)
     };
     let (Some(early), Some(late)) = (reached(0.283), reached(0.632)) else {
-        return Err(no_answer("output"));
+        return Err(no_answer("output", SAMPLES, scenario));
     };
     let lag = 1.5 * (late - early);
     let delay = (late - lag).max(0.5 * scenario.interval_s);
     if !(gain.is_finite() && gain != 0.0 && lag > 0.0) {
-        return Err(no_answer("output"));
+        return Err(no_answer("output", SAMPLES, scenario));
     }
     // SIMC with τ_c = θ.
     Ok(Gains {
@@ -135,7 +135,7 @@ fn average(
             } else {
                 waited += 1;
                 if waited > PATIENCE {
-                    return Err(no_answer("output"));
+                    return Err(no_answer("output", SAMPLES, scenario));
                 }
             }
         }
