@@ -3,15 +3,14 @@
 
 mod common;
 
-use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, strokes, weights};
+use common::{
+    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, dense, options, rng, strokes, unit_plane,
+    weights,
+};
 use hysteron_core::{
-    Adaptation, Estimator, Method, Operator, Outcome, Plane, estimator_len_of_parts, operator_count,
+    Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_parts, operator_count,
 };
 use rand::{Rng, RngExt};
-
-fn unit_plane(levels: usize) -> Plane<f64> {
-    Plane::new(20.0, 80.0, levels).unwrap()
-}
 
 /// Solves `A x = b` by elimination with pivots.
 fn solved(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
@@ -160,7 +159,7 @@ fn known_plants_are_found() {
 fn least_squares_finds_the_weights_themselves() {
     const K: usize = 6;
     let mut rng = rng(13);
-    let plant: Vec<f64> = (0..operator_count(K)).map(|_| rng.random()).collect();
+    let plant = dense(&mut rng, K);
     let mut there = build(unit_plane(K), Operator::Mkp, &plant);
     let method = Method::LeastSquares {
         forgetting: 0.999,

@@ -3,23 +3,18 @@
 
 mod common;
 
-use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, options, rng, strokes};
+use common::{
+    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, build, dense, options, rng, strokes,
+    unit_plane,
+};
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Plane, Real, State, Turn, estimator_len,
     estimator_len_of_parts, operator_count, table_len, turn_capacity,
 };
-use rand::{Rng, RngExt};
+use rand::RngExt;
 
 const K: usize = 4;
 const N: usize = operator_count(K);
-
-fn unit_plane(levels: usize) -> Plane<f64> {
-    Plane::new(20.0, 80.0, levels).unwrap()
-}
-
-fn dense(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
-    (0..operator_count(levels)).map(|_| rng.random()).collect()
-}
 
 fn refused(options: Adaptation<f64>) -> Error {
     let (mut model, _) = build(unit_plane(K), Operator::Mkp, &[1.0; N]);

@@ -4,24 +4,16 @@
 mod common;
 
 use common::{
-    GRADIENT, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, inputs, options, rng, strokes,
-    weights,
+    GRADIENT, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng,
+    strokes, unit_plane, weights,
 };
-use hysteron_core::{Adaptation, Method, Operator, Outcome, Plane, operator_count};
-use rand::{Rng, RngExt};
-
-fn unit_plane(levels: usize) -> Plane<f64> {
-    Plane::new(20.0, 80.0, levels).unwrap()
-}
-
-fn dense(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
-    (0..operator_count(levels)).map(|_| rng.random()).collect()
-}
+use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
+use rand::RngExt;
 
 /// A learner that has been over the plane, and an input within it to rest at.
 fn at_rest(method: Method<f64>, guards: Adaptation<f64>) -> (Learner, Vec<f64>, f64) {
     let k = 8;
-    let plane = Plane::new(20.0, 80.0, k).unwrap();
+    let plane = unit_plane(k);
     let mut rng = rng(5);
     let offline = vec![1.0; operator_count(k)];
     let (plant, mut there) = build(plane, Operator::Mkp, &weights(&mut rng, k));
@@ -64,7 +56,7 @@ fn noise_within_the_dead_zone_teaches_nothing() {
     for method in METHODS {
         let mut rng = rng(7);
         let k = 8;
-        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let plane = unit_plane(k);
         let offline = weights(&mut rng, k);
         let (plant, mut there) = build(plane, Operator::Mkp, &offline);
         let guards = Adaptation {
@@ -93,7 +85,7 @@ fn weights_of_zero_are_not_left_to_the_negative_side() {
         for operator in OPERATORS {
             let mut rng = rng(8);
             let k = 8;
-            let plane = Plane::new(20.0, 80.0, k).unwrap();
+            let plane = unit_plane(k);
             let offline = vec![0.3; operator_count(k)];
             let mut learner = Learner::new(plane, operator, &offline, options(method));
             let mut zeros = 0;
@@ -117,7 +109,7 @@ fn leakage_leads_back_to_the_offline_weights() {
     for method in [GRADIENT, LEAST_SQUARES] {
         let mut rng = rng(9);
         let k = 6;
-        let plane = Plane::new(20.0, 80.0, k).unwrap();
+        let plane = unit_plane(k);
         let offline = weights(&mut rng, k);
         let (plant, mut there) = build(plane, Operator::Mkp, &offline);
         let guards = Adaptation {
@@ -145,6 +137,7 @@ fn leakage_leads_back_to_the_offline_weights() {
         assert!(away > 0.1);
     }
 }
+
 #[test]
 fn readings_of_any_size_leave_weights_that_are_numbers() {
     for seed in 0..60 {
@@ -158,7 +151,7 @@ fn readings_of_any_size_leave_weights_that_are_numbers() {
         };
         let mut learner = Learner::new(
             unit_plane(k),
-            common::OPERATORS[seed as usize / 9 % 3],
+            OPERATORS[seed as usize / 9 % 3],
             &offline,
             guards,
         );

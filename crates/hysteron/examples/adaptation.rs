@@ -41,8 +41,10 @@ fn main() -> Result<()> {
     cycles(folder)?;
     print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
-    println!("| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!(
+        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least squares, forgetting 1 |"
+    );
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
         let loops = Loops::read(folder, material, stresses, output)?;
         for to in 1..stresses.len() {
@@ -71,6 +73,14 @@ fn adapting(learner: Learner) -> AdaptOptions {
     AdaptOptions {
         learner,
         ..AdaptOptions::default()
+    }
+}
+
+/// Least squares that forgets nothing.
+fn remembering(learner: Learner) -> AdaptOptions {
+    AdaptOptions {
+        forgetting: Some(1.0),
+        ..adapting(learner)
     }
 }
 
@@ -271,7 +281,11 @@ impl Loops {
     fn row(&self, from: usize, to: usize) -> Result<()> {
         let model = |n: usize| fit(&self.loops[n], &self.options);
         let before = model(from)?;
-        let adapted = LEARNERS.map(|(_, learner)| self.adapted(&before, to, &adapting(learner)));
+        let options = LEARNERS.map(|(_, learner)| adapting(learner));
+        let options = options
+            .into_iter()
+            .chain([remembering(Learner::LeastSquares)]);
+        let adapted = options.map(|options| self.adapted(&before, to, &options));
         println!(
             "| {} {} → {} | {:.1} | {:.1} | {} |",
             self.material,
@@ -279,7 +293,7 @@ impl Loops {
             self.stresses[to],
             self.judge(&before, to)?,
             self.judge(&model(to)?, to)?,
-            adapted.into_iter().collect::<Result<Vec<_>>>()?.join(" | "),
+            adapted.collect::<Result<Vec<_>>>()?.join(" | "),
         );
         Ok(())
     }
@@ -295,11 +309,6 @@ impl Loops {
             Ok(model) => format!("{:.1}", self.judge(&model, to)?),
             Err(_) => "outside".into(),
         };
-        let drift = adapting(Learner::Drift);
-        let remembering = AdaptOptions {
-            forgetting: Some(1.0),
-            ..drift
-        };
         println!(
             "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} |",
             self.material,
@@ -308,8 +317,8 @@ impl Loops {
             self.stresses[to],
             self.judge(&middle, to)?,
             self.judge(&fit(&self.loops[to], &self.options)?, to)?,
-            self.adapted(&model, to, &drift)?,
-            self.adapted(&model, to, &remembering)?,
+            self.adapted(&model, to, &adapting(Learner::Drift))?,
+            self.adapted(&model, to, &remembering(Learner::Drift))?,
         );
         Ok(())
     }

@@ -177,29 +177,26 @@ impl Adaptive {
         &self.state
     }
 
-    /// Every operator off again; the weights stay.
-    pub fn reset(&mut self) -> Result<()> {
-        self.estimator.realign();
-        Ok(self.core.reset_off(&mut self.state)?)
-    }
-
-    /// Every operator on, as at the top of the plane; the weights stay.
+    /// Turns every operator on, as at the top of the plane; the weights stay.
+    ///
+    /// # Errors
+    /// None that a caller can cause.
     pub fn saturate(&mut self) -> Result<()> {
         self.estimator.realign();
         Ok(self.core.reset_on(&mut self.state)?)
     }
 
-    /// While frozen, nothing is learned.
+    /// While frozen, [`Adaptive::step`] predicts and nothing is learned.
     pub fn freeze(&mut self, frozen: bool) {
         self.estimator.freeze(frozen);
     }
 
-    /// Takes the present weights as the last good ones.
+    /// Takes the present weights and offset as the last good ones.
     pub fn keep(&mut self) {
         self.estimator.keep();
     }
 
-    /// Goes back to the last good weights.
+    /// Goes back to the last good weights and offset: those last kept, or that stood a trial since ([`Adaptation::trial`]).
     ///
     /// # Errors
     /// None that a caller can cause.

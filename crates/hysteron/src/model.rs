@@ -291,19 +291,9 @@ impl Inverse<'_> {
         target: f64,
         policy: Policy<f64>,
     ) -> Result<Solution<f64>> {
-        let solution = self.solve(state, target, policy)?;
-        self.model.core.step(state, solution.input)?;
-        Ok(solution)
-    }
-
-    /// Finds the input for `target` without moving `state`.
-    ///
-    /// # Errors
-    /// As [`Inverse::step`].
-    pub fn solve(&self, state: &State, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
         let sign = self.model.sign;
         let raw = sign.factor() * (target - self.model.offset);
-        let solution = self.core.solve(state, raw, sign.inward(policy))?;
+        let solution = self.core.step(state, raw, sign.inward(policy))?;
         Ok(sign.outward(solution))
     }
 }

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    AdaptOptions, Columns, DriftParts, FirstOrder, FitOptions, Learner, Model, Operator, Plane,
-    Recording, Repair, Sign, Start, adapt, fit, fit_experiment,
+    AdaptOptions, Adaptive, Columns, DriftParts, FirstOrder, FitOptions, Learner, Model, Operator,
+    Plane, Recording, Repair, Sign, Start, adapt, fit, fit_experiment,
 };
 use std::path::Path;
 
@@ -206,6 +206,38 @@ fn the_adapted_file_says_how_it_came_about() {
 }
 
 #[test]
+fn frozen_it_stays_and_what_was_kept_comes_back() {
+    let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
+    let options = by(Learner::LeastSquares).adaptation(&model, &recording);
+    let mut adaptive = Adaptive::new(&model, options.unwrap()).unwrap();
+    let learn = |adaptive: &mut Adaptive| {
+        for (input, output) in recording.input.iter().zip(&recording.output) {
+            adaptive.step(*input, *output).unwrap();
+        }
+    };
+    adaptive.freeze(true);
+    learn(&mut adaptive);
+    assert_eq!(adaptive.weights(), model.weights());
+    assert_eq!(adaptive.offset(), model.offset());
+    adaptive.freeze(false);
+    learn(&mut adaptive);
+    adaptive.keep();
+    let (kept, offset) = (adaptive.weights(), adaptive.offset());
+    // Fewer wrong readings than a trial takes.
+    let few = &recording.input[..100];
+    for input in few {
+        adaptive.step(*input, 50.0).unwrap();
+    }
+    assert_ne!(adaptive.weights(), kept);
+    adaptive.roll_back().unwrap();
+    assert_eq!((adaptive.weights(), adaptive.offset()), (kept, offset));
+    let all = [&recording.input[..], &recording.input, few].concat();
+    let free = adaptive.model().unwrap().simulate(&all).unwrap();
+    // Rounding of sums of 78 weights.
+    assert!((adaptive.output() - free[all.len() - 1]).abs() < 1e-9);
+}
+
+#[test]
 fn what_cannot_be_adapted_is_refused() {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
     let refused = |model: &Model, recording: &Recording, options: AdaptOptions| {
@@ -243,6 +275,14 @@ fn what_cannot_be_adapted_is_refused() {
     let plane = Plane::new(20.0, 80.0, 300).unwrap();
     let fine = Model::new(Operator::Mkp, plane, vec![1.0; 45_150], 0.0, Sign::Positive).unwrap();
     assert!(refused(&fine, &recording, by(Learner::LeastSquares)).contains("GiB"));
+}
+
+#[test]
+fn two_samples_have_no_thirds() {
+    let two = Recording::new(vec![20.0, 30.0], vec![5.0, 4.9]).unwrap();
+    let adapted = adapt(&wire(1.0, 0), &two, &by(Learner::Drift)).unwrap();
+    assert_eq!(adapted.outcomes.len(), 2);
+    assert!(adapted.thirds.is_empty());
 }
 
 /// A nickel-titanium-hafnium alloy at 200 MPa, and then at 400.

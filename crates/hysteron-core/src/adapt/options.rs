@@ -44,7 +44,8 @@ pub enum Method<T> {
     /// parameters, the offset among them: `O(K⁴)` for all weights, so for small `K` or for parts. It learns fastest, and with
     /// a correlation also where the input has not been.
     LeastSquares {
-        /// `λ`, above 0 and up to 1; 1 forgets nothing. Usual: 0.95 to 0.999.
+        /// `λ`, above 0 and up to 1; 1 forgets nothing. Usual: 0.99 to 0.9999; what it remembers
+        /// depends on `noise` and `spread` too.
         forgetting: T,
         /// Standard deviation of the error of a reading, in the output's unit; above 0.
         noise: T,

@@ -40,8 +40,16 @@ pub fn weights(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
         2 => (0..n)
             .map(|_| 10f64.powf(rng.random_range(-9.0..3.0)))
             .collect(),
-        _ => (0..n).map(|_| rng.random()).collect(),
+        _ => dense(rng, levels),
     }
+}
+
+pub fn dense(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
+    (0..operator_count(levels)).map(|_| rng.random()).collect()
+}
+
+pub fn unit_plane(levels: usize) -> Plane<f64> {
+    Plane::new(20.0, 80.0, levels).unwrap()
 }
 
 pub fn plane(rng: &mut impl Rng, levels: usize) -> Plane<f64> {

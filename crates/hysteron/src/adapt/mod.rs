@@ -28,7 +28,7 @@ pub struct Adapted {
     pub counts: OutcomeCounts,
     /// Errors over the whole recording.
     pub whole: Compared,
-    /// Errors over its first, second and last third, by the number of samples; those of a third are absent where it has none.
+    /// Errors over its first, second and last third, by the number of samples; none of fewer than three samples.
     pub thirds: Vec<Compared>,
     /// Errors of the last weights over the whole recording, run again from its start: they have seen all of it.
     pub again: Errors,
@@ -163,13 +163,14 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
         })
     };
     let count = recording.len();
-    let whole = compare(0, count).ok_or_else(|| Error::Fit("no samples".into()))?;
+    let whole = compare(0, count).ok_or_else(no_samples)?;
     let thirds = (0..3)
-        .filter_map(|n| compare(n * count / 3, (n + 1) * count / 3))
-        .collect();
+        .map(|n| compare(n * count / 3, (n + 1) * count / 3))
+        .collect::<Option<_>>()
+        .unwrap_or_default();
     let mut last = adaptive.model()?;
     let again = run_from(&last, from_on, recording)?;
-    let again = Errors::between(&recording.output, &again, |_| true).unwrap_or(whole.adapting);
+    let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
     last.fit = Some(summary(
         &last,
         &offline,
@@ -189,6 +190,10 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
         again,
         options: adaptation,
     })
+}
+
+fn no_samples() -> Error {
+    Error::Fit("no samples".into())
 }
 
 /// Whether the operators start on, and the outputs of the model left as it is.

@@ -32,7 +32,7 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares: on measured recordings the one that errs least.
+    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one that errs least on measured recordings.
     #[default]
     Drift,
 }

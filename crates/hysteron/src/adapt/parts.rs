@@ -1,6 +1,7 @@
 //! A few ways in which weights change under load and drift, in place of all weights.
 
 use crate::{Adaptation, Adaptive, Model, Result};
+use hysteron_core::operator_index;
 
 /// Levels by which the weights are shifted along the diagonal of the plane.
 const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
@@ -57,14 +58,15 @@ impl DriftParts {
     }
 
     fn shifted(model: &Model) -> Self {
-        let levels = model.plane().levels() as isize;
+        let levels = model.plane().levels();
         let part = |shift: &isize| {
             let mut part = vec![0.0; model.weights().len()];
             let places = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
             for ((i, j), &mu) in places.zip(model.weights()) {
-                let (i, j) = ((i + shift).max(1), j + shift);
+                let j = j.saturating_add_signed(*shift);
                 if (1..=levels).contains(&j) {
-                    part[(j * (j - 1) / 2 + i - 1) as usize] += mu;
+                    let i = i.saturating_add_signed(*shift).max(1);
+                    part[operator_index(i, j)] += mu;
                 }
             }
             part

@@ -69,7 +69,7 @@ impl Compensator {
     ///
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
-    pub fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
+    pub(super) fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
         let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
             (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
@@ -92,7 +92,7 @@ impl Compensator {
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         target: f64,
         heading: Option<Direction>,
@@ -129,7 +129,7 @@ impl Compensator {
 
     /// Lets the inverse set out from where the input was last seen. After a time without seeing it, the input may have been
     /// anywhere, and what was asked for in the meantime was not done.
-    pub fn set_out_again(&mut self) {
+    pub(super) fn set_out_again(&mut self) {
         self.wanted = None;
     }
 

@@ -1,7 +1,48 @@
 //! Control loops on a hysteresis model and its inverse.
 //!
 //! A [`Controller`] is a [`Scheme`] in motion; it runs on whatever implements [`Device`], real or simulated, and [`run`] does so
-//! on a [`SimulatedPlant`].
+//! on a [`SimulatedPlant`]. Times are in seconds, inputs and outputs in the model's units.
+//!
+//! An inverse in front of an actuator that it was identified from, and a PID that takes what is left:
+//!
+//! ```
+//! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Rest, Scheme, SimulatedPlant, run};
+//! use hysteron::plant::{PreisachPlant, PreisachPlantOptions};
+//! use hysteron::{FitOptions, Recording, fit};
+//!
+//! let new = || PreisachPlant::new(&PreisachPlantOptions::default()); // volts in, µm out
+//! let (mut plant, mut input, mut output) = (new()?, Vec::new(), Vec::new());
+//! for n in 0..4000 {
+//!     let phase = 0.05 * f64::from(n);
+//!     plant.write(75.0 - (75.0 - 0.015 * f64::from(n)) * phase.cos());
+//!     plant.advance(0.01);
+//!     let truth = plant.truth();
+//!     input.extend(truth.input);
+//!     output.push(truth.output);
+//! }
+//! let model = fit(&Recording::new(input, output)?, &FitOptions::default())?;
+//!
+//! let mut controller = Controller::new(Scheme {
+//!     interval_s: 0.01,
+//!     compensator: Some(Compensator::fixed(model)?),
+//!     rest: Rest::Hold,
+//!     tolerance: 0.5,
+//!     pid: Some(Gains { gain: 0.2, integral_s: 0.05, derivative_s: 0.0 }),
+//!     bias: 0.0,
+//!     commands: (0.0, 150.0),
+//!     drives: (0.0, 150.0),
+//!     inner: None,
+//!     filter_s: 0.01,
+//!     stuck_s: Some(0.15),
+//! })?;
+//! let reference: Vec<f64> = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos()).collect();
+//! let course = Course { reference: &reference, headings: &[], events: &[] };
+//! let trace = run(&mut new()?, &mut controller, &course)?;
+//! let late = 200..1000; // after the start
+//! let largest = late.map(|n| (trace.output[n] - reference[n]).abs()).fold(0.0, f64::max);
+//! assert!(largest < 3.0, "{largest} µm");
+//! # Ok::<(), hysteron::Error>(())
+//! ```
 
 mod compensator;
 mod controller;

@@ -6,14 +6,14 @@ use crate::{Direction, Result};
 /// Snapshots of adapted weights over a run.
 const SNAPSHOTS: usize = 60;
 
-/// What happens in a run: the reference, and what acts on the plant.
+/// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
 #[derive(Debug, Clone)]
 pub struct Course<'a> {
-    /// The reference at each sample.
+    /// The reference at each sample, in the output's unit.
     pub reference: &'a [f64],
-    /// Where it goes next at each sample ([`crate::headings`]).
+    /// Where it goes next at each sample ([`crate::headings`]), for *anticipate*; none where it is shorter than the reference.
     pub headings: &'a [Option<Direction>],
-    /// What happens before which sample, in order.
+    /// What happens before which sample, counted from 0, in order.
     pub events: &'a [(usize, Disturbance)],
 }
 

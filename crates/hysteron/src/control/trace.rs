@@ -9,7 +9,7 @@ pub struct LoopStatus {
     pub out_of_reach: bool,
     /// A reading was missing, or stuck: the loop went on without it.
     pub sensor_fault: bool,
-    /// The model's weights changed.
+    /// The model learned from the sample.
     pub adapted: bool,
 }
 

@@ -1,7 +1,7 @@
 //! What a scenario may say.
 
 use super::{AdaptationOptions, LoopOptions, MethodName, Reference, Scenario};
-use crate::{Adaptation, Error, Model, Plane, Result};
+use crate::{Adaptation, Error, Model, Result};
 
 /// Most levels of a model that is identified anew for each run.
 const MOST_LEVELS: usize = 100;
@@ -14,8 +14,6 @@ impl Scenario {
     /// # Errors
     /// [`Error::Scenario`] names the field.
     pub(super) fn check(&self) -> Result<()> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let from_zero = |value: f64| value >= 0.0 && value.is_finite();
         require(
             positive(self.interval_s),
             "interval_s",
@@ -45,7 +43,10 @@ impl Scenario {
             part.check(&format!("reference[{n}]"))?;
         }
         let references = self.references();
-        if let Some(n) = references.iter().position(|r| !(r.abs() < LARGEST)) {
+        if let Some(n) = references
+            .iter()
+            .position(|r| r.is_nan() || r.abs() >= LARGEST)
+        {
             let time = n as f64 * self.interval_s;
             return refuse(
                 "reference",
@@ -70,9 +71,8 @@ impl Scenario {
             tolerance,
             ..
         } = self.shared;
-        let zero = "must be zero or above";
-        require(from_zero(filter_s), "loop.filter_s", zero)?;
-        require(from_zero(tolerance), "loop.tolerance", zero)?;
+        require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
+        require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
         for name in [
             MethodName::Gradient,
             MethodName::Increments,
@@ -93,10 +93,9 @@ impl Scenario {
 
     fn check_model(&self) -> Result<()> {
         let options = &self.model;
-        let ((low, high), (heating, cooling)) = (options.range, options.rates);
-        if let Err(error) = Plane::new(low, high, options.levels) {
-            return refuse("model", &error.to_string());
-        }
+        options
+            .plane()
+            .or_else(|error| refuse("model", &error.to_string()))?;
         let fine = options.levels <= MOST_LEVELS;
         require(
             fine,
@@ -104,11 +103,10 @@ impl Scenario {
             &format!("more than {MOST_LEVELS} take minutes for each run"),
         )?;
         self.check_file()?;
-        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let (heating, cooling) = options.rates;
         let fine = positive(heating) && positive(cooling);
         require(fine, "model.rates", "both must be above zero")?;
-        let fine = options.smooth >= 0.0 && options.smooth.is_finite();
-        require(fine, "model.smooth", "must be zero or above")
+        require(from_zero(options.smooth), "model.smooth", NOT_NEGATIVE)
     }
 
     fn check_file(&self) -> Result<()> {
@@ -185,11 +183,7 @@ impl Reference {
             } => {
                 finite(amplitude, "amplitude")?;
                 finite(phase_deg, "phase_deg")?;
-                require(
-                    *period_s > 0.0 && period_s.is_finite(),
-                    "period_s",
-                    above_zero,
-                )
+                require(positive(*period_s), "period_s", above_zero)
             }
             Self::Trapezoid {
                 low,
@@ -199,9 +193,8 @@ impl Reference {
             } => {
                 finite(low, "low")?;
                 finite(high, "high")?;
-                require(*ramp_s > 0.0 && ramp_s.is_finite(), "ramp_s", above_zero)?;
-                let fine = *rest_s >= 0.0 && rest_s.is_finite();
-                require(fine, "rest_s", "must be zero or above")
+                require(positive(*ramp_s), "ramp_s", above_zero)?;
+                require(from_zero(*rest_s), "rest_s", NOT_NEGATIVE)
             }
             Self::Steps { points } | Self::Ramps { points } => {
                 require(!points.is_empty(), "points", "at least one is needed")?;
@@ -217,6 +210,16 @@ impl Reference {
             ),
         }
     }
+}
+
+const NOT_NEGATIVE: &str = "must be zero or above";
+
+fn positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
+}
+
+fn from_zero(value: f64) -> bool {
+    value >= 0.0 && value.is_finite()
 }
 
 fn require(fine: bool, field: &str, problem: &str) -> Result<()> {

@@ -1,6 +1,6 @@
 //! The experiment that a plant's model is identified from: the designed profile, run through the same loop and sensors.
 
-use super::Scenario;
+use super::{Reference, Scenario};
 use crate::control::{Controller, Scheme};
 use crate::design::{DesignOptions, Rates, design};
 use crate::{FitOptions, Model, Plane, Recording, Result, fit};
@@ -14,8 +14,12 @@ pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Resul
     if let Some(file) = &options.file {
         return Model::read(file);
     }
-    let plane = Plane::new(options.range.0, options.range.1, options.levels)?;
-    let recording = record(scenario, scheme, &profile(scenario, plane)?, seed)?;
+    let recording = record(
+        scenario,
+        scheme,
+        &profile(scenario, options.plane()?)?,
+        seed,
+    )?;
     let mut model = fit(
         &recording,
         &FitOptions {
@@ -42,15 +46,11 @@ fn profile(scenario: &Scenario, plane: Plane) -> Result<Vec<f64>> {
     )?;
     let last = planned.time.last().copied().unwrap_or(0.0);
     let count = (last / scenario.interval_s).ceil() as usize;
-    let at = |n: usize| {
-        let time = n as f64 * scenario.interval_s;
-        let after = planned.time.partition_point(|t| *t <= time);
-        let after = after.clamp(1, planned.time.len() - 1);
-        let (t, u) = (planned.time[after - 1], planned.time[after]);
-        let (x, z) = (planned.input[after - 1], planned.input[after]);
-        x + (z - x) * ((time - t) / (u - t)).clamp(0.0, 1.0)
-    };
-    Ok((0..=count).map(at).collect())
+    let points = planned.time.into_iter().zip(planned.input).collect();
+    let profile = Reference::Ramps { points };
+    Ok((0..=count)
+        .map(|n| profile.at(n as f64 * scenario.interval_s))
+        .collect())
 }
 
 fn record(scenario: &Scenario, scheme: &Scheme, profile: &[f64], seed: u64) -> Result<Recording> {

@@ -1,4 +1,7 @@
-//! Controllers compared on a **simulated** plant: a scenario goes in, scores and traces come out.
+//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come out of [`track`].
+//!
+//! For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with the
+//! same disturbances. The gains of all PIDs come from one test on the same plant.
 
 mod check;
 mod identify;
@@ -16,11 +19,11 @@ pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuni
 pub use plant::{Event, PlantOptions};
 pub use reference::Reference;
 pub use scenario::Scenario;
-pub use score::{ReversalLag, Score, Window, reversal_lags, windows};
+pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
 use crate::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
-use crate::{Adaptive, Model, Plane, Result, headings};
+use crate::{Adaptive, Error, Model, Result, headings};
 use rayon::prelude::*;
 
 /// Time for which a reading with noise does not stay the same to the last bit, in samples.
@@ -39,7 +42,7 @@ pub struct Comparison {
     pub traces: Vec<Trace>,
     /// The model identified for the first seed.
     pub model: Model,
-    /// Gains of the PID, by SIMC; none where no controller has one.
+    /// Gains of the PID, by the scenario's [`Tuning`]; none where no controller has one.
     pub gains: Option<Gains>,
     /// Gains of the loop inside, by SIMC; none where there is none.
     pub inner_gains: Option<Gains>,
@@ -48,7 +51,35 @@ pub struct Comparison {
 /// Runs every controller of the scenario with every seed. `done` is told of each finished run: how many of how many.
 ///
 /// # Errors
-/// As the parts: a plant outside its physics, a model that cannot be identified, a plant that does not answer.
+/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
+/// [`Error::Rig`] for a plant outside its physics, and as [`crate::fit`] for a model that cannot be identified.
+///
+/// ```
+/// use hysteron::track::{Scenario, track};
+/// let text = r#"
+/// title = "A sine on a simulated piezo-like actuator"
+/// duration_s = 8
+/// interval_s = 0.01
+/// settle_s = 2
+/// seeds = 1
+/// plant = { kind = "preisach", levels = 60 }
+/// model = { levels = 10, range = [8, 150], rates = [200, 200] }
+/// loop = { filter_s = 0.01, tolerance = 0.5 }
+/// controllers = ["pid", "inverse-pid"]
+/// [[reference]]
+/// kind = "constant"
+/// value = 36
+/// [[reference]]
+/// kind = "sine"
+/// amplitude = 24
+/// period_s = 2
+/// "#;
+/// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
+/// let comparison = track(&scenario, &|done, all| eprintln!("{done} of {all}"))?;
+/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
+/// assert!(inverse_pid < pid);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
 pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Comparison> {
     scenario.check()?;
     let mut scheme = base(scenario)?;
@@ -74,7 +105,7 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
         headings: &headings,
         events: &events,
     };
-    let windows = windows(scenario);
+    let windows = score::windows(scenario);
     let total = scenario.controllers.len() * scenario.seeds as usize;
     let finished = std::sync::atomic::AtomicUsize::new(0);
     type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
@@ -100,9 +131,10 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
     let of_controller = |k: usize| seeds.iter().map(|(_, runs)| runs[k].1.clone()).collect();
     let scores = (0..scenario.controllers.len()).map(of_controller).collect();
     let mut seeds = seeds.into_iter();
-    let Some((model, runs)) = seeds.next() else {
-        unreachable!("a scenario has a seed at least")
-    };
+    let (model, runs) = seeds.next().ok_or_else(|| Error::Scenario {
+        field: "seeds".into(),
+        problem: "at least one run is needed".into(),
+    })?;
     Ok(Comparison {
         controllers: scenario.controllers.clone(),
         windows,
@@ -116,8 +148,7 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
 
 /// What all controllers of a scenario share, without gains.
 fn base(scenario: &Scenario) -> Result<Scheme> {
-    let options = &scenario.model;
-    let plane = Plane::new(options.range.0, options.range.1, options.levels)?;
+    let plane = scenario.model.plane()?;
     let truth = scenario.plant.build(1)?.truth();
     let drives = scenario.plant.drives();
     let commands = match scenario.plant.heats() {

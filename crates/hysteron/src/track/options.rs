@@ -1,6 +1,6 @@
 //! How the plant's model is identified, what the loops share, and how they learn.
 
-use crate::{Adaptation, Method};
+use crate::{Adaptation, Method, Plane, Result};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -8,26 +8,36 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelOptions {
-    /// Number of levels.
+    /// Number of levels, from 2 to 100.
     pub levels: usize,
     /// Lowest and highest level, in the input's unit.
     pub range: (f64, f64),
-    /// Strength of the smoothness.
+    /// Strength of the smoothness, from 0; see [`FitOptions::smooth`](crate::FitOptions::smooth). Default 0.
     #[serde(default)]
     pub smooth: f64,
-    /// How fast the input rises and falls in the experiment, in its unit per second.
+    /// How fast the input rises and falls in the experiment, in its unit per second; both above 0.
     pub rates: (f64, f64),
-    /// A model file to use instead of an experiment.
+    /// A model file to use instead of an experiment. Its plane must be the one named here.
     pub file: Option<PathBuf>,
+}
+
+impl ModelOptions {
+    /// The plane.
+    ///
+    /// # Errors
+    /// As [`Plane::new`].
+    pub(super) fn plane(&self) -> Result<Plane> {
+        Ok(Plane::new(self.range.0, self.range.1, self.levels)?)
+    }
 }
 
 /// What all controllers share.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoopOptions {
-    /// Time constant of the filter on the readings. Default 0: none.
+    /// Time constant of the filter on the readings, s, from 0. Default 0: none.
     pub filter_s: f64,
-    /// Reversals of the reference up to this size are not followed by the inverse, in the output's unit. Default 0.
+    /// Reversals of the reference up to this size are not followed by the inverse, in the output's unit, from 0. Default 0.
     pub tolerance: f64,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,
@@ -44,31 +54,31 @@ pub enum Tuning {
     Step,
 }
 
-/// How the adaptive controllers learn; see [`Adaptation`].
+/// How the adaptive controllers learn; ranges as for [`Adaptation`] and [`Method`].
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AdaptationOptions {
-    /// The method.
+    /// The method. Default least squares.
     pub method: MethodName,
-    /// Gain of the gradients.
+    /// Gain of the gradient methods. Default 0.3.
     pub gain: f64,
-    /// Levels between two updates of `increments`.
+    /// Levels between two updates of `increments`. Default 1.
     pub span: f64,
-    /// Forgetting factor of `least-squares`.
+    /// Forgetting factor of `least-squares`. Default 0.9995.
     pub forgetting: f64,
-    /// Standard deviation of the error of a reading.
+    /// Standard deviation of the error of a reading, in the output's unit. Default 0.3.
     pub noise: f64,
-    /// Standard deviation by which a weight may differ from the off-line one.
+    /// Standard deviation by which a weight may differ from the off-line one, in the output's unit. Default 0.05.
     pub spread: f64,
-    /// Distance, in levels, over which deviations go together.
+    /// Distance, in levels, over which deviations of weights go together. Default 3.
     pub correlation: f64,
-    /// How freely the offset moves, beside one weight.
+    /// How freely the offset moves, beside one weight. Default 10.
     pub offset_share: f64,
-    /// Errors up to this are noise.
+    /// Errors up to this are noise, in the output's unit. Default 0.
     pub dead_zone: f64,
-    /// Share by which weights return to the off-line ones with each update.
+    /// Share by which weights return to the off-line ones with each update. Default 0.
     pub leakage: f64,
-    /// Levels that the input has to move.
+    /// Levels that the input has to move before a sample is learned from. Default 0.02.
     pub movement: f64,
 }
 

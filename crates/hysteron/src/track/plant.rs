@@ -21,7 +21,7 @@ pub enum PlantOptions {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Event {
-    /// When.
+    /// When, s from the start.
     pub at_s: f64,
     /// The load becomes this, N.
     pub load_n: Option<f64>,

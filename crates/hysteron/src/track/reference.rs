@@ -102,7 +102,7 @@ impl Reference {
             Self::Ramps { points } => {
                 let passed = points.partition_point(|(t, _)| *t <= time);
                 match (passed.checked_sub(1).map(|n| points[n]), points.get(passed)) {
-                    (Some((t, y)), Some((u, z))) => y + (z - y) * (time - t) / (u - t),
+                    (Some((t, y)), Some((u, z))) => y + (z - y) * ((time - t) / (u - t)),
                     (Some((_, y)), None) | (None, Some(&(_, y))) => y,
                     (None, None) => 0.0,
                 }

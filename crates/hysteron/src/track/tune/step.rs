@@ -40,8 +40,7 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let slope = rise(steepest) / (wide as f64 * scenario.interval_s);
     let (level, _) = steady(&temperature[..LEVEL]);
     // Less than a level in the whole test is noise, or a heater that cannot do what the model is asked for.
-    let (bottom, top) = scenario.model.range;
-    let one = (top - bottom) / (scenario.model.levels - 1) as f64;
+    let one = scenario.model.plane()?.step();
     if steady(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0 {
         return Err(no_answer("temperature", SAMPLES, scenario));
     }
@@ -61,9 +60,8 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
 /// Gains of the feedback of the output.
 pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
     let middle = middle(scenario);
-    let options = &scenario.model;
-    let step = LEVELS * (options.range.1 - options.range.0) / (options.levels - 1) as f64;
-    let rate = options.rates.0 * scenario.interval_s;
+    let step = LEVELS * scenario.model.plane()?.step();
+    let rate = scenario.model.rates.0 * scenario.interval_s;
     let mean = average(scenario, scheme, |command, n, output| {
         // Up to the middle, wait there, step.
         if n == 0 && output < middle && command < scheme.commands.1 {
