@@ -93,7 +93,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
     line("last weights, over all of it again", &again);
     let counts = &adapted.counts;
     let drift = &adapted.drift;
-    [
+    let mut lines = vec![
         format!(
             "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} times rolled back",
             args.out.display(),
@@ -111,6 +111,12 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
             text::with_unit(drift.offset.1, output),
             100.0 * drift.moved
         ),
-    ]
-    .join("\n")
+    ];
+    if counts.outside > 0 {
+        lines.push(format!("{} inputs outside the plane", counts.outside));
+    }
+    if counts.learned == 0 {
+        lines.push("nothing was learned: the model is the one that it was".into());
+    }
+    lines.join("\n")
 }

@@ -294,7 +294,10 @@ fn a_plant_that_does_not_answer_is_refused() {
             let more = format!("{plant}\n{shared}\ncontrollers = [\"pid\"]");
             let refused = track(&scenario(&[base, &more, sine]), &|_, _| ()).unwrap_err();
             assert!(matches!(refused, Error::Scenario { .. }), "{refused}");
-            assert!(refused.to_string().contains("does not answer"), "{refused}");
+            assert!(
+                refused.to_string().contains("no PID can be tuned"),
+                "{refused}"
+            );
         }
     }
 }

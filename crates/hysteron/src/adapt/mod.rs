@@ -58,6 +58,8 @@ pub struct OutcomeCounts {
     pub at_rest: usize,
     /// Times the weights went back to the last good ones.
     pub rolled_back: usize,
+    /// Inputs outside the plane, taken as its end; they are among the others too.
+    pub outside: usize,
 }
 
 /// How far a model has gone from the one that it was.
@@ -130,6 +132,7 @@ fn word(outcome: Outcome) -> &'static str {
 /// options out of range and negative weights.
 pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
     recording.check()?;
+    refuse_unusable(model)?;
     let adaptation = options.adaptation(model, recording)?;
     let mut adaptive = match options.learner {
         Learner::Drift => DriftParts::of(model, options.load)?.adaptive(adaptation)?,
@@ -145,6 +148,7 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
     let mut counts = OutcomeCounts::default();
     for (&input, &measured) in recording.input.iter().zip(&recording.output) {
         let learning = adaptive.step(input, measured)?;
+        counts.outside += usize::from(learning.clipped.is_some());
         output_model.push(learning.output);
         outcomes.push(learning.outcome);
         match learning.outcome {
@@ -190,6 +194,17 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
         again,
         options: adaptation,
     })
+}
+
+/// Weights whose squares are no numbers leave errors that are none, and without any there is nothing to take shares of.
+fn refuse_unusable(model: &Model) -> Result<()> {
+    let size: f64 = model.weights().iter().map(|mu| mu * mu).sum();
+    match size.is_finite() && size > 0.0 {
+        true => Ok(()),
+        false => Err(Error::Fit(
+            "the model's weights are all zero, or too large to be squared: there is nothing to adapt".into(),
+        )),
+    }
 }
 
 fn no_samples() -> Error {

@@ -26,11 +26,11 @@ impl Scenario {
             "duration_s",
             "from 10 to a million samples of interval_s are needed",
         )?;
-        let fine = self.settle_s >= 0.0 && self.settle_s < 0.9 * self.duration_s;
+        let fine = self.settle_s >= 0.0 && self.settle_s <= self.duration_s - 4.0 * self.interval_s;
         require(
             fine,
             "settle_s",
-            "must lie between 0 and nine tenths of the duration",
+            "must lie between 0 and the duration, with four samples left at least",
         )?;
         require(
             (1..=1000).contains(&self.seeds),

@@ -194,7 +194,7 @@ pub fn reversal_lags(trace: &Trace, from_s: f64, to_s: f64) -> Vec<ReversalLag> 
         let answered = (rested.unwrap_or(extreme)..=next).find(|&n| {
             let output = up(trace.output[n]);
             furthest = furthest.min(output);
-            output - furthest >= band
+            output - furthest > band
         });
         lags.push(ReversalLag {
             time: trace.time[rested.unwrap_or(extreme)],
