@@ -1,10 +1,9 @@
 //! Adaptation over memory that the caller owns.
 
 use crate::fault::{Result, guard_plain};
-use crate::memory::{
-    HysteronCoreModel, HysteronCoreState, Marked, Room, marked, object, object_ref, size,
-};
+use crate::memory::{HysteronCoreModel, HysteronCoreState};
 use crate::pointer::{Out, array, check};
+use crate::room::{Marked, Room, marked, object, object_ref, size};
 use crate::types::{HysteronAdaptation, HysteronLearning};
 use hysteron_core::{Adaptation, Estimator, MAX_LEVELS, estimator_len};
 use std::ffi::c_void;

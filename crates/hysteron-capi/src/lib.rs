@@ -20,6 +20,7 @@ mod handles;
 mod memory;
 mod model;
 mod pointer;
+mod room;
 mod state;
 mod types;
 

@@ -32,41 +32,44 @@ fn run(command: &mut Command) {
     );
 }
 
-/// The program linked with the static and with the shared library; none without a C compiler.
-fn programs(folder: &Path) -> Option<[PathBuf; 2]> {
-    if !has("cc") {
-        return None;
-    }
-    // Tests lie beside the libraries that cargo builds for them.
+/// Compiles strictly and links with one of the libraries, which cargo builds beside the tests.
+fn compile(sources: &[PathBuf], shared: bool, program: &Path) {
     let built = std::env::current_exe()
         .unwrap()
         .parent()
         .unwrap()
         .to_owned();
-    let compile = |name: &str| {
-        let program = folder.join(name);
-        let mut cc = Command::new("cc");
-        cc.args([
-            "-std=c99",
-            "-Wall",
-            "-Wextra",
-            "-Wpedantic",
-            "-Werror",
-            "-g",
-        ]);
-        cc.arg("-I").arg(here("include"));
-        cc.args(SOURCES.map(|name| here("tests/c").join(name)));
-        if name == "static" {
-            cc.arg(built.join("libhysteron_capi.a"));
-        } else {
-            cc.arg(built.join("libhysteron_capi.so"));
-            cc.arg(format!("-Wl,-rpath,{}", built.display()));
-        }
-        cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
-        run(&mut cc);
-        program
-    };
-    Some([compile("static"), compile("shared")])
+    let mut cc = Command::new("cc");
+    cc.args([
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "-g",
+    ]);
+    cc.arg("-I").arg(here("include")).args(sources);
+    if shared {
+        let (start, end) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        cc.arg(built.join(format!("{start}hysteron_capi{end}")));
+        cc.arg(format!("-Wl,-rpath,{}", built.display()));
+    } else {
+        cc.arg(built.join("libhysteron_capi.a"));
+    }
+    cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(program);
+    run(&mut cc);
+}
+
+/// The program linked with the static and with the shared library; none without a C compiler.
+fn programs(folder: &Path) -> Option<[PathBuf; 2]> {
+    if !has("cc") {
+        return None;
+    }
+    let sources = SOURCES.map(|name| here("tests/c").join(name));
+    let programs = ["static", "shared"].map(|name| folder.join(name));
+    compile(&sources, false, &programs[0]);
+    compile(&sources, true, &programs[1]);
+    Some(programs)
 }
 
 /// A folder that is left to the system to clear, compiled into once for all tests.
@@ -178,4 +181,35 @@ fn a_wrong_vector_is_noticed() {
         .output()
         .unwrap();
     assert!(!output.status.success());
+}
+
+#[test]
+fn the_readme_in_c() {
+    if !has("cc") {
+        return;
+    }
+    let readme = std::fs::read_to_string(here("../../README.md")).unwrap();
+    let block = readme
+        .split("```c\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (source, program) = (folder.path().join("spring.c"), folder.path().join("spring"));
+    std::fs::write(&source, block).unwrap();
+    compile(&[source], false, &program);
+    let there = || {
+        let mut command = Command::new(&program);
+        command.current_dir(folder.path());
+        command
+    };
+    assert!(
+        !there().status().unwrap().success(),
+        "without the model it says why"
+    );
+    let (model, _) = vectors(folder.path()).swap_remove(0);
+    std::fs::rename(model, folder.path().join("spring.json")).unwrap();
+    run(&mut there());
 }

@@ -77,6 +77,17 @@ static void save_and_restore(void) {
     OK(hysteron_core_step(model, other, 60.0, &b, NULL));
     REQUIRE(memcmp(&a, &b, sizeof a) == 0);
 
+    /* A state of another model. */
+    {
+        static const double larger[10] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+        struct HysteronCoreModel *foreign;
+        size_t bytes = hysteron_core_model_size(4, 1);
+        void *place = room(bytes);
+        OK(hysteron_core_model_init(place, bytes, HYSTERON_KP, 20.0, 80.0, 4, larger, 10, &foreign));
+        REQUIRE(hysteron_core_step(foreign, state, 60.0, &a, NULL) == HYSTERON_STATE_MISMATCH);
+        free(place);
+    }
+
     /* Too little, nothing, not an object, not in its place. */
     REQUIRE(hysteron_core_state_init(model, memory[2], state_bytes - 1, &other) == HYSTERON_MEMORY_TOO_SMALL);
     REQUIRE(hysteron_core_state_init(model, NULL, state_bytes, &other) == HYSTERON_NULL);
