@@ -464,7 +464,8 @@ const char *hysteron_version(void);
 size_t hysteron_core_estimator_size(size_t levels, const struct HysteronAdaptation *options);
 
 /**
- * Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too.
+ * Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too:
+ * states made before are to be brought up to date with `hysteron_core_state_rebase`, or made after this.
  */
 int32_t hysteron_core_estimator_init(struct HysteronCoreModel *model,
                                      const struct HysteronAdaptation *options,

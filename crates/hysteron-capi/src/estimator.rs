@@ -40,7 +40,8 @@ pub unsafe extern "C" fn hysteron_core_estimator_size(
     }
 }
 
-/// Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too.
+/// Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too:
+/// states made before are to be brought up to date with `hysteron_core_state_rebase`, or made after this.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_init(
     model: *mut HysteronCoreModel,
