@@ -145,15 +145,16 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         }
         let plane = self.model.plane();
         let total = self.model.total();
-        let wanted = match self.model.operator() {
-            Operator::Mkp => target,
-            Operator::Kp | Operator::Relay => T::HALF * target + T::HALF * total,
+        // From the operators' own outputs to `Σ μ γ`, of which they are twice as much.
+        let (wanted, unit) = match self.model.operator() {
+            Operator::Mkp => (target, T::ONE),
+            Operator::Kp | Operator::Relay => (T::HALF * target + T::HALF * total, T::HALF),
         };
         let (heading, tolerance) = match policy {
             Policy::Hold { tolerance } => (None, tolerance),
             Policy::Anticipate { heading, tolerance } => (Some(heading), tolerance),
         };
-        let tolerance = tolerance.larger(T::ZERO); // NaN too
+        let tolerance = unit * tolerance.larger(T::ZERO); // NaN too
         let reach = tolerance.larger(self.slack);
         if wanted > total + reach {
             return Ok(Solution {

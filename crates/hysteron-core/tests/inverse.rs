@@ -239,20 +239,23 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
 #[test]
 fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
     let (plane, weights) = dead_band();
-    let (model, mut state) = build(plane, Operator::Mkp, &weights);
-    let inverse = model.inverse().unwrap();
-    let hold = Policy::Hold { tolerance: 0.3 };
-    let up = inverse.step(&mut state, 2.0, hold).unwrap();
-    // Back by less: the input stays. On by as little: it follows. Back by more: it crosses.
-    assert_eq!(inverse.step(&mut state, 1.8, hold).unwrap().input, up.input);
-    assert!(inverse.step(&mut state, 2.1, hold).unwrap().input > up.input);
-    let down = inverse.step(&mut state, 1.7, hold).unwrap();
-    assert!(down.input < up.input - 30.0, "{down:?}");
-    assert!((model.output(&state) - 1.7).abs() < 1e-12);
-    assert_eq!(
-        inverse.step(&mut state, 1.9, hold).unwrap().input,
-        down.input
-    );
+    // In the output's unit, of which KP has twice as much.
+    for (operator, unit, offset) in [(Operator::Mkp, 1.0, 0.0), (Operator::Kp, 2.0, -3.0)] {
+        let (model, mut state) = build(plane, operator, &weights);
+        let inverse = model.inverse().unwrap();
+        let hold = Policy::Hold {
+            tolerance: 0.3 * unit,
+        };
+        let mut to = |sum: f64| inverse.step(&mut state, unit * sum + offset, hold).unwrap();
+        let up = to(2.0);
+        // Back by less: the input stays. On by as little: it follows. Back by more, though not by twice: it crosses.
+        assert_eq!(to(1.8).input, up.input);
+        assert!(to(2.1).input > up.input);
+        let down = to(1.7);
+        assert!(down.input < up.input - 30.0, "{operator:?}: {down:?}");
+        assert_eq!(to(1.9).input, down.input);
+        assert!((model.output(&state) - (unit * 1.7 + offset)).abs() < 1e-12);
+    }
 }
 
 #[test]

@@ -168,6 +168,27 @@ impl Model {
         state
     }
 
+    /// The state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]), bit for bit.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for turning points that do not nest and for an input that is not finite.
+    ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// # let plane = Plane::new(20.0, 80.0, 3)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+    /// let mut state = model.start();
+    /// model.run(&mut state, &[70.0, 40.0, 55.0], &mut [0.0; 3])?;
+    /// let saved: Vec<f64> = state.turning_points().collect();
+    /// assert_eq!(model.restore(&saved, state.input())?, state);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    pub fn restore(&self, turning_points: &[f64], input: f64) -> Result<State> {
+        let mut state = self.start();
+        self.core.restore(&mut state, turning_points, input)?;
+        Ok(state)
+    }
+
     /// Moves `state` to `input` and returns the output, and whether the input was outside the plane.
     ///
     /// # Errors

@@ -1,0 +1,167 @@
+//! A model that learns, by handle.
+
+use crate::fault::{Result, guard};
+use crate::handles::Table;
+use crate::model::MODELS;
+use crate::pointer::{Out, check};
+use crate::types::{HysteronAdaptation, HysteronLearning, policy, status as status_constant};
+use hysteron::{Adaptation, Adaptive, State};
+use std::sync::{Mutex, PoisonError};
+
+/// The model that follows the plant, and the state of the inverse in front of it: reference and plant are not in
+/// the same place.
+struct Learner {
+    adaptive: Adaptive,
+    inverse: State,
+}
+
+static LEARNERS: Table<Mutex<Learner>> = Table::new(3);
+
+fn with(adaptive: u64, work: impl FnOnce(&mut Learner) -> Result<()>) -> Result<()> {
+    let learner = LEARNERS.get(adaptive, "adaptive")?;
+    let mut learner = learner.lock().unwrap_or_else(PoisonError::into_inner);
+    work(&mut learner)
+}
+
+/// Adapts all weights of `model`, and its offset; `options` may be null for the usual ones.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_new(
+    model: u64,
+    options: *const HysteronAdaptation,
+    adaptive: *mut u64,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let out = unsafe { Out::new(adaptive, "adaptive")? };
+        let options = if options.is_null() {
+            Adaptation::default()
+        } else {
+            check(options, "options")?;
+            // SAFETY: the contract of the crate; every bit pattern is a value of each field.
+            unsafe { options.read() }.adaptation()?
+        };
+        let model = MODELS.get(model, "model")?;
+        let adaptive = Adaptive::new(&model, options)?;
+        let inverse = adaptive.state().clone();
+        out.set(LEARNERS.insert(Mutex::new(Learner { adaptive, inverse }))?);
+        Ok(())
+    })
+}
+
+/// Frees it.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_free(adaptive: u64) -> i32 {
+    guard(|| LEARNERS.remove(adaptive, "adaptive"))
+}
+
+/// Moves to `input`, tells the output expected there, and learns from the one `measured`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_step(
+    adaptive: u64,
+    input: f64,
+    measured: f64,
+    learning: *mut HysteronLearning,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let learning = unsafe { Out::new(learning, "learning")? };
+        with(adaptive, |learner| {
+            learning.set(learner.adaptive.step(input, measured)?.into());
+            Ok(())
+        })
+    })
+}
+
+/// Moves to `input` and tells the output expected there, without learning.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_predict(
+    adaptive: u64,
+    input: f64,
+    output: *mut f64,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let output = unsafe { Out::new(output, "output")? };
+        with(adaptive, |learner| {
+            output.set(learner.adaptive.predict(input)?);
+            Ok(())
+        })
+    })
+}
+
+/// As `hysteron_inverse_step`, by the weights as they are now. It moves a state of its own, apart from the one that follows the
+/// plant, which begins with all operators off.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
+    adaptive: u64,
+    target: f64,
+    heading: i32,
+    tolerance: f64,
+    input: *mut f64,
+    status: *mut i32,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
+        let policy = policy(heading, tolerance)?;
+        with(adaptive, |Learner { adaptive, inverse }| {
+            let solution = adaptive.solve(inverse, target, policy)?;
+            input.set(solution.input);
+            status.set(status_constant(solution.status));
+            Ok(())
+        })
+    })
+}
+
+/// The model as it is now: a model of its own, to be freed with `hysteron_model_free`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let model = unsafe { Out::new(model, "model")? };
+        with(adaptive, |learner| {
+            model.set(MODELS.insert(learner.adaptive.model()?)?);
+            Ok(())
+        })
+    })
+}
+
+/// All operators off, those of the inverse too; the weights stay.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_reset(adaptive: u64) -> i32 {
+    guard(|| {
+        with(adaptive, |Learner { adaptive, inverse }| {
+            adaptive.reset()?;
+            inverse.clone_from(adaptive.state());
+            Ok(())
+        })
+    })
+}
+
+/// While frozen (not 0), nothing is learned.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_freeze(adaptive: u64, frozen: i32) -> i32 {
+    guard(|| {
+        with(adaptive, |learner| {
+            learner.adaptive.freeze(frozen != 0);
+            Ok(())
+        })
+    })
+}
+
+/// Takes the present weights as the last good ones.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_keep(adaptive: u64) -> i32 {
+    guard(|| {
+        with(adaptive, |learner| {
+            learner.adaptive.keep();
+            Ok(())
+        })
+    })
+}
+
+/// Goes back to the last good weights.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_adaptive_roll_back(adaptive: u64) -> i32 {
+    guard(|| with(adaptive, |learner| Ok(learner.adaptive.roll_back()?)))
+}

@@ -1,0 +1,151 @@
+//! Adaptation over memory that the caller owns.
+
+use crate::fault::{Result, guard_plain};
+use crate::memory::{HysteronCoreModel, HysteronCoreState};
+use crate::pointer::{Out, array, check};
+use crate::room::{Marked, Room, marked, object, object_ref, size};
+use crate::types::{HysteronAdaptation, HysteronLearning};
+use hysteron_core::{Adaptation, Estimator, MAX_LEVELS, estimator_len};
+use std::ffi::c_void;
+
+/// An estimator in the caller's memory.
+pub struct HysteronCoreEstimator {
+    mark: u64,
+    estimator: Estimator<f64, &'static mut [f64]>,
+}
+
+marked!(HysteronCoreEstimator, 0x6879_7374_6573_7469);
+
+/// # Safety
+/// `options` is null or valid for a read.
+unsafe fn taken(options: *const HysteronAdaptation) -> Result<Adaptation<f64>> {
+    check(options, "options")?;
+    // SAFETY: the caller's promise; every bit pattern is a value of each field.
+    unsafe { options.read() }.adaptation()
+}
+
+/// Bytes for an estimator of a model of `levels` levels; 0 where there is none. Aligned as a `uint64_t` is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_estimator_size(
+    levels: usize,
+    options: *const HysteronAdaptation,
+) -> usize {
+    // SAFETY: the contract of the crate.
+    match unsafe { taken(options) } {
+        Ok(options) if (2..=MAX_LEVELS).contains(&levels) => {
+            let count = estimator_len(levels, options.method);
+            size::<HysteronCoreEstimator, f64>(count).unwrap_or(0)
+        }
+        _ => 0,
+    }
+}
+
+/// Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too:
+/// states made before are to be brought up to date with `hysteron_core_state_rebase`, or made after this.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_estimator_init(
+    model: *mut HysteronCoreModel,
+    options: *const HysteronAdaptation,
+    weights: *const f64,
+    count: usize,
+    offset: f64,
+    memory: *mut c_void,
+    bytes: usize,
+    estimator: *mut *mut HysteronCoreEstimator,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let (model, options) = unsafe { (&mut object(model, "model")?.model, taken(options)?) };
+        // SAFETY: the contract of the crate.
+        let (weights, out) = unsafe {
+            (
+                array(weights, count, "weights")?,
+                Out::new(estimator, "estimator")?,
+            )
+        };
+        let numbers = estimator_len(model.plane().levels(), options.method);
+        // SAFETY: the contract of the crate.
+        let (room, numbers) = unsafe { Room::cut(memory, bytes, numbers)? };
+        let estimator = Estimator::new(options, model, weights, offset, numbers)?;
+        let mark = HysteronCoreEstimator::MARK;
+        room.finish(HysteronCoreEstimator { mark, estimator }, &out);
+        Ok(())
+    })
+}
+
+/// Moves `state` to `input`, tells the output that `model` and offset expect there, and learns from the one `measured`. A state
+/// made before the weights changed is brought up to date; others of this model are refused until then.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_estimator_step(
+    estimator: *mut HysteronCoreEstimator,
+    model: *mut HysteronCoreModel,
+    state: *mut HysteronCoreState,
+    input: f64,
+    measured: f64,
+    learning: *mut HysteronLearning,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let (estimator, model) =
+            unsafe { (object(estimator, "estimator")?, object(model, "model")?) };
+        // SAFETY: the contract of the crate.
+        let (state, learning) =
+            unsafe { (object(state, "state")?, Out::new(learning, "learning")?) };
+        let (model, state) = (&mut model.model, &mut state.state);
+        learning.set(
+            estimator
+                .estimator
+                .step(model, state, input, measured)?
+                .into(),
+        );
+        Ok(())
+    })
+}
+
+/// The offset as it is now.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_estimator_offset(
+    estimator: *const HysteronCoreEstimator,
+    offset: *mut f64,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let (estimator, offset) = unsafe {
+            (
+                object_ref(estimator, "estimator")?,
+                Out::new(offset, "offset")?,
+            )
+        };
+        offset.set(estimator.estimator.offset());
+        Ok(())
+    })
+}
+
+/// While frozen (not 0), nothing is learned.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_estimator_freeze(
+    estimator: *mut HysteronCoreEstimator,
+    frozen: i32,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        unsafe { object(estimator, "estimator")? }
+            .estimator
+            .freeze(frozen != 0);
+        Ok(())
+    })
+}
+
+/// Brings a state of `model` up to date with weights that an estimator has changed: for the state of an inverse beside the
+/// one that follows the plant.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_state_rebase(
+    model: *const HysteronCoreModel,
+    state: *mut HysteronCoreState,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
+        Ok(model.model.rebase(&mut state.state)?)
+    })
+}

@@ -1,0 +1,108 @@
+//! From results to status codes, and the detail of the last failure.
+
+use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
+use std::cell::RefCell;
+use std::ffi::{CStr, c_char};
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Why a call failed.
+pub(crate) enum Fault {
+    /// The call itself is wrong: the code, and the argument.
+    Call(i32, &'static str),
+    /// The library refused.
+    Library(hysteron::Error),
+}
+
+pub(crate) type Result<T> = std::result::Result<T, Fault>;
+
+impl Fault {
+    fn code(&self) -> i32 {
+        match self {
+            Fault::Call(code, _) => *code,
+            Fault::Library(error) => error.code(),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Fault::Call(code, argument) => {
+                // SAFETY: the function returns a constant text that ends with a zero byte.
+                let text = unsafe { CStr::from_ptr(hysteron_error_message(*code)) };
+                write!(f, "`{argument}`: {}", text.to_string_lossy())
+            }
+            Fault::Library(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: Into<hysteron::Error>> From<E> for Fault {
+    fn from(error: E) -> Self {
+        Fault::Library(error.into())
+    }
+}
+
+thread_local! {
+    static LAST: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Runs a function of the form with handles, which may allocate: a failure leaves its text.
+pub(crate) fn guard(work: impl FnOnce() -> Result<()>) -> i32 {
+    let (code, text) = match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => return HYSTERON_OK,
+        Ok(Err(fault)) => (fault.code(), fault.to_string()),
+        Err(_) => (HYSTERON_INTERNAL, "the library panicked".into()),
+    };
+    // While a thread ends there is no place for the text any more.
+    let _ = LAST.try_with(|last| last.replace(text));
+    code
+}
+
+/// Runs a function of the form without allocation: the code is all it leaves.
+pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => HYSTERON_OK,
+        Ok(Err(fault)) => fault.code(),
+        Err(_) => HYSTERON_INTERNAL,
+    }
+}
+
+/// What was wrong with the last call that failed in this thread (functions `hysteron_core_…` leave no text).
+///
+/// Copies as much as fits into `text`, of `size` bytes, with a zero byte at the end, and returns the bytes that the whole
+/// takes with that zero. With a null pointer it only tells the size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_last_error(text: *mut c_char, size: usize) -> usize {
+    let copy = |last: &RefCell<String>| {
+        let last = last.borrow();
+        if !text.is_null() && size > 0 {
+            let mut length = last.len().min(size - 1);
+            while !last.is_char_boundary(length) {
+                length -= 1;
+            }
+            // SAFETY: `text` has `size` bytes by contract, more than `length`, and does not lie in a private string.
+            unsafe {
+                last.as_ptr()
+                    .cast::<c_char>()
+                    .copy_to_nonoverlapping(text, length);
+                text.add(length).write(0);
+            }
+        }
+        last.len() + 1
+    };
+    LAST.try_with(copy).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_a_status() {
+        #[allow(clippy::panic)]
+        let code = guard(|| panic!("meant to be"));
+        assert_eq!(code, HYSTERON_INTERNAL);
+    }
+}

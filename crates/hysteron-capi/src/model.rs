@@ -1,0 +1,115 @@
+//! Models by handle.
+
+use crate::fault::guard;
+use crate::handles::Table;
+use crate::pointer::{Out, array, copy_out, text};
+use crate::types::{HysteronModelInfo, operator, operator_kind as kind_of, sign as sign_of};
+use hysteron::{Model, Plane};
+use std::ffi::c_char;
+use std::path::Path;
+
+pub(crate) static MODELS: Table<Model> = Table::new(1);
+
+/// Reads a model file. The handle is to be freed with `hysteron_model_free`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (path, model) = unsafe { (text(path, "path")?, Out::new(model, "model")?) };
+        model.set(MODELS.insert(Model::read(Path::new(path))?)?);
+        Ok(())
+    })
+}
+
+/// Takes the text of a model file.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (json, model) = unsafe { (text(json, "json")?, Out::new(model, "model")?) };
+        model.set(MODELS.insert(Model::from_json(json)?)?);
+        Ok(())
+    })
+}
+
+/// A model of `count = K(K + 1)/2` weights, row by row: `j = 1…K`, within a row `i = 1…j`; `K` levels from `min` to `max`.
+/// Its output is `offset + sign · Σ μ γ`, the sign 1 or −1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_new(
+    operator_kind: i32,
+    min: f64,
+    max: f64,
+    levels: usize,
+    weights: *const f64,
+    count: usize,
+    offset: f64,
+    sign: i32,
+    model: *mut u64,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (weights, model) =
+            unsafe { (array(weights, count, "weights")?, Out::new(model, "model")?) };
+        let plane = Plane::new(min, max, levels)?;
+        let (operator, sign) = (operator(operator_kind)?, sign_of(sign)?);
+        model.set(MODELS.insert(Model::new(operator, plane, weights.to_vec(), offset, sign)?)?);
+        Ok(())
+    })
+}
+
+/// The model at one load, of a model that depends on a load: a model of its own.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_at_load(model: u64, load: f64, at_load: *mut u64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let at_load = unsafe { Out::new(at_load, "at_load")? };
+        at_load.set(MODELS.insert(MODELS.get(model, "model")?.at_load(load)?)?);
+        Ok(())
+    })
+}
+
+/// Frees a model. States made of it stay as they are.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_model_free(model: u64) -> i32 {
+    guard(|| MODELS.remove(model, "model"))
+}
+
+/// What the model is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronModelInfo) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let info = unsafe { Out::new(info, "info")? };
+        let model = MODELS.get(model, "model")?;
+        let (plane, (output_off, output_on)) = (model.plane(), model.output_range());
+        info.set(HysteronModelInfo {
+            operator_kind: kind_of(model.operator()),
+            sign: model.sign().factor() as i32,
+            levels: plane.levels(),
+            weights: model.weights().len(),
+            min: plane.min(),
+            max: plane.max(),
+            bottom: plane.bottom(),
+            offset: model.offset(),
+            output_off,
+            output_on,
+        });
+        Ok(())
+    })
+}
+
+/// Copies the weights. `count` becomes their number, also where `capacity` is too small for them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_weights(
+    model: u64,
+    weights: *mut f64,
+    capacity: usize,
+    count: *mut usize,
+) -> i32 {
+    guard(|| {
+        let model = MODELS.get(model, "model")?;
+        let values = model.weights().iter().copied();
+        // SAFETY: the contract of the crate.
+        unsafe { copy_out(values, (weights, capacity), &Out::new(count, "count")?) }
+    })
+}

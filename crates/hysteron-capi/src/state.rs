@@ -1,0 +1,193 @@
+//! States by handle: forward, inverse, save and restore.
+
+use crate::fault::{Fault, Result, guard};
+use crate::handles::Table;
+use crate::model::MODELS;
+use crate::pointer::{Out, apart, array, array_out, copy_out, optional};
+use crate::types::{clipped as clipped_constant, policy, status as status_constant};
+use hysteron::{Error, Model, State};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A state, with the model that it is one of.
+struct Running {
+    model: Arc<Model>,
+    state: Mutex<State>,
+}
+
+impl Running {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+static STATES: Table<Running> = Table::new(2);
+
+/// A state of `model`, all operators off. It keeps what it needs of the model, which may be freed before it.
+///
+/// A model that depends on a load, or has a thermal body in front, has no state: take it at one load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let out = unsafe { Out::new(state, "state")? };
+        let model = MODELS.get(model, "model")?;
+        runs_by_itself(&model)?;
+        let state = Mutex::new(model.start());
+        out.set(STATES.insert(Running { model, state })?);
+        Ok(())
+    })
+}
+
+fn runs_by_itself(model: &Model) -> Result<()> {
+    if model.thermal.is_some() {
+        let text = "a model with a thermal body needs the time of each sample, which this interface does not take";
+        return Err(Fault::Library(Error::Thermal(text.into())));
+    }
+    if model.load.is_some() {
+        let text = "the model depends on a load: take it at one, with hysteron_model_at_load";
+        return Err(Fault::Library(Error::Fit(text.into())));
+    }
+    Ok(())
+}
+
+/// Frees a state.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
+    guard(|| STATES.remove(state, "state"))
+}
+
+/// All operators off, as at the bottom of the plane.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
+    guard(|| {
+        let running = STATES.get(state, "state")?;
+        *running.state() = running.model.start();
+        Ok(())
+    })
+}
+
+/// All operators on, as at the top of the plane.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
+    guard(|| {
+        let running = STATES.get(state, "state")?;
+        *running.state() = running.model.saturated();
+        Ok(())
+    })
+}
+
+/// Moves to `input` and gives the output; `clipped`, which may be null, says whether the input lay outside the plane:
+/// `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_step(
+    state: u64,
+    input: f64,
+    output: *mut f64,
+    clipped: *mut i32,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (output, clipped) =
+            unsafe { (Out::new(output, "output")?, optional(clipped, "clipped")?) };
+        let running = STATES.get(state, "state")?;
+        let step = running.model.step(&mut running.state(), input)?;
+        output.set(step.output);
+        if let Some(clipped) = clipped {
+            clipped.set(clipped_constant(step.clipped));
+        }
+        Ok(())
+    })
+}
+
+/// Moves through `count` inputs and writes as many outputs; the arrays must not overlap. Where one input is not finite, the state
+/// stays as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_run(
+    state: u64,
+    input: *const f64,
+    output: *mut f64,
+    count: usize,
+) -> i32 {
+    guard(|| {
+        let running = STATES.get(state, "state")?;
+        if count > 0 {
+            apart(input, output, count, "output")?;
+        }
+        // SAFETY: the contract of the crate, and apart as checked.
+        let (input, output) = unsafe {
+            (
+                array(input, count, "input")?,
+                array_out(output, count, "output")?,
+            )
+        };
+        running.model.run(&mut running.state(), input, output)?;
+        Ok(())
+    })
+}
+
+/// Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
+/// `HYSTERON_LOW` or `HYSTERON_HIGH`.
+///
+/// `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
+/// how far a target may go back and still stand still, in the output's unit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_inverse_step(
+    state: u64,
+    target: f64,
+    heading: i32,
+    tolerance: f64,
+    input: *mut f64,
+    status: *mut i32,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
+        let running = STATES.get(state, "state")?;
+        let policy = policy(heading, tolerance)?;
+        let inverse = running.model.inverse()?;
+        let solution = inverse.step(&mut running.state(), target, policy)?;
+        input.set(solution.input);
+        status.set(status_constant(solution.status));
+        Ok(())
+    })
+}
+
+/// Saves the state: its turning points, at most `capacity`, and the last input. `count` becomes the number of turning points,
+/// also where `capacity` is too small for them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_save(
+    state: u64,
+    points: *mut f64,
+    capacity: usize,
+    count: *mut usize,
+    input: *mut f64,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (count, input) = unsafe { (Out::new(count, "count")?, Out::new(input, "input")?) };
+        let running = STATES.get(state, "state")?;
+        let state = running.state();
+        let saved: Vec<f64> = state.turning_points().collect();
+        // SAFETY: the contract of the crate.
+        unsafe { copy_out(saved.into_iter(), (points, capacity), &count)? };
+        input.set(state.input());
+        Ok(())
+    })
+}
+
+/// Puts back what `hysteron_state_save` gave, of a state of this model or of one with the same plane: bit for bit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_restore(
+    state: u64,
+    points: *const f64,
+    count: usize,
+    input: f64,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let points = unsafe { array(points, count, "points")? };
+        let running = STATES.get(state, "state")?;
+        *running.state() = running.model.restore(points, input)?;
+        Ok(())
+    })
+}

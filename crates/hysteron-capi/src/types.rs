@@ -1,0 +1,247 @@
+//! Constants and structures of the interface, and what they are in the library.
+
+use crate::codes::HYSTERON_VALUE;
+use crate::fault::{Fault, Result};
+use hysteron::{
+    Adaptation, Clipped, Direction, Learning, Method, Operator, Outcome, Policy, Sign, Status,
+};
+
+/// Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.
+pub const HYSTERON_MKP: i32 = 0;
+/// Operator: Krasnosel'skii-Pokrovskii, −1 to 1.
+pub const HYSTERON_KP: i32 = 1;
+/// Operator: relay of the classical Preisach model, −1 or 1.
+pub const HYSTERON_RELAY: i32 = 2;
+
+/// Policy of the inverse: the input stands still while the target does.
+pub const HYSTERON_HOLD: i32 = 0;
+/// Policy of the inverse: the target rises next, so that a dead band is crossed at once.
+pub const HYSTERON_RISING: i32 = 1;
+/// Policy of the inverse: the target falls next, so that a dead band is crossed at once.
+pub const HYSTERON_FALLING: i32 = -1;
+
+/// Within reach, or inside the plane.
+pub const HYSTERON_INSIDE: i32 = 0;
+/// The target lies below every output, or the input below the plane.
+pub const HYSTERON_LOW: i32 = -1;
+/// The target lies above every output, or the input above the plane.
+pub const HYSTERON_HIGH: i32 = 1;
+
+/// Method of adaptation: normalised gradient.
+pub const HYSTERON_GRADIENT: i32 = 0;
+/// Method of adaptation: normalised gradient on increments.
+pub const HYSTERON_INCREMENTS: i32 = 1;
+/// Method of adaptation: recursive least squares with regularised forgetting.
+pub const HYSTERON_LEAST_SQUARES: i32 = 2;
+
+/// Outcome of a sample: the weights moved.
+pub const HYSTERON_LEARNED: i32 = 0;
+/// Outcome of a sample: the error was within the dead zone, or an increment is not finished.
+pub const HYSTERON_WAITING: i32 = 1;
+/// Outcome of a sample: the input did not move.
+pub const HYSTERON_AT_REST: i32 = 2;
+/// Outcome of a sample: the estimator is frozen.
+pub const HYSTERON_FROZEN: i32 = 3;
+/// Outcome of a sample: the last good weights are back.
+pub const HYSTERON_ROLLED_BACK: i32 = 4;
+
+/// What a model is.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronModelInfo {
+    /// `HYSTERON_MKP`, `HYSTERON_KP` or `HYSTERON_RELAY`.
+    pub operator_kind: i32,
+    /// 1: the output rises with the input; −1: it falls.
+    pub sign: i32,
+    /// `K`.
+    pub levels: usize,
+    /// `N = K(K + 1)/2`.
+    pub weights: usize,
+    /// Lowest level, in the input's unit.
+    pub min: f64,
+    /// Highest level.
+    pub max: f64,
+    /// One step below the lowest level, where every operator is off.
+    pub bottom: f64,
+    /// What is added to the sum of the operators.
+    pub offset: f64,
+    /// Output with every operator off.
+    pub output_off: f64,
+    /// Output with every operator on.
+    pub output_on: f64,
+}
+
+/// Options of adaptation; `hysteron_adaptation_default` fills in the usual ones.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronAdaptation {
+    /// `HYSTERON_GRADIENT`, `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
+    pub method: i32,
+    /// Samples learned from on which weights are judged, from 1.
+    pub trial: u32,
+    /// Gradient and increments: share of the error that is taken away, above 0 and below 2.
+    pub gain: f64,
+    /// Increments: levels from the beginning of one to its end, 1/8 to 8.
+    pub span: f64,
+    /// Least squares: above 0 and up to 1, which forgets nothing.
+    pub forgetting: f64,
+    /// Least squares: standard deviation of a reading's error, in the output's unit; above 0.
+    pub noise: f64,
+    /// Least squares: standard deviation of a weight from the one at the start; above 0.
+    pub spread: f64,
+    /// Least squares: levels over which deviations of weights go together, from 0.
+    pub correlation: f64,
+    /// How freely the offset moves, beside one weight, from 0.
+    pub offset_share: f64,
+    /// Errors up to this are noise, in the output's unit, from 0.
+    pub dead_zone: f64,
+    /// Share by which weights return to those at the start with each update, 0 to 1.
+    pub leakage: f64,
+    /// Levels between two samples that are learned from, from 0.
+    pub movement: f64,
+}
+
+/// What a sample taught.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronLearning {
+    /// Output that was expected before anything was learned from the sample.
+    pub output: f64,
+    /// Measured less expected.
+    pub error: f64,
+    /// `HYSTERON_LEARNED` and so on.
+    pub outcome: i32,
+    /// Where the input lay: `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
+    pub clipped: i32,
+}
+
+/// Fills in the usual options, of the method that `method` names.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_adaptation_default(
+    method: i32,
+    options: *mut HysteronAdaptation,
+) -> i32 {
+    crate::fault::guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let options = unsafe { crate::pointer::Out::new(options, "options")? };
+        let usual = Adaptation::<f64>::default();
+        let filled = HysteronAdaptation {
+            method,
+            trial: usual.trial,
+            gain: 0.3,
+            span: 1.0,
+            forgetting: 0.99,
+            noise: 0.01,
+            spread: 1.0,
+            correlation: 0.0,
+            offset_share: usual.offset_share,
+            dead_zone: usual.dead_zone,
+            leakage: usual.leakage,
+            movement: usual.movement,
+        };
+        filled.adaptation()?;
+        options.set(filled);
+        Ok(())
+    })
+}
+
+impl HysteronAdaptation {
+    pub(crate) fn adaptation(&self) -> Result<Adaptation<f64>> {
+        let &Self {
+            gain,
+            span,
+            forgetting,
+            noise,
+            spread,
+            correlation,
+            ..
+        } = self;
+        let method = match self.method {
+            HYSTERON_GRADIENT => Method::Gradient { gain },
+            HYSTERON_INCREMENTS => Method::Increments { gain, span },
+            HYSTERON_LEAST_SQUARES => Method::LeastSquares {
+                forgetting,
+                noise,
+                spread,
+                correlation,
+            },
+            _ => return Err(Fault::Call(HYSTERON_VALUE, "method")),
+        };
+        Ok(Adaptation {
+            method,
+            offset_share: self.offset_share,
+            dead_zone: self.dead_zone,
+            leakage: self.leakage,
+            movement: self.movement,
+            trial: self.trial,
+        })
+    }
+}
+
+impl From<Learning<f64>> for HysteronLearning {
+    fn from(learning: Learning<f64>) -> Self {
+        Self {
+            output: learning.output,
+            error: learning.error,
+            outcome: match learning.outcome {
+                Outcome::Learned => HYSTERON_LEARNED,
+                Outcome::Waiting => HYSTERON_WAITING,
+                Outcome::AtRest => HYSTERON_AT_REST,
+                Outcome::Frozen => HYSTERON_FROZEN,
+                Outcome::RolledBack => HYSTERON_ROLLED_BACK,
+            },
+            clipped: clipped(learning.clipped),
+        }
+    }
+}
+
+pub(crate) fn operator(value: i32) -> Result<Operator> {
+    match value {
+        HYSTERON_MKP => Ok(Operator::Mkp),
+        HYSTERON_KP => Ok(Operator::Kp),
+        HYSTERON_RELAY => Ok(Operator::Relay),
+        _ => Err(Fault::Call(HYSTERON_VALUE, "operator_kind")),
+    }
+}
+
+pub(crate) fn operator_kind(operator: Operator) -> i32 {
+    match operator {
+        Operator::Mkp => HYSTERON_MKP,
+        Operator::Kp => HYSTERON_KP,
+        Operator::Relay => HYSTERON_RELAY,
+    }
+}
+
+pub(crate) fn sign(value: i32) -> Result<Sign> {
+    match value {
+        1 => Ok(Sign::Positive),
+        -1 => Ok(Sign::Negative),
+        _ => Err(Fault::Call(HYSTERON_VALUE, "sign")),
+    }
+}
+
+pub(crate) fn policy(value: i32, tolerance: f64) -> Result<Policy<f64>> {
+    let heading = match value {
+        HYSTERON_HOLD => return Ok(Policy::Hold { tolerance }),
+        HYSTERON_RISING => Direction::Rising,
+        HYSTERON_FALLING => Direction::Falling,
+        _ => return Err(Fault::Call(HYSTERON_VALUE, "policy")),
+    };
+    Ok(Policy::Anticipate { heading, tolerance })
+}
+
+pub(crate) fn status(status: Status) -> i32 {
+    match status {
+        Status::Ok => HYSTERON_INSIDE,
+        Status::Low => HYSTERON_LOW,
+        Status::High => HYSTERON_HIGH,
+    }
+}
+
+pub(crate) fn clipped(clipped: Option<Clipped>) -> i32 {
+    match clipped {
+        None => HYSTERON_INSIDE,
+        Some(Clipped::Low) => HYSTERON_LOW,
+        Some(Clipped::High) => HYSTERON_HIGH,
+    }
+}

@@ -1,0 +1,215 @@
+//! A C program that uses the whole interface, over the test vectors; under valgrind where it is installed.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+const SOURCES: [&str; 5] = ["main.c", "vector.c", "handles.c", "memory.c", "misuse.c"];
+
+fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Whether a tool can be started; says so if not.
+fn has(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output().is_ok();
+    if !found {
+        eprintln!("skipped: there is no `{tool}`");
+    }
+    found
+}
+
+fn run(command: &mut Command) {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "{command:?}: {}\n{text}",
+        output.status
+    );
+}
+
+/// Compiles strictly and links with one of the libraries, which cargo builds beside the tests.
+fn compile(sources: &[PathBuf], shared: bool, program: &Path) {
+    let built = std::env::current_exe()
+        .unwrap()
+        .parent()
+        .unwrap()
+        .to_owned();
+    let mut cc = Command::new("cc");
+    cc.args([
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "-g",
+    ]);
+    cc.arg("-I").arg(here("include")).args(sources);
+    if shared {
+        let (start, end) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        cc.arg(built.join(format!("{start}hysteron_capi{end}")));
+        cc.arg(format!("-Wl,-rpath,{}", built.display()));
+    } else {
+        cc.arg(built.join("libhysteron_capi.a"));
+    }
+    cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(program);
+    run(&mut cc);
+}
+
+/// The program linked with the static and with the shared library; none without a C compiler.
+fn programs(folder: &Path) -> Option<[PathBuf; 2]> {
+    if !has("cc") {
+        return None;
+    }
+    let sources = SOURCES.map(|name| here("tests/c").join(name));
+    let programs = ["static", "shared"].map(|name| folder.join(name));
+    compile(&sources, false, &programs[0]);
+    compile(&sources, true, &programs[1]);
+    Some(programs)
+}
+
+/// A folder that is left to the system to clear, compiled into once for all tests.
+fn compiled() -> Option<&'static [PathBuf; 2]> {
+    static PROGRAMS: OnceLock<(tempfile::TempDir, Option<[PathBuf; 2]>)> = OnceLock::new();
+    let made = || {
+        let folder = tempfile::tempdir().unwrap();
+        let programs = programs(folder.path());
+        (folder, programs)
+    };
+    PROGRAMS.get_or_init(made).1.as_ref()
+}
+
+/// Each run of each vector, as a model file and a table that C reads easily.
+fn vectors(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
+    let mut runs = Vec::new();
+    for entry in std::fs::read_dir(here("../../vectors")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "json") {
+            continue;
+        }
+        let file: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let model = folder.join(format!("{name}.model.json"));
+        std::fs::write(&model, file["model"].to_string()).unwrap();
+        let kind = file["kind"].as_str().unwrap();
+        let (columns, tolerance) = match kind {
+            "forward" => (vec!["input", "output"], "output"),
+            _ => (vec!["heading", "target", "input", "status"], "input"),
+        };
+        for (n, run) in file["runs"].as_array().unwrap().iter().enumerate() {
+            let count = run["input"].as_array().unwrap().len();
+            let (tolerance, policy) = (&file["tolerance"][tolerance], &run["tolerance"]);
+            let policy = policy.as_f64().unwrap_or(0.0);
+            let mut text = format!("{kind} {count} {tolerance} {policy}\n");
+            for row in 0..count {
+                for column in &columns {
+                    write!(text, "{} ", run[column][row]).unwrap();
+                }
+                text.push('\n');
+            }
+            let table = folder.join(format!("{name}.{n}.txt"));
+            std::fs::write(&table, text).unwrap();
+            runs.push((model.clone(), table));
+        }
+    }
+    assert!(runs.len() >= 60, "{} runs", runs.len());
+    runs
+}
+
+#[test]
+fn the_vectors_in_c() {
+    let Some(programs) = compiled() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for (model, table) in vectors(folder.path()) {
+        for program in programs {
+            run(Command::new(program).arg(&model).arg(&table));
+        }
+    }
+}
+
+#[test]
+fn all_of_the_interface_in_c() {
+    let Some(programs) = compiled() else { return };
+    for program in programs {
+        run(&mut Command::new(program));
+    }
+}
+
+#[test]
+fn valgrind_finds_nothing() {
+    let Some([program, _]) = compiled() else {
+        return;
+    };
+    if !has("valgrind") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let valgrind = || {
+        let mut command = Command::new("valgrind");
+        command.args(["--quiet", "--error-exitcode=9", "--leak-check=full"]);
+        command.arg(program);
+        command
+    };
+    run(&mut valgrind());
+    let runs = vectors(folder.path());
+    for name in ["forward-mkp-20.1", "inverse-mkp-5-negative.1"] {
+        let of = |(_, table): &&(PathBuf, PathBuf)| table.to_str().unwrap().contains(name);
+        let (model, table) = runs.iter().find(of).unwrap();
+        run(valgrind().arg(model).arg(table));
+    }
+}
+
+/// The test of the tests: the program fails where the expected number is another.
+#[test]
+fn a_wrong_vector_is_noticed() {
+    let Some([program, _]) = compiled() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (model, table) = vectors(folder.path()).swap_remove(0);
+    let text = std::fs::read_to_string(&table).unwrap();
+    let (head, rest) = text.split_once('\n').unwrap();
+    let moved = rest.replacen(' ', "1 ", 1);
+    std::fs::write(&table, format!("{head}\n{moved}")).unwrap();
+    let output = Command::new(program)
+        .arg(&model)
+        .arg(&table)
+        .output()
+        .unwrap();
+    assert!(!output.status.success());
+}
+
+#[test]
+fn the_readme_in_c() {
+    if !has("cc") {
+        return;
+    }
+    let readme = std::fs::read_to_string(here("../../README.md")).unwrap();
+    let block = readme
+        .split("```c\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (source, program) = (folder.path().join("spring.c"), folder.path().join("spring"));
+    std::fs::write(&source, block).unwrap();
+    compile(&[source], false, &program);
+    let there = || {
+        let mut command = Command::new(&program);
+        command.current_dir(folder.path());
+        command
+    };
+    assert!(
+        !there().status().unwrap().success(),
+        "without the model it says why"
+    );
+    let (model, _) = vectors(folder.path()).swap_remove(0);
+    std::fs::rename(model, folder.path().join("spring.json")).unwrap();
+    run(&mut there());
+}

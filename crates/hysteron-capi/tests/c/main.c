@@ -1,0 +1,14 @@
+/* `program` runs everything that needs no file, `program MODEL RUN` one run of a test vector. */
+#include "check.h"
+
+int main(int count, char **arguments) {
+    if (count == 3) {
+        vector_run(arguments[1], arguments[2]);
+    } else {
+        handles();
+        memory_form();
+        misuse();
+    }
+    puts("ok");
+    return 0;
+}

@@ -1,0 +1,31 @@
+//! The header in the repository is the one that the code makes.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../examples/header.rs"]
+mod header;
+
+#[test]
+fn the_header_follows_from_the_code() {
+    let found = std::fs::read_to_string(header::place()).unwrap();
+    assert!(
+        found == header::generated().unwrap(),
+        "the header differs: run `cargo run -p hysteron-capi --example header`"
+    );
+}
+
+/// A function that the header forgets could not be called.
+#[test]
+fn every_exported_function_is_in_the_header() {
+    let header = header::generated().unwrap();
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut count = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+        for part in text.split("extern \"C\" fn ").skip(1) {
+            let name = part.split('(').next().unwrap();
+            assert!(header.contains(&format!("{name}(")), "{name}");
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count} functions found");
+}

@@ -1,0 +1,126 @@
+//! Expected numbers from the definition alone: forward by running it, inverse by searching it.
+
+use hysteron::{Model, Result};
+use hysteron_core::Definition;
+
+/// Outputs closer than this share of the range are the same: rounding.
+const SAME: f64 = 1e-12;
+
+/// The outputs of the plain definition for `input`, from all operators off.
+pub fn forward(model: &Model, input: &[f64]) -> Result<Vec<f64>> {
+    let mut states = vec![0.0; model.weights().len()];
+    let (plane, operator) = (*model.plane(), model.operator());
+    let mut plain = Definition::new(plane, operator, model.weights(), &mut states)?;
+    let outward = |sum: f64| model.offset() + model.sign().factor() * sum;
+    let outputs = input.iter().map(|&input| Ok(outward(plain.step(input)?)));
+    outputs.collect()
+}
+
+/// What an inverse is asked for, sample by sample.
+pub struct Wanted {
+    pub target: f64,
+    /// Where the target goes next, for the policy *anticipate*: 1 or −1; 0 for *hold*.
+    pub heading: i8,
+    pub tolerance: f64,
+}
+
+/// The inverse as a search over the definition: the whole history runs again for each input that is tried.
+pub struct Search<'m> {
+    model: &'m Model,
+    history: Vec<f64>,
+    input: f64,
+    output: f64,
+    /// Direction of the output's branch, and the output where the branch began.
+    branch: (i8, f64),
+    /// Input and output where the output is least, and where it is greatest.
+    ends: [(f64, f64); 2],
+}
+
+impl<'m> Search<'m> {
+    pub fn new(model: &'m Model) -> Result<Self> {
+        let (bottom, max) = (model.plane().bottom(), model.plane().max());
+        let off = (bottom, forward(model, &[bottom])?[0]);
+        let on = (max, forward(model, &[max])?[0]);
+        let ends = if off.1 < on.1 { [off, on] } else { [on, off] };
+        Ok(Self {
+            model,
+            history: Vec::new(),
+            input: bottom,
+            output: off.1,
+            branch: (0, off.1),
+            ends,
+        })
+    }
+
+    /// The input for the next target, and the status: −1 below reach, 1 above, 0 reached.
+    pub fn step(&mut self, wanted: &Wanted) -> Result<(f64, i8)> {
+        let &Wanted {
+            target,
+            heading,
+            tolerance,
+        } = wanted;
+        let [(lowest, least), (highest, greatest)] = self.ends;
+        let same = SAME * (greatest - least);
+        let reach = tolerance.max(same);
+        let direction = if target > self.output { 1 } else { -1 };
+        let rest = if self.branch.0 == heading {
+            self.branch.1
+        } else {
+            self.output
+        };
+        let apart = (target - self.output).abs();
+        let (input, status) = if target > greatest + reach {
+            (highest, 1)
+        } else if target < least - reach {
+            (lowest, -1)
+        } else if heading != 0 && (target - rest).abs() <= reach {
+            // To the edge of the dead band.
+            let left = |output| f64::from(heading) * (output - rest) > tolerance;
+            (self.first(heading, left)?, 0)
+        } else if apart <= same || direction != self.branch.0 && apart <= tolerance {
+            (self.input, 0)
+        } else {
+            let met = |output| f64::from(direction) * (output - target) >= 0.0;
+            (self.first(direction, met)?, 0)
+        };
+        self.travel(input)?;
+        Ok((input, status))
+    }
+
+    /// The first input at which `met` holds, on the way from here to the end of the output's range.
+    fn first(&self, direction: i8, met: impl Fn(f64) -> bool) -> Result<f64> {
+        let mut before = self.input;
+        let mut after = self.ends[usize::from(direction > 0)].0;
+        loop {
+            let middle = before + (after - before) / 2.0;
+            if middle == before || middle == after {
+                return Ok(after);
+            }
+            if met(self.after(middle)?) {
+                after = middle;
+            } else {
+                before = middle;
+            }
+        }
+    }
+
+    fn after(&self, input: f64) -> Result<f64> {
+        let way: Vec<f64> = self.history.iter().copied().chain([input]).collect();
+        let outputs = forward(self.model, &way)?;
+        Ok(outputs[outputs.len() - 1])
+    }
+
+    fn travel(&mut self, input: f64) -> Result<()> {
+        let output = self.after(input)?;
+        if input != self.input {
+            let upwards = (input > self.input) == (self.ends[0].0 < self.ends[1].0);
+            let direction = if upwards { 1 } else { -1 };
+            if direction != self.branch.0 {
+                self.branch = (direction, self.output);
+            }
+        }
+        self.history.push(input);
+        (self.input, self.output) = (input, output);
+        Ok(())
+    }
+}
