@@ -177,6 +177,15 @@ impl Adaptive {
         &self.state
     }
 
+    /// Turns every operator off; the weights stay.
+    ///
+    /// # Errors
+    /// None that a caller can cause.
+    pub fn reset(&mut self) -> Result<()> {
+        self.estimator.realign();
+        Ok(self.core.reset_off(&mut self.state)?)
+    }
+
     /// Turns every operator on, as at the top of the plane; the weights stay.
     ///
     /// # Errors
