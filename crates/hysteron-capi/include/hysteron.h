@@ -132,6 +132,11 @@
 #define HYSTERON_CONTROL 30
 
 /**
+ * A model cannot be carried to where it should run.
+ */
+#define HYSTERON_EXPORT 31
+
+/**
  * A null pointer was passed where there must be none.
  */
 #define HYSTERON_NULL 100

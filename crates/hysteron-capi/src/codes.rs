@@ -48,6 +48,8 @@ pub const HYSTERON_THERMAL: i32 = 28;
 pub const HYSTERON_SCENARIO: i32 = 29;
 /// A controller cannot be made as told.
 pub const HYSTERON_CONTROL: i32 = 30;
+/// A model cannot be carried to where it should run.
+pub const HYSTERON_EXPORT: i32 = 31;
 /// A null pointer was passed where there must be none.
 pub const HYSTERON_NULL: i32 = 100;
 /// No such handle or object: never made, freed already, or of another kind.
@@ -101,6 +103,7 @@ fn text_of(code: i32) -> &'static CStr {
         HYSTERON_THERMAL => c"a thermal body cannot be run here",
         HYSTERON_SCENARIO => c"the scenario is wrong",
         HYSTERON_CONTROL => c"the controller cannot be made as told",
+        HYSTERON_EXPORT => c"the model cannot be carried there",
         HYSTERON_NULL => c"null pointer",
         HYSTERON_HANDLE => {
             c"no such handle or object: never made, freed already, or of another kind"
@@ -120,7 +123,7 @@ mod tests {
 
     #[test]
     fn every_code_has_a_text_of_its_own() {
-        let codes = (0..=11).chain(20..=30).chain(100..=106);
+        let codes = (0..=11).chain(20..=31).chain(100..=106);
         let texts: std::collections::HashSet<_> = codes.clone().map(text_of).collect();
         assert_eq!(texts.len(), codes.count());
         assert!(!texts.contains(text_of(-1)));

@@ -5,6 +5,7 @@ mod args;
 mod demo;
 mod design;
 mod evaluate;
+mod export;
 mod fit;
 mod inspect;
 mod prepare;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Design(args) => design::run(&args),
         Command::Track(args) => track::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Demo(args) => demo::run(&args),
     };
     match done {

@@ -254,7 +254,9 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         self.outward(state.place().y)
     }
 
-    pub(crate) fn table(&self) -> &[T] {
+    /// The Everett table, from [`crate::table_index`]`(0, 0)` on: [`crate::table_len`] elements or more.
+    #[must_use]
+    pub fn table(&self) -> &[T] {
         &self.table.as_ref()[self.base..]
     }
 

@@ -110,6 +110,12 @@ impl<T: Real> Plane<T> {
         self.step
     }
 
+    /// `1/ΔT`, rounded so that `T_max` normalises to `K` and no less.
+    #[must_use]
+    pub fn per_unit(&self) -> T {
+        self.per_unit
+    }
+
     /// `N = K(K + 1)/2`, the number of operators.
     #[must_use]
     pub fn operators(&self) -> usize {

@@ -83,6 +83,9 @@ pub enum Error {
         /// What is wrong with it, and what is expected.
         problem: String,
     },
+    /// A model cannot be carried to where it should run.
+    #[error("export: {0}")]
+    Export(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::filter::FilterError),
@@ -108,6 +111,7 @@ impl Error {
             Error::Thermal(_) => 28,
             Error::Scenario { .. } => 29,
             Error::Control(_) => 30,
+            Error::Export(_) => 31,
         }
     }
 }

@@ -4,10 +4,12 @@ use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 mod adapt;
+mod export;
 mod fit;
 mod value;
 
 pub(crate) use adapt::*;
+pub(crate) use export::*;
 pub(crate) use fit::*;
 pub(crate) use value::*;
 
@@ -73,6 +75,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  hysteron track load-step -o load-step\n  hysteron track load-step --show > mine.toml\n  hysteron track mine.toml --seeds 5 -o mine"
     )]
     Track(Track),
+    /// Carry a model to where it runs: C for a microcontroller, a block for Simulink and others
+    #[command(subcommand)]
+    Export(Export),
     /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
     #[command(after_help = "Example:\n  hysteron demo -o demo")]
     Demo(Demo),
