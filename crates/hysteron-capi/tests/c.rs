@@ -13,10 +13,14 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Whether a tool can be started; says so if not.
+/// Whether a tool can be started. Without it a test skips and says so, or fails where none may be skipped.
 fn has(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output().is_ok();
     if !found {
+        assert!(
+            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
+            "no `{tool}`"
+        );
         eprintln!("skipped: there is no `{tool}`");
     }
     found
@@ -32,8 +36,35 @@ fn run(command: &mut Command) {
     );
 }
 
+#[derive(Clone, Copy, PartialEq)]
+enum Library {
+    Static,
+    Shared,
+    /// The static one, with everything in C and every allocation of both watched by the compiler's sanitizers.
+    Sanitized,
+}
+
+/// Whether the compiler brings its sanitizers' libraries.
+fn sanitizes(folder: &Path) -> bool {
+    let (source, program) = (folder.join("empty.c"), folder.join("empty"));
+    std::fs::write(&source, "int main(void) { return 0; }\n").unwrap();
+    let mut cc = Command::new("cc");
+    cc.args(["-fsanitize=address,undefined", "-o"])
+        .arg(&program)
+        .arg(&source);
+    let done = cc.output().unwrap().status.success();
+    if !done {
+        assert!(
+            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
+            "no sanitizers"
+        );
+        eprintln!("skipped: the C compiler has no sanitizers");
+    }
+    done
+}
+
 /// Compiles strictly and links with one of the libraries, which cargo builds beside the tests.
-fn compile(sources: &[PathBuf], shared: bool, program: &Path) {
+fn compile(sources: &[PathBuf], library: Library, program: &Path) {
     let built = std::env::current_exe()
         .unwrap()
         .parent()
@@ -49,7 +80,10 @@ fn compile(sources: &[PathBuf], shared: bool, program: &Path) {
         "-g",
     ]);
     cc.arg("-I").arg(here("include")).args(sources);
-    if shared {
+    if library == Library::Sanitized {
+        cc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+    }
+    if library == Library::Shared {
         let (start, end) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
         cc.arg(built.join(format!("{start}hysteron_capi{end}")));
         cc.arg(format!("-Wl,-rpath,{}", built.display()));
@@ -60,27 +94,33 @@ fn compile(sources: &[PathBuf], shared: bool, program: &Path) {
     run(&mut cc);
 }
 
-/// The program linked with the static and with the shared library; none without a C compiler.
-fn programs(folder: &Path) -> Option<[PathBuf; 2]> {
+/// The program linked in each way, the static library first; none without a C compiler.
+fn programs(folder: &Path) -> Vec<PathBuf> {
     if !has("cc") {
-        return None;
+        return Vec::new();
     }
     let sources = SOURCES.map(|name| here("tests/c").join(name));
-    let programs = ["static", "shared"].map(|name| folder.join(name));
-    compile(&sources, false, &programs[0]);
-    compile(&sources, true, &programs[1]);
-    Some(programs)
+    let mut kinds = vec![(Library::Static, "static"), (Library::Shared, "shared")];
+    if sanitizes(folder) {
+        kinds.push((Library::Sanitized, "sanitized"));
+    }
+    let compiled = |(library, name)| {
+        let program = folder.join(name);
+        compile(&sources, library, &program);
+        program
+    };
+    kinds.into_iter().map(compiled).collect()
 }
 
-/// A folder that is left to the system to clear, compiled into once for all tests.
-fn compiled() -> Option<&'static [PathBuf; 2]> {
-    static PROGRAMS: OnceLock<(tempfile::TempDir, Option<[PathBuf; 2]>)> = OnceLock::new();
+/// In a folder that is left to the system to clear, compiled once for all tests.
+fn compiled() -> &'static [PathBuf] {
+    static PROGRAMS: OnceLock<(tempfile::TempDir, Vec<PathBuf>)> = OnceLock::new();
     let made = || {
         let folder = tempfile::tempdir().unwrap();
         let programs = programs(folder.path());
         (folder, programs)
     };
-    PROGRAMS.get_or_init(made).1.as_ref()
+    &PROGRAMS.get_or_init(made).1
 }
 
 /// Each run of each vector, as a model file and a table that C reads easily.
@@ -122,10 +162,9 @@ fn vectors(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
 
 #[test]
 fn the_vectors_in_c() {
-    let Some(programs) = compiled() else { return };
     let folder = tempfile::tempdir().unwrap();
     for (model, table) in vectors(folder.path()) {
-        for program in programs {
+        for program in compiled() {
             run(Command::new(program).arg(&model).arg(&table));
         }
     }
@@ -133,15 +172,14 @@ fn the_vectors_in_c() {
 
 #[test]
 fn all_of_the_interface_in_c() {
-    let Some(programs) = compiled() else { return };
-    for program in programs {
+    for program in compiled() {
         run(&mut Command::new(program));
     }
 }
 
 #[test]
 fn valgrind_finds_nothing() {
-    let Some([program, _]) = compiled() else {
+    let [program, ..] = compiled() else {
         return;
     };
     if !has("valgrind") {
@@ -166,7 +204,7 @@ fn valgrind_finds_nothing() {
 /// The test of the tests: the program fails where the expected number is another.
 #[test]
 fn a_wrong_vector_is_noticed() {
-    let Some([program, _]) = compiled() else {
+    let [program, ..] = compiled() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -199,7 +237,7 @@ fn the_readme_in_c() {
     let folder = tempfile::tempdir().unwrap();
     let (source, program) = (folder.path().join("spring.c"), folder.path().join("spring"));
     std::fs::write(&source, block).unwrap();
-    compile(&[source], false, &program);
+    compile(&[source], Library::Static, &program);
     let there = || {
         let mut command = Command::new(&program);
         command.current_dir(folder.path());
