@@ -614,6 +614,11 @@ int32_t hysteron_model_read(const char *path, uint64_t *model);
 int32_t hysteron_model_parse(const char *json, uint64_t *model);
 
 /**
+ * Writes the model file, whole or not at all; one that is there already is replaced.
+ */
+int32_t hysteron_model_write(uint64_t model, const char *path);
+
+/**
  * A model of `count = K(K + 1)/2` weights, row by row: `j = 1…K`, within a row `i = 1…j`; `K` levels from `min` to `max`.
  * Its output is `offset + sign · Σ μ γ`, the sign 1 or −1.
  */

@@ -32,6 +32,16 @@ pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u
     })
 }
 
+/// Writes the model file, whole or not at all; one that is there already is replaced.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_write(model: u64, path: *const c_char) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let path = unsafe { text(path, "path")? };
+        Ok(MODELS.get(model, "model")?.write(Path::new(path))?)
+    })
+}
+
 /// A model of `count = K(K + 1)/2` weights, row by row: `j = 1…K`, within a row `i = 1…j`; `K` levels from `min` to `max`.
 /// Its output is `offset + sign · Σ μ γ`, the sign 1 or −1.
 #[unsafe(no_mangle)]

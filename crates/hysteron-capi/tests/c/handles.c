@@ -69,6 +69,10 @@ static void adaptation(uint64_t model, uint64_t plant_model, int32_t method) {
     REQUIRE(fabs(expected - 12.0) < 1e-9);
 
     OK(hysteron_adaptive_model(adaptive, &now));
+    /* What was learned outlives the program: the model read back says the same. */
+    OK(hysteron_model_write(now, "learned.json"));
+    OK(hysteron_model_free(now));
+    OK(hysteron_model_read("learned.json", &now));
     OK(hysteron_adaptive_free(adaptive));
     OK(hysteron_state_free(plant));
     OK(hysteron_state_new(now, &plant));

@@ -66,6 +66,9 @@ static void steps(uint64_t model, uint64_t state) {
     REQUIRE(hysteron_step(0, 0.5, &after, NULL) == HYSTERON_HANDLE);
     REQUIRE(hysteron_step((uint64_t)-1, 0.5, &after, NULL) == HYSTERON_HANDLE);
     REQUIRE(hysteron_model_free(state) == HYSTERON_HANDLE);
+    REQUIRE(hysteron_model_write(state, "none.json") == HYSTERON_HANDLE);
+    REQUIRE(hysteron_model_write(model, NULL) == HYSTERON_NULL);
+    REQUIRE(hysteron_model_write(model, "no/such/folder/model.json") == HYSTERON_FILE);
     OK(hysteron_state_free(state));
     REQUIRE(hysteron_state_free(state) == HYSTERON_HANDLE);
     OK(hysteron_state_new(model, &other)); /* takes the place of the one freed */
