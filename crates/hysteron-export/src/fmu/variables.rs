@@ -2,7 +2,7 @@
 
 use hysteron::{Model, Quantity};
 
-/// A variable as FMI describes it. `T` of its number are in `kind`.
+/// A variable as FMI describes it.
 pub(super) struct Variable {
     pub(super) name: String,
     /// Its place among the constants of `hysteron-capi/src/fmi/values.rs`.
@@ -34,6 +34,11 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
     let active = format!("active from {bottom} to {max}");
     let (off, on) = model.output_range();
     let reach = format!("from {off} with all operators off to {on} with all on");
+    // Where the model file has no names: an input called `output` would say the wrong thing.
+    let mut wanted = model.output.clone();
+    if wanted.name == "output" {
+        wanted.name = "target".into();
+    }
     let variables = match inverse {
         false => vec![
             time(),
@@ -56,7 +61,7 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
             time(),
             input(
                 1,
-                &model.output,
+                &wanted,
                 off,
                 format!("the output that is wanted; {reach}"),
             ),
