@@ -1,6 +1,6 @@
 //! `hysteron export`
 
-use crate::{Result, args, print};
+use crate::{Result, args, keep_apart, print};
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
     match args {
@@ -15,6 +15,7 @@ fn c(args: &args::ExportC) -> Result<()> {
 }
 
 fn fmu(args: &args::ExportFmu) -> Result<()> {
+    keep_apart(&args.model, &args.out)?;
     let model = model(&args.model, &args.load)?;
     let options = hysteron_export::FmuOptions {
         inverse: args.inverse,
@@ -39,11 +40,10 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
         return print(&object.to_string());
     }
     let (inputs, outputs) = (inputs.join(", "), outputs.join(", "));
-    eprintln!(
-        "{file}: block {name}, {inputs} -> {outputs}, {} KiB",
-        bytes / 1024
-    );
-    Ok(())
+    let kib = bytes.div_ceil(1024);
+    print(&format!(
+        "{file}: block {name}, {inputs} -> {outputs}, {kib} KiB"
+    ))
 }
 
 /// The model at the load that is named, where one is.
