@@ -83,33 +83,33 @@ mod tests {
 
     #[test]
     fn uris_and_what_tools_make_of_them() {
-        let cases: [(&str, Result<&str, ()>, Result<&str, ()>); 14] = [
-            ("file:///tmp/a", Ok("/tmp/a"), Ok("/tmp/a")),
-            ("file:/tmp/a", Ok("/tmp/a"), Ok("/tmp/a")),
-            ("FILE://localhost/tmp/a", Ok("/tmp/a"), Ok("/tmp/a")),
+        let cases: [(&str, Option<&str>, Option<&str>); 14] = [
+            ("file:///tmp/a", Some("/tmp/a"), Some("/tmp/a")),
+            ("file:/tmp/a", Some("/tmp/a"), Some("/tmp/a")),
+            ("FILE://localhost/tmp/a", Some("/tmp/a"), Some("/tmp/a")),
             (
                 "file:///tmp/a%20b%C3%A4%25",
-                Ok("/tmp/a bä%"),
-                Ok("/tmp/a bä%"),
+                Some("/tmp/a bä%"),
+                Some("/tmp/a bä%"),
             ),
-            ("/tmp/a%20b", Ok("/tmp/a%20b"), Ok("/tmp/a%20b")),
-            ("file:///C:/a%20b/c", Ok("/C:/a b/c"), Ok("C:/a b/c")),
-            ("file:///C|/a", Ok("/C|/a"), Ok("C:/a")),
-            ("file:/C:/a", Ok("/C:/a"), Ok("C:/a")),
-            ("file://C:/a", Err(()), Ok("C:/a")),
-            ("file://server/share/a", Err(()), Ok("//server/share/a")),
+            ("/tmp/a%20b", Some("/tmp/a%20b"), Some("/tmp/a%20b")),
+            ("file:///C:/a%20b/c", Some("/C:/a b/c"), Some("C:/a b/c")),
+            ("file:///C|/a", Some("/C|/a"), Some("C:/a")),
+            ("file:/C:/a", Some("/C:/a"), Some("C:/a")),
+            ("file://C:/a", None, Some("C:/a")),
+            ("file://server/share/a", None, Some("//server/share/a")),
             (
                 "file:////server/share/a",
-                Ok("//server/share/a"),
-                Ok("//server/share/a"),
+                Some("//server/share/a"),
+                Some("//server/share/a"),
             ),
-            ("https://host/a", Err(()), Err(())),
-            ("file:///a%2", Err(()), Err(())),
-            ("file:///a%zz", Err(()), Err(())),
+            ("https://host/a", None, None),
+            ("file:///a%2", None, None),
+            ("file:///a%zz", None, None),
         ];
         for (uri, unix, windows) in cases {
             for (expected, on_windows) in [(unix, false), (windows, true)] {
-                let path = path_of_uri(uri, on_windows).map_err(|_| ());
+                let path = path_of_uri(uri, on_windows).ok();
                 let expected = expected.map(|path| path.as_bytes().to_vec());
                 assert_eq!(path, expected, "{uri}, Windows: {on_windows}");
             }

@@ -1,4 +1,6 @@
 //! The functions of both standards in one form, over an FMU that was unpacked.
+// Some of the functions take handles alone: the macro below does not know which.
+#![allow(unused_unsafe)]
 
 use hysteron_capi::fmi::{fmi2, fmi3};
 use hysteron_export::{Fmi, FmuOptions, fmu};
@@ -152,10 +154,6 @@ unsafe impl Send for Instance {}
 
 macro_rules! both {
     ($self:ident, $two:expr, $three:expr) => {
-        #[allow(
-            unused_unsafe,
-            reason = "some functions of the standards take no pointer but handles"
-        )]
         match $self.fmi {
             Fmi::V2 => unsafe { $two },
             Fmi::V3 => unsafe { $three },
