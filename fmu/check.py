@@ -64,7 +64,7 @@ class Fmu:
         options = ["--inverse"] * inverse + ["--fmi", fmi]
         self.about = json.loads(run(HYSTERON, "export", "fmu", model, "-o", self.path, "--json", *options))
         self.description = fmpy.read_model_description(str(self.path))
-        self.folder = Path(fmpy.extract(str(self.path)))
+        self.folder = Path(fmpy.extract(str(self.path), unzipdir=str(self.path.with_suffix(""))))
         self.signal, self.result = self.about["inputs"][0], self.about["outputs"][0]
         self.flag = self.about["outputs"][1]
 
@@ -166,8 +166,7 @@ def series(fmus, folder):
         model = folder / "inverse-mkp-20.json"
         inverse, forward = fmus["inverse-mkp-20", fmi], Fmu(folder, model, False, fmi)
         a, b = inverse.instance(), forward.instance()
-        top = vectors()["inverse-mkp-20"]["model"]
-        reach = sum(top["weights"])
+        reach = sum(vectors()["inverse-mkp-20"]["model"]["weights"])
         worst = 0
         for n in range(1000):
             target = reach * (0.5 - 0.5 * (1 - n / 1200) * np.cos(n * 0.05))
@@ -333,8 +332,6 @@ def main():
         if driver:
             step("size, and time per step (medians of 21 runs in one process)")
             measured(folder, driver)
-        for fmu in fmus.values():
-            shutil.rmtree(fmu.folder)
     if SKIPPED and os.environ.get("HYSTERON_NO_SKIP") == "1":
         sys.exit(f"failed: missing {', '.join(SKIPPED)}")
     step("all is well")

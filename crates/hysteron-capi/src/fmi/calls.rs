@@ -201,3 +201,45 @@ macro_rules! refused {
     )*};
 }
 pub(crate) use refused;
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use crate::fmi::block::{Block, Kind};
+    use crate::fmi::logger::Callback;
+    use hysteron_core::{Model, Operator, Plane, table_len};
+
+    unsafe extern "C" fn note(
+        status: *mut c_void,
+        said: Status,
+        _: *const c_char,
+        _: *const c_char,
+    ) {
+        // SAFETY: the test's own number.
+        unsafe { status.cast::<Status>().write(said) }
+    }
+
+    #[test]
+    fn a_panic_becomes_a_status() {
+        let plane = Plane::new(0.0, 1.0, 2).unwrap();
+        let table = vec![0.0; table_len(2)];
+        let block = Block {
+            kind: Kind::Forward,
+            token: String::new(),
+            checksum: 0,
+            model: Model::new(plane, Operator::Mkp, &[1.0; 3], table).unwrap(),
+            offset: 0.0,
+            sign: 1.0,
+        };
+        let mut said = OK;
+        let logger = Logger::new("spring", (&raw mut said).cast(), Callback::Fmi3(note));
+        let instance = Mutex::new(Instance::new(block).unwrap());
+        let handle = INSTANCES.insert(Entry { logger, instance }).ok().unwrap();
+        let status = call(pointer_of(handle), "f", |_| panic!("meant to be"));
+        assert_eq!((status, said), (FATAL, FATAL));
+        assert_eq!(call(pointer_of(handle), "f", |_| Ok(())), OK);
+        free(pointer_of(handle));
+        assert_eq!(call(pointer_of(handle), "f", |_| Ok(())), ERROR);
+    }
+}

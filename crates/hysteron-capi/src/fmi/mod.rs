@@ -5,6 +5,9 @@
 //!
 //! FMI 2.0.4 and 3.0.1, Modelica Association, <https://fmi-standard.org>.
 
+#[cfg(not(target_pointer_width = "64"))]
+compile_error!("handles stand where the standards have pointers: 64 bits are needed");
+
 mod block;
 mod calls;
 pub mod fmi2;

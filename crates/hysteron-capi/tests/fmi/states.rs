@@ -101,7 +101,7 @@ fn every_phase_can_be_saved() {
 #[test]
 fn bytes_that_are_no_state_are_refused() {
     let model = model(&vector("forward-mkp-2"));
-    let other_model = hysteron_export_model(&model);
+    let other_model = with_other_weights(&model);
     for fmi in [Fmi::V2, Fmi::V3] {
         let fmu = Unpacked::new(&model, false, fmi);
         let instance = fmu.started();
@@ -147,7 +147,7 @@ fn bytes_that_are_no_state_are_refused() {
 }
 
 /// The same plane with other weights.
-fn hysteron_export_model(model: &hysteron::Model) -> hysteron::Model {
+fn with_other_weights(model: &hysteron::Model) -> hysteron::Model {
     let weights = model.weights().iter().map(|mu| mu + 1.0).collect();
     hysteron::Model::new(model.operator(), *model.plane(), weights, 0.0, model.sign()).unwrap()
 }
@@ -175,5 +175,67 @@ fn states_end_with_free_and_with_their_instance() {
         a.free();
         assert_eq!(b.restore(state), 3, "it ended with its instance");
         b.free();
+    }
+}
+
+/// Bytes with the right checksum that this library never wrote: refused, or a state that runs.
+#[test]
+fn forged_bytes_do_no_harm() {
+    let model = model(&vector("forward-mkp-2"));
+    let forged = |words: &[u64]| {
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let sum = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+        [bytes, sum.to_le_bytes().to_vec()].concat()
+    };
+    for inverse in [false, true] {
+        let instance = Unpacked::new(&model, inverse, Fmi::V2).started();
+        let mut state = null_mut();
+        assert_eq!((instance.next(0.6), instance.save(&mut state)), (0, 0));
+        let bytes = instance.serialise(state);
+        let (words, _) = bytes.as_chunks::<8>();
+        let words: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
+        let (_, words) = words.split_last().unwrap();
+        assert_eq!(forged(words), bytes, "the forger knows how");
+        let odd = [
+            0.0,
+            -0.0,
+            1.5,
+            -1.0,
+            1e300,
+            f64::NAN,
+            f64::INFINITY,
+            f64::MIN_POSITIVE,
+        ]
+        .map(f64::to_bits);
+        let odd = odd.into_iter().chain([1, 2, 4, u64::MAX, 1 << 63]);
+        let mut accepted = 0;
+        for (place, value) in
+            (0..words.len()).flat_map(|place| odd.clone().map(move |value| (place, value)))
+        {
+            let mut words = words.to_vec();
+            words[place] = value;
+            if instance.deserialise(&forged(&words), &mut state) == 0 {
+                accepted += 1;
+                assert_eq!(instance.restore(state), 0);
+                for input in [0.2, 0.9, 0.4] {
+                    let time = instance.get(TIME).unwrap();
+                    instance.set(SIGNAL, input);
+                    instance.step(time, 1.0);
+                }
+            }
+        }
+        assert!(accepted > 10, "{accepted}");
+        // More turning points than any run leaves, nested in one cell.
+        let mut many = words[..12].to_vec();
+        many.push(10_000);
+        many.extend((0..10_000).map(|n| {
+            let away = 0.4 * f64::from(10_000 - n) / 10_000.0;
+            (1.5 + if n % 2 == 0 { away } else { -away }).to_bits()
+        }));
+        assert_eq!(instance.deserialise(&forged(&many), &mut state), 0);
+        assert_eq!((instance.restore(state), instance.next(0.9)), (0, 0));
+        instance.free();
     }
 }

@@ -91,12 +91,16 @@ fn co_simulation(xml: &mut Xml, name: &str, fmi: Fmi) -> io::Result<()> {
         ("modelIdentifier", name),
         ("canHandleVariableCommunicationStepSize", "true"),
     ]);
-    let saved = match fmi {
-        Fmi::V2 => ["canGetAndSetFMUstate", "canSerializeFMUstate"],
-        Fmi::V3 => ["canGetAndSetFMUState", "canSerializeFMUState"],
+    let offered = match fmi {
+        Fmi::V2 => &[
+            "canNotUseMemoryManagementFunctions",
+            "canGetAndSetFMUstate",
+            "canSerializeFMUstate",
+        ][..],
+        Fmi::V3 => &["canGetAndSetFMUState", "canSerializeFMUState"],
     };
     element
-        .with_attributes(saved.map(|name| (name, "true")))
+        .with_attributes(offered.iter().map(|name| (*name, "true")))
         .write_empty()?;
     Ok(())
 }
