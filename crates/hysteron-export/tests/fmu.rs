@@ -198,6 +198,15 @@ fn the_description_is_well_formed_and_says_what_the_model_says() {
             )
         );
 
+        let differences = xml
+            .descendants()
+            .filter(|node| node.has_attribute("relativeQuantity"));
+        assert_eq!(
+            differences.count(),
+            usize::from(options.inverse),
+            "the band"
+        );
+
         // Starts as numbers: all operators off.
         let start = variables[1]
             .descendants()

@@ -157,6 +157,7 @@ fn of_type(variable: &Variable) -> Vec<(&'static str, String)> {
     let (min, max) = variable.range;
     let all = [
         ("unit", variable.unit.clone()),
+        ("relativeQuantity", variable.relative.then(|| "true".into())),
         ("min", min.map(Into::into)),
         ("max", max.map(Into::into)),
         ("start", variable.start.clone()),

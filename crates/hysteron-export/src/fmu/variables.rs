@@ -13,6 +13,8 @@ pub(super) struct Variable {
     pub(super) initial: Option<&'static str>,
     pub(super) start: Option<String>,
     pub(super) unit: Option<String>,
+    /// Whether it is a difference, which the offset of a unit does not concern.
+    pub(super) relative: bool,
     /// Lowest and highest value, as they are written.
     pub(super) range: (Option<&'static str>, Option<&'static str>),
     pub(super) description: String,
@@ -93,6 +95,7 @@ fn time() -> Variable {
         initial: None,
         start: None,
         unit: None,
+        relative: false,
         range: (None, None),
         description: "simulation time, on which nothing depends".into(),
     }
@@ -160,6 +163,7 @@ fn band(output: &Quantity) -> Variable {
         initial: Some("exact"),
         start: Some("0.0".into()),
         unit: unit(output),
+        relative: true,
         range: (Some("0.0"), None),
         description: "reversals of the wanted output up to this size are noise and not followed"
             .into(),
