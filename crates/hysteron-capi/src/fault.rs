@@ -1,6 +1,10 @@
 //! From results to status codes, and the detail of the last failure.
 
 use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
+#[cfg(feature = "handles")]
+use hysteron::Error;
+#[cfg(not(feature = "handles"))]
+use hysteron_core::Error;
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char};
 use std::fmt;
@@ -11,7 +15,7 @@ pub(crate) enum Fault {
     /// The call itself is wrong: the code, and the argument.
     Call(i32, &'static str),
     /// The library refused.
-    Library(hysteron::Error),
+    Library(Error),
 }
 
 pub(crate) type Result<T> = std::result::Result<T, Fault>;
@@ -38,7 +42,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl<E: Into<hysteron::Error>> From<E> for Fault {
+impl<E: Into<Error>> From<E> for Fault {
     fn from(error: E) -> Self {
         Fault::Library(error.into())
     }

@@ -45,7 +45,7 @@ pub(crate) fn check<T>(pointer: *const T, name: &'static str) -> Result<()> {
     Ok(())
 }
 
-fn check_array<T>(pointer: *const T, count: usize, name: &'static str) -> Result<()> {
+pub(crate) fn check_array<T>(pointer: *const T, count: usize, name: &'static str) -> Result<()> {
     check(pointer, name)?;
     if count > isize::MAX as usize / size_of::<T>() {
         return Err(Fault::Call(HYSTERON_VALUE, name));

@@ -20,7 +20,11 @@ fn every_exported_function_is_in_the_header() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut count = 0;
     for file in std::fs::read_dir(folder).unwrap() {
-        let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+        let path = file.unwrap().path();
+        if path.is_dir() {
+            continue; // `fmi`, whose headers are the standards'
+        }
+        let text = std::fs::read_to_string(path).unwrap();
         for part in text.split("extern \"C\" fn ").skip(1) {
             let name = part.split('(').next().unwrap();
             assert!(header.contains(&format!("{name}(")), "{name}");

@@ -1,12 +1,159 @@
 //! An FMU: the model as a block for simulation tools.
+//!
+//! The binaries in it are the same for every model (`binaries/`, made from `hysteron-capi`); they read the model from the
+//! FMU's resources.
 
-use hysteron::{Model, Result};
+mod description;
+mod model_text;
+mod package;
+mod units;
+mod variables;
+
+use hysteron::{AtomicFile, Error, Model, Result};
+use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// Writes an FMU of `model` to `path`.
+/// What an FMU is to be.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FmuOptions {
+    /// The inverse of the model, from the wanted output to the input, instead of the model.
+    pub inverse: bool,
+    /// The standard that it follows.
+    pub fmi: Fmi,
+    /// The block's name, a C identifier; `sf_MKP` or `sf_Inverse_MKP` without one.
+    pub name: Option<String>,
+}
+
+/// A version of the Functional Mock-up Interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fmi {
+    /// FMI 2.0, co-simulation: what most tools import.
+    #[default]
+    V2,
+    /// FMI 3.0, co-simulation.
+    V3,
+}
+
+impl Fmi {
+    /// `2.0` or `3.0`.
+    #[must_use]
+    pub fn version(self) -> &'static str {
+        match self {
+            Fmi::V2 => "2.0",
+            Fmi::V3 => "3.0",
+        }
+    }
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fmu {
+    /// The block's name.
+    pub name: String,
+    /// GUID, in FMI 3.0 the instantiation token: the same for the same model and options.
+    pub token: String,
+    /// Size of the file.
+    pub bytes: usize,
+    /// Names of the variables that are inputs.
+    pub inputs: Vec<String>,
+    /// Names of the variables that are outputs.
+    pub outputs: Vec<String>,
+    /// Names of the variables that are parameters.
+    pub parameters: Vec<String>,
+}
+
+/// Writes an FMU of `model` to `path`, which must end with `.fmu`.
+///
+/// ```
+/// use hysteron::{Model, Operator, Plane, Sign};
+/// use hysteron_export::{FmuOptions, fmu};
+/// let plane = Plane::new(20.0, 80.0, 3)?;
+/// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+/// let folder = tempfile::tempdir()?;
+/// let options = FmuOptions { inverse: true, ..FmuOptions::default() };
+/// let made = fmu(&model, &options, &folder.path().join("sf_Inverse_MKP.fmu"))?;
+/// assert_eq!(made.name, "sf_Inverse_MKP");
+/// assert_eq!((&made.inputs[0][..], &made.outputs[0][..]), ("target", "input"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`hysteron::Error::Export`] for a model that cannot be exported, [`hysteron::Error::File`].
-pub fn fmu(model: &Model, _path: &Path) -> Result<()> {
-    crate::check(model)
+/// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C identifier or a path
+/// that does not end with `.fmu`; [`Error::Core`] for the inverse of a model with weights below zero; [`Error::File`].
+pub fn fmu(model: &Model, options: &FmuOptions, path: &Path) -> Result<Fmu> {
+    crate::check(model)?;
+    if options.inverse {
+        model.inverse()?;
+    }
+    if path
+        .extension()
+        .is_none_or(|end| !end.eq_ignore_ascii_case("fmu"))
+    {
+        let path = path.display();
+        return Err(Error::Export(format!(
+            "{path}: tools know an FMU by the end of its name: let it end with .fmu"
+        )));
+    }
+    let name = match (&options.name, options.inverse) {
+        (Some(name), _) => identifier(name)?,
+        (None, false) => "sf_MKP",
+        (None, true) => "sf_Inverse_MKP",
+    };
+    let variables = variables::of(model, options.inverse);
+    let describe = |token: &str| description::xml(model, (name, token), options, &variables);
+    let text = |token: &str| model_text::of(model, options.inverse, token);
+    let token = token(&describe("")?, &text(""));
+    let files = package::Files {
+        description: describe(&token)?,
+        model_text: text(&token),
+        model_json: model.to_json(),
+    };
+    let bytes = package::zip(&files, name, options.fmi)?;
+    AtomicFile::write_all(path, &bytes)?;
+    let names = |causality| {
+        let named = variables.iter().filter(|v| v.causality == causality);
+        named.map(|v| v.name.clone()).collect()
+    };
+    Ok(Fmu {
+        name: name.into(),
+        token,
+        bytes: bytes.len(),
+        inputs: names("input"),
+        outputs: names("output"),
+        parameters: names("parameter"),
+    })
+}
+
+/// A UUID that follows from the content (version 8 of RFC 9562).
+fn token(description: &str, model: &str) -> String {
+    let hash = Sha256::new()
+        .chain_update(description)
+        .chain_update(model)
+        .finalize();
+    let mut bytes = [0; 16];
+    bytes.copy_from_slice(&hash[..16]);
+    bytes[6] = bytes[6] & 0x0f | 0x80;
+    bytes[8] = bytes[8] & 0x3f | 0x80;
+    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    let parts = [
+        &hex[..8],
+        &hex[8..12],
+        &hex[12..16],
+        &hex[16..20],
+        &hex[20..],
+    ];
+    format!("{{{}}}", parts.join("-"))
+}
+
+/// A name that may stand in C, as the standards ask: files inside the FMU have it.
+fn identifier(name: &str) -> Result<&str> {
+    let mut letters = name.chars();
+    let first = letters
+        .next()
+        .is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+    if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Ok(name);
+    }
+    let text = "a block's name begins with a letter and has letters, digits and underscores only";
+    Err(Error::Export(format!("--name {name}: {text}")))
 }

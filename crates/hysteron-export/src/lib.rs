@@ -5,7 +5,7 @@ mod c;
 mod fmu;
 
 pub use c::c;
-pub use fmu::fmu;
+pub use fmu::{Fmi, Fmu, FmuOptions, fmu};
 
 use hysteron::{Error, Model, Result};
 

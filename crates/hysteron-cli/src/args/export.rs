@@ -11,7 +11,7 @@ pub(crate) enum Export {
     C(ExportC),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(
-        after_help = "Examples:\n  hysteron export fmu spring.json -o sf_MKP.fmu\n  hysteron export fmu spring.json --inverse -o sf_Inverse_MKP.fmu"
+        after_help = "Examples:\n  hysteron export fmu spring.json -o sf_MKP.fmu\n  hysteron export fmu spring.json --inverse -o sf_Inverse_MKP.fmu\n  hysteron export fmu spring.json --fmi 3 --name spring -o spring.fmu"
     )]
     Fmu(ExportFmu),
 }
@@ -33,11 +33,39 @@ pub(crate) struct ExportC {
 pub(crate) struct ExportFmu {
     /// The model
     pub(crate) model: PathBuf,
-    /// The file
+    /// The file, which ends with .fmu
     #[arg(short, value_name = "FMU")]
     pub(crate) out: PathBuf,
+    /// The inverse instead of the model: from the wanted output to the input
+    #[arg(long)]
+    pub(crate) inverse: bool,
+    /// The standard: FMI 2.0 or 3.0
+    #[arg(long, value_enum, default_value = "2")]
+    pub(crate) fmi: Fmi,
+    /// Name of the block, a C identifier [default: sf_MKP, with --inverse sf_Inverse_MKP]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
     #[command(flatten)]
     pub(crate) load: Load,
     #[command(flatten)]
     pub(crate) json: Json,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub(crate) enum Fmi {
+    /// What most tools import
+    #[value(name = "2")]
+    V2,
+    /// For tools that prefer it
+    #[value(name = "3")]
+    V3,
+}
+
+impl From<Fmi> for hysteron_export::Fmi {
+    fn from(fmi: Fmi) -> Self {
+        match fmi {
+            Fmi::V2 => Self::V2,
+            Fmi::V3 => Self::V3,
+        }
+    }
 }

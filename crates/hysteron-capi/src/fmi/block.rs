@@ -1,0 +1,133 @@
+//! The two blocks: model and inverse, with offset and sign.
+
+use super::{Problem, Result};
+use hysteron_core::{Clipped, Direction, Model, Policy, Solution, Status, Turn, turn_capacity};
+
+pub(crate) type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    /// `sf_MKP`: from the input to the output.
+    Forward,
+    /// `sf_Inverse_MKP`: from the wanted output to the input.
+    Inverse,
+}
+
+/// A model as it stands in the FMU: `output = offset + sign · Σ μ γ`.
+#[derive(Debug)]
+pub(crate) struct Block {
+    pub(crate) kind: Kind,
+    /// What the description of the FMU must say as well.
+    pub(crate) token: String,
+    /// Of the model's text: states belong to it.
+    pub(crate) checksum: u64,
+    pub(crate) model: Model<f64, Vec<f64>>,
+    pub(crate) offset: f64,
+    /// +1 or −1.
+    pub(crate) sign: f64,
+}
+
+/// What a step takes, and a start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Inputs {
+    /// Input or target.
+    pub(crate) signal: f64,
+    /// Where the target goes next: 1, −1, or 0 for the policy *hold*.
+    pub(crate) heading: i32,
+    /// The policy's tolerance, from 0 on.
+    pub(crate) band: f64,
+    /// Whether all operators are on at the start.
+    pub(crate) start_on: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Outputs {
+    /// Output, or the input found.
+    pub(crate) signal: f64,
+    /// −1, 0 or 1: where the input lay, or whether the target can be reached.
+    pub(crate) flag: i32,
+}
+
+impl Block {
+    /// As in the FMU's description: the bottom of the plane, or the output with all operators off.
+    pub(crate) fn inputs(&self) -> Inputs {
+        let signal = match self.kind {
+            Kind::Forward => self.model.plane().bottom(),
+            Kind::Inverse => self.offset + self.sign * self.model.output_range().0,
+        };
+        Inputs {
+            signal,
+            heading: 0,
+            band: 0.0,
+            start_on: false,
+        }
+    }
+
+    pub(crate) fn start(&self, on: bool) -> Result<State> {
+        let memory = vec![Turn::default(); turn_capacity(self.model.plane().levels())];
+        let mut state = self.model.state(memory)?;
+        if on {
+            self.model.reset_on(&mut state)?;
+        }
+        Ok(state)
+    }
+
+    /// Where it fails, the state is as it was.
+    pub(crate) fn step(&self, state: &mut State, inputs: &Inputs) -> Result<Outputs> {
+        if !inputs.signal.is_finite() {
+            let what = match self.kind {
+                Kind::Forward => "input",
+                Kind::Inverse => "target",
+            };
+            return Err(Problem(format!(
+                "the {what} is {}, not a finite number",
+                inputs.signal
+            )));
+        }
+        match self.kind {
+            Kind::Forward => {
+                let step = self.model.step(state, inputs.signal)?;
+                Ok(Outputs {
+                    signal: self.offset + self.sign * step.output,
+                    flag: match step.clipped {
+                        None => 0,
+                        Some(Clipped::Low) => -1,
+                        Some(Clipped::High) => 1,
+                    },
+                })
+            }
+            Kind::Inverse => {
+                let target = self.sign * (inputs.signal - self.offset);
+                let policy = self.policy(inputs);
+                let Solution { input, status } =
+                    self.model.inverse()?.step(state, target, policy)?;
+                let flag = match status {
+                    Status::Ok => 0,
+                    Status::Low => -1,
+                    Status::High => 1,
+                };
+                Ok(Outputs {
+                    signal: input,
+                    flag: if self.sign < 0.0 { -flag } else { flag },
+                })
+            }
+        }
+    }
+
+    /// For the output without sign.
+    fn policy(&self, inputs: &Inputs) -> Policy<f64> {
+        let tolerance = inputs.band;
+        let rising = (inputs.heading > 0) == (self.sign > 0.0);
+        match (inputs.heading, rising) {
+            (0, _) => Policy::Hold { tolerance },
+            (_, true) => Policy::Anticipate {
+                heading: Direction::Rising,
+                tolerance,
+            },
+            (_, false) => Policy::Anticipate {
+                heading: Direction::Falling,
+                tolerance,
+            },
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! An instance: a block, where it stands in the order of calls, and its run.
+
+use super::block::{Block, Inputs, Kind, Outputs, State};
+use super::snapshot::SAVED;
+use super::values::Value;
+use super::{Problem, Result};
+
+/// The states of the standards' state machine that this FMU has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Phase {
+    Instantiated,
+    Initialising,
+    Stepping,
+    Terminated,
+}
+
+/// All that changes: what a saved state holds.
+#[derive(Debug, Clone)]
+pub(crate) struct Run {
+    pub(crate) phase: Phase,
+    pub(crate) time: f64,
+    pub(crate) stop: Option<f64>,
+    pub(crate) inputs: Inputs,
+    /// Of the last step.
+    pub(crate) outputs: Outputs,
+    pub(crate) state: State,
+}
+
+#[derive(Debug)]
+pub(crate) struct Instance {
+    pub(crate) block: Block,
+    pub(crate) run: Run,
+    /// Saved states that end with the instance.
+    pub(crate) saved: Vec<u64>,
+}
+
+impl Instance {
+    pub(crate) fn new(block: Block) -> Result<Self> {
+        let run = Run::new(&block)?;
+        Ok(Self {
+            block,
+            run,
+            saved: Vec::new(),
+        })
+    }
+
+    pub(crate) fn kind(&self) -> Kind {
+        self.block.kind
+    }
+
+    pub(crate) fn time(&self) -> f64 {
+        self.run.time
+    }
+
+    pub(crate) fn inputs(&self) -> &Inputs {
+        &self.run.inputs
+    }
+
+    /// Those of the last step; before the first one, those that follow from the start.
+    pub(crate) fn outputs(&self) -> Result<Outputs> {
+        match self.run.phase {
+            Phase::Instantiated | Phase::Initialising => Ok(self.begun()?.1),
+            Phase::Stepping | Phase::Terminated => Ok(self.run.outputs),
+        }
+    }
+
+    /// The state after the start inputs. Nothing is kept, so that a tool can try other ones.
+    fn begun(&self) -> Result<(State, Outputs)> {
+        let mut state = self.block.start(self.run.inputs.start_on)?;
+        let outputs = self.block.step(&mut state, &self.run.inputs)?;
+        Ok((state, outputs))
+    }
+
+    fn expect(&self, allowed: &[Phase]) -> Result<()> {
+        match allowed.contains(&self.run.phase) {
+            true => Ok(()),
+            false => Err(Problem::new(match self.run.phase {
+                Phase::Instantiated => "initialisation has not been entered yet",
+                Phase::Initialising => "the instance is being initialised",
+                Phase::Stepping => "the instance is initialised already",
+                Phase::Terminated => "the instance was terminated: reset it first",
+            })),
+        }
+    }
+
+    pub(crate) fn experiment(&mut self, start: f64, stop: Option<f64>) -> Result<()> {
+        self.expect(&[Phase::Instantiated])?;
+        if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < start) {
+            let stop = stop.unwrap_or(f64::INFINITY);
+            return Err(Problem(format!(
+                "no experiment goes from {start} to {stop}"
+            )));
+        }
+        (self.run.time, self.run.stop) = (start, stop);
+        Ok(())
+    }
+
+    pub(crate) fn enter_initialisation(&mut self) -> Result<()> {
+        self.expect(&[Phase::Instantiated])?;
+        self.run.phase = Phase::Initialising;
+        Ok(())
+    }
+
+    pub(crate) fn exit_initialisation(&mut self) -> Result<()> {
+        self.expect(&[Phase::Initialising])?;
+        (self.run.state, self.run.outputs) = self.begun()?;
+        self.run.phase = Phase::Stepping;
+        Ok(())
+    }
+
+    /// The inputs act at once: the model depends on their order, not on time.
+    pub(crate) fn step(&mut self, from: f64, size: f64) -> Result<()> {
+        self.expect(&[Phase::Stepping])?;
+        let to = from + size;
+        // Written so that NaN fails it.
+        if !(size >= 0.0 && to.is_finite()) {
+            return Err(Problem(format!("no step goes from {from} by {size}")));
+        }
+        if !close(from, self.run.time) {
+            let time = self.run.time;
+            return Err(Problem(format!(
+                "the step begins at {from}, but the last one ended at {time}"
+            )));
+        }
+        if let Some(stop) = self.run.stop.filter(|stop| to > *stop && !close(to, *stop)) {
+            return Err(Problem(format!(
+                "the step ends at {to}, after the stop time {stop}"
+            )));
+        }
+        self.run.outputs = self.block.step(&mut self.run.state, &self.run.inputs)?;
+        self.run.time = to;
+        Ok(())
+    }
+
+    pub(crate) fn terminate(&mut self) -> Result<()> {
+        self.expect(&[Phase::Stepping])?;
+        self.run.phase = Phase::Terminated;
+        Ok(())
+    }
+
+    pub(crate) fn reset(&mut self) -> Result<()> {
+        self.run = Run::new(&self.block)?;
+        Ok(())
+    }
+
+    /// Sets all of the values, or none of them.
+    pub(crate) fn set<T: Value>(&mut self, values: impl Iterator<Item = (u32, T)>) -> Result<()> {
+        self.expect(&[Phase::Instantiated, Phase::Initialising, Phase::Stepping])?;
+        let mut inputs = self.run.inputs;
+        for (reference, value) in values {
+            value.set(&mut inputs, self.block.kind, reference)?;
+        }
+        if self.run.phase == Phase::Stepping && inputs.start_on != self.run.inputs.start_on {
+            return Err(Problem::new(
+                "`start_on` acts at the start: it is fixed from there on",
+            ));
+        }
+        self.run.inputs = inputs;
+        Ok(())
+    }
+}
+
+impl Run {
+    fn new(block: &Block) -> Result<Self> {
+        let outputs = Outputs {
+            signal: 0.0,
+            flag: 0,
+        };
+        Ok(Self {
+            phase: Phase::Instantiated,
+            time: 0.0,
+            stop: None,
+            inputs: block.inputs(),
+            outputs,
+            state: block.start(false)?,
+        })
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        for handle in self.saved.drain(..) {
+            // One that was freed already is what it should be.
+            let _ = SAVED.remove(handle, "state");
+        }
+    }
+}
+
+/// Times that tools add up from steps differ by rounding.
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
+}

@@ -1,0 +1,301 @@
+//! The model inside the FMU: `model.txt`, lines that a program wrote for this one to read.
+//!
+//! ```text
+//! hysteron-fmu 1
+//! block forward
+//! token {8f0c…}
+//! operator mkp
+//! plane 20.0 80.0 20
+//! output 0.0 1
+//! weights 210
+//! 0.25
+//! …
+//! end 217 b1946ac92492d234
+//! ```
+//! The last line counts those before it and holds their FNV-1a checksum. Numbers are the shortest that read back as the same.
+
+use super::block::{Block, Kind};
+use super::{Problem, Result, checksum};
+use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
+use std::path::Path;
+use std::str::FromStr;
+
+const FILE: &str = "model.txt";
+const HEAD: &str = "hysteron-fmu 1";
+
+/// Reads the model in the folder of the FMU's resources; faults name file and line.
+pub(crate) fn read(folder: &Path) -> Result<Block> {
+    let path = folder.join(FILE);
+    let place = path.display();
+    let bytes = std::fs::read(&path).map_err(|error| Problem(format!("{place}: {error}")))?;
+    parse(&bytes).map_err(|fault| {
+        let Fault { line, problem } = fault;
+        Problem(format!(
+            "{place}, line {line}: {problem}: export the model again"
+        ))
+    })
+}
+
+#[derive(Debug)]
+struct Fault {
+    line: usize,
+    problem: String,
+}
+
+type Parsed<T> = std::result::Result<T, Fault>;
+
+/// Lines with their number.
+struct Lines<'a> {
+    lines: std::str::Split<'a, char>,
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    fn fault<T>(&self, problem: impl Into<String>) -> Parsed<T> {
+        Err(Fault {
+            line: self.line,
+            problem: problem.into(),
+        })
+    }
+
+    fn next(&mut self) -> Parsed<&'a str> {
+        self.line += 1;
+        match self.lines.next() {
+            Some(line) => Ok(line),
+            None => self.fault("the file ends here"),
+        }
+    }
+
+    /// What follows `key` on the next line: so many words.
+    fn entry<const N: usize>(&mut self, key: &str) -> Parsed<[&'a str; N]> {
+        let line = self.next()?;
+        let words: Option<Vec<&str>> = line
+            .strip_prefix(key)
+            .and_then(|rest| rest.strip_prefix(' '))
+            .map(|rest| rest.split(' ').collect());
+        match words.and_then(|words| words.try_into().ok()) {
+            Some(words) => Ok(words),
+            None => self.fault(format!("`{key}` and {N} value(s) are expected")),
+        }
+    }
+
+    fn number<T: FromStr>(&self, word: &str) -> Parsed<T> {
+        word.parse()
+            .or_else(|_| self.fault(format!("`{word}` is no number that can stand here")))
+    }
+
+    fn finite(&self, word: &str) -> Parsed<f64> {
+        let number: f64 = self.number(word)?;
+        match number.is_finite() {
+            true => Ok(number),
+            false => self.fault(format!("{number} is not a finite number")),
+        }
+    }
+}
+
+fn parse(bytes: &[u8]) -> Parsed<Block> {
+    let text = std::str::from_utf8(bytes).map_err(|error| Fault {
+        line: 1 + bytes[..error.valid_up_to()]
+            .iter()
+            .filter(|byte| **byte == b'\n')
+            .count(),
+        problem: "this is not UTF-8".into(),
+    })?;
+    let mut lines = Lines {
+        lines: text.split('\n'),
+        line: 0,
+    };
+    let head = lines.next()?;
+    if head != HEAD {
+        return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
+    }
+    let checksum = check_end(text)?;
+    let kind = match lines.entry("block")? {
+        ["forward"] => Kind::Forward,
+        ["inverse"] => Kind::Inverse,
+        [other] => return lines.fault(format!("there is no block `{other}`")),
+    };
+    let [token] = lines.entry("token")?;
+    let operator = match lines.entry("operator")? {
+        ["mkp"] => Operator::Mkp,
+        ["kp"] => Operator::Kp,
+        ["relay"] => Operator::Relay,
+        [other] => return lines.fault(format!("there is no operator `{other}`")),
+    };
+    let [min, max, levels] = lines.entry("plane")?;
+    let (min, max, levels) = (
+        lines.finite(min)?,
+        lines.finite(max)?,
+        lines.number(levels)?,
+    );
+    let plane = Plane::new(min, max, levels).or_else(|error| lines.fault(error.to_string()))?;
+    let [offset, sign] = lines.entry("output")?;
+    let offset = lines.finite(offset)?;
+    let sign = match sign {
+        "1" => 1.0,
+        "-1" => -1.0,
+        other => return lines.fault(format!("the sign {other} is neither 1 nor -1")),
+    };
+    let [count] = lines.entry("weights")?;
+    if lines.number::<usize>(count)? != operator_count(levels) {
+        let needed = operator_count(levels);
+        return lines.fault(format!(
+            "{count} weights where K(K+1)/2 = {needed} are needed"
+        ));
+    }
+    // Grows with the lines that are there: a number alone reserves nothing.
+    let mut weights = Vec::new();
+    for _ in 0..operator_count(levels) {
+        let line = lines.next()?;
+        weights.push(lines.finite(line)?);
+    }
+    let end = lines.next()?;
+    if !end.starts_with("end ") {
+        return lines.fault("more lines than weights");
+    }
+    let table = vec![0.0; table_len(levels)];
+    let model = Model::new(plane, operator, &weights, table)
+        .or_else(|error| lines.fault(error.to_string()))?;
+    if kind == Kind::Inverse {
+        model
+            .inverse()
+            .or_else(|error| lines.fault(error.to_string()))?;
+    }
+    Ok(Block {
+        kind,
+        token: token.into(),
+        checksum,
+        model,
+        offset,
+        sign,
+    })
+}
+
+/// Checks the last line, and gives its checksum.
+fn check_end(text: &str) -> Parsed<u64> {
+    let count = text.matches('\n').count();
+    let fault = |line: usize, problem: String| Err(Fault { line, problem });
+    let Some(whole) = text.strip_suffix('\n') else {
+        return fault(count + 1, "the file ends within a line".into());
+    };
+    let before = whole.rfind('\n').map_or(0, |n| n + 1);
+    let (lines, end) = whole.split_at(before);
+    if !end.starts_with("end ") {
+        return fault(
+            count,
+            format!("the file ends with `{end}`, not with its last line, `end …`"),
+        );
+    }
+    let checksum = checksum(lines.as_bytes());
+    let expected = format!("end {} {checksum:016x}", count - 1);
+    if end != expected {
+        return fault(
+            count,
+            format!("`{end}` where the lines before say `{expected}`: one of them has changed"),
+        );
+    }
+    Ok(checksum)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const LINES: [&str; 10] = [
+        "hysteron-fmu 1",
+        "block inverse",
+        "token {abc}",
+        "operator kp",
+        "plane 20.0 80.0 2",
+        "output -1.5 -1",
+        "weights 3",
+        "0.1",
+        "0.0",
+        "1e-3",
+    ];
+
+    fn closed(lines: &[&str]) -> String {
+        let text: String = lines.iter().flat_map(|line| [line, "\n"]).collect();
+        let checksum = checksum(text.as_bytes());
+        format!("{text}end {} {checksum:016x}\n", lines.len())
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let block = parse(closed(&LINES).as_bytes()).unwrap();
+        assert_eq!((block.kind, block.token.as_str()), (Kind::Inverse, "{abc}"));
+        assert_eq!((block.offset, block.sign), (-1.5, -1.0));
+        assert_eq!(block.model.plane().levels(), 2);
+    }
+
+    #[test]
+    fn whatever_is_cut_or_changed_is_refused_with_its_line() {
+        let text = closed(&LINES);
+        for length in 0..text.len() {
+            assert!(parse(&text.as_bytes()[..length]).is_err(), "{length} bytes");
+        }
+        for place in 0..text.len() {
+            for bit in 0..8 {
+                let mut bytes = text.clone().into_bytes();
+                bytes[place] ^= 1 << bit;
+                let fault = parse(&bytes).unwrap_err();
+                assert!((1..=12).contains(&fault.line), "{place}: {fault:?}");
+            }
+        }
+        assert!(parse(format!("{text}\n").as_bytes()).is_err());
+    }
+
+    #[test]
+    fn a_fault_with_the_right_checksum_is_named() {
+        let cases = [
+            (1, "hysteron-fmu 2", "`hysteron-fmu 2` where"),
+            (2, "block sideways", "no block"),
+            (2, "block", "`block` and 1 value"),
+            (4, "operator", "`operator` and 1 value"),
+            (5, "plane 20.0 NaN 2", "not a finite number"),
+            (5, "plane 20.0 10.0 2", "in"),
+            (5, "plane 20.0 80.0 1", "1 levels"),
+            (5, "plane 20.0 80.0 46341", "46341 levels"),
+            (5, "plane 20.0 80.0 99999999999999999999", "no number"),
+            (6, "output inf 1", "not a finite number"),
+            (6, "output 0.0 2", "neither 1 nor -1"),
+            (7, "weights 4", "are needed"),
+            (8, "NaN", "not a finite number"),
+            (9, "0.0 ", "no number"),
+            (9, "1.0\n2.0", "end"),
+        ];
+        for (line, replaced, expected) in cases {
+            let mut lines = LINES;
+            lines[line - 1] = replaced;
+            let text = match replaced.contains('\n') {
+                true => closed(&lines.join("\n").split('\n').collect::<Vec<_>>()),
+                false => closed(&lines),
+            };
+            let fault = parse(text.as_bytes()).unwrap_err();
+            assert!(
+                fault.problem.contains(expected) || fault.problem.contains("more lines"),
+                "{replaced}: {fault:?}"
+            );
+            assert!(fault.line >= line, "{replaced}: {fault:?}");
+        }
+        // A large plane alone reserves nothing.
+        let mut lines = LINES;
+        (lines[4], lines[6]) = ("plane 20.0 80.0 46340", "weights 1073720970");
+        assert!(parse(closed(&lines).as_bytes()).unwrap_err().line >= 11);
+    }
+
+    #[test]
+    fn an_inverse_needs_weights_from_zero_on() {
+        let mut lines = LINES;
+        lines[8] = "-0.5";
+        assert!(
+            parse(closed(&lines).as_bytes())
+                .unwrap_err()
+                .problem
+                .contains("negative")
+        );
+        lines[1] = "block forward";
+        assert!(parse(closed(&lines).as_bytes()).is_ok());
+    }
+}

@@ -1,0 +1,193 @@
+//! Saved states, in memory and as bytes.
+
+use super::block::{Block, Inputs, Outputs};
+use super::instance::{Instance, Phase, Run};
+use super::{Problem, Result, checksum};
+use crate::handles::Table;
+use std::sync::{Mutex, PoisonError};
+
+/// A run at some time, and the model that it is one of.
+#[derive(Debug)]
+pub(crate) struct Saved {
+    model: u64,
+    run: Mutex<Run>,
+}
+
+pub(crate) static SAVED: Table<Saved> = Table::new(9);
+
+impl Saved {
+    fn run(&self) -> Run {
+        self.run
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+}
+
+impl Instance {
+    /// Saves the run, over an older one where `handle` is not 0.
+    pub(crate) fn save(&mut self, handle: u64) -> Result<u64> {
+        if handle == 0 {
+            return self.keep(self.run.clone());
+        }
+        let saved = SAVED.get(handle, "FMUstate")?;
+        self.owns(&saved)?;
+        *saved.run.lock().unwrap_or_else(PoisonError::into_inner) = self.run.clone();
+        Ok(handle)
+    }
+
+    fn keep(&mut self, run: Run) -> Result<u64> {
+        let handle = SAVED.insert(Saved {
+            model: self.block.checksum,
+            run: Mutex::new(run),
+        })?;
+        self.saved.push(handle);
+        Ok(handle)
+    }
+
+    /// A state of another instance will do if it is one of the same model.
+    fn owns(&self, saved: &Saved) -> Result<()> {
+        match saved.model == self.block.checksum {
+            true => Ok(()),
+            false => Err(Problem::new("the state belongs to another model")),
+        }
+    }
+
+    pub(crate) fn saved(&self, handle: u64) -> Result<Run> {
+        let saved = SAVED.get(handle, "FMUstate")?;
+        self.owns(&saved)?;
+        Ok(saved.run())
+    }
+
+    pub(crate) fn restore(&mut self, handle: u64) -> Result<()> {
+        self.run = self.saved(handle)?;
+        Ok(())
+    }
+
+    pub(crate) fn forget(&mut self, handle: u64) -> Result<()> {
+        SAVED.remove(handle, "FMUstate")?;
+        self.saved.retain(|other| *other != handle);
+        Ok(())
+    }
+
+    pub(crate) fn serialised(&self, handle: u64) -> Result<Vec<u8>> {
+        Ok(self.saved(handle)?.bytes(&self.block))
+    }
+
+    pub(crate) fn deserialise(&mut self, bytes: &[u8]) -> Result<u64> {
+        let run = Run::of_bytes(&self.block, bytes)?;
+        self.keep(run)
+    }
+}
+
+/// The first word: what this is, and the version of its form.
+const MARK: u64 = u64::from_le_bytes(*b"hysfmu01");
+const PHASES: [Phase; 4] = [
+    Phase::Instantiated,
+    Phase::Initialising,
+    Phase::Stepping,
+    Phase::Terminated,
+];
+
+impl Run {
+    /// Words of 8 bytes, little-endian: mark, model, 11 that [`Run::of_bytes`] reads in the same order, number of turning
+    /// points, these, checksum.
+    fn bytes(&self, block: &Block) -> Vec<u8> {
+        let points = self.state.turning_points();
+        let points: Vec<u64> = points.map(f64::to_bits).collect();
+        let head = [
+            MARK,
+            block.checksum,
+            self.phase as u64,
+            self.time.to_bits(),
+            self.stop.unwrap_or(f64::INFINITY).to_bits(),
+            self.inputs.signal.to_bits(),
+            i64::from(self.inputs.heading) as u64,
+            self.inputs.band.to_bits(),
+            u64::from(self.inputs.start_on),
+            self.outputs.signal.to_bits(),
+            i64::from(self.outputs.flag) as u64,
+            self.state.input().to_bits(),
+            points.len() as u64,
+        ];
+        let words = head.into_iter().chain(points);
+        let mut bytes: Vec<u8> = words.flat_map(u64::to_le_bytes).collect();
+        bytes.extend(checksum(&bytes).to_le_bytes());
+        bytes
+    }
+
+    fn of_bytes(block: &Block, bytes: &[u8]) -> Result<Self> {
+        let broken = || Problem::new("the serialised state is cut or changed");
+        let (words, rest) = bytes.as_chunks::<8>();
+        let words: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
+        let [
+            mark,
+            model,
+            phase,
+            time,
+            stop,
+            signal,
+            heading,
+            band,
+            start_on,
+            result,
+            flag,
+            input,
+            count,
+            points @ ..,
+            sum,
+        ] = words.as_slice()
+        else {
+            return Err(broken());
+        };
+        if *mark != MARK {
+            return Err(Problem::new(
+                "the serialised state is of another kind or version",
+            ));
+        }
+        let whole = checksum(&bytes[..8 * (words.len() - 1)]) == *sum;
+        if !whole || !rest.is_empty() || *count != points.len() as u64 {
+            return Err(broken());
+        }
+        if *model != block.checksum {
+            return Err(Problem::new(
+                "the serialised state belongs to another model",
+            ));
+        }
+        // Beyond this line only a program that forges checksums can be wrong, and it must do no harm either.
+        let one = |word: &u64| {
+            i32::try_from(*word as i64)
+                .ok()
+                .filter(|n| n.abs() <= 1)
+                .ok_or_else(broken)
+        };
+        let number = |word: &u64| f64::from_bits(*word);
+        let points: Vec<f64> = points.iter().map(number).collect();
+        let mut state = block.start(false)?;
+        block.model.restore(&mut state, &points, number(input))?;
+        let run = Self {
+            phase: *usize::try_from(*phase)
+                .ok()
+                .and_then(|n| PHASES.get(n))
+                .ok_or_else(broken)?,
+            time: number(time),
+            stop: Some(number(stop)).filter(|stop| *stop != f64::INFINITY),
+            inputs: Inputs {
+                signal: number(signal),
+                heading: one(heading)?,
+                band: number(band),
+                start_on: *start_on == 1,
+            },
+            outputs: Outputs {
+                signal: number(result),
+                flag: one(flag)?,
+            },
+            state,
+        };
+        // Written so that NaN fails it.
+        match run.inputs.band >= 0.0 && run.time.is_finite() && run.outputs.signal.is_finite() {
+            true => Ok(run),
+            false => Err(broken()),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The variables of a block by their value references, as the FMU's description has them.
+
+use super::block::{Inputs, Kind};
+use super::instance::Instance;
+use super::{Problem, Result};
+
+const TIME: u32 = 0;
+/// Input, or target.
+const SIGNAL: u32 = 1;
+/// Output, or the input found.
+const RESULT: u32 = 2;
+/// `clipped`, or `status`.
+const FLAG: u32 = 3;
+const HEADING: u32 = 4;
+const BAND: u32 = 5;
+const START_ON: u32 = 6;
+
+/// A type of value that an FMU has variables of.
+pub(crate) trait Value: Copy {
+    fn get(instance: &Instance, reference: u32) -> Result<Self>;
+    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()>;
+}
+
+impl Value for f64 {
+    fn get(instance: &Instance, reference: u32) -> Result<Self> {
+        let inputs = instance.inputs();
+        match (reference, instance.kind()) {
+            (TIME, _) => Ok(instance.time()),
+            (SIGNAL, _) => Ok(inputs.signal),
+            (RESULT, _) => Ok(instance.outputs()?.signal),
+            (BAND, Kind::Inverse) => Ok(inputs.band),
+            _ => unknown("floating-point", reference),
+        }
+    }
+
+    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()> {
+        match (reference, kind) {
+            // What is not finite is refused by the step, which can say so where it matters.
+            (SIGNAL, _) => inputs.signal = self,
+            // Written so that NaN fails it.
+            (BAND, Kind::Inverse) if self >= 0.0 && self.is_finite() => inputs.band = self,
+            (BAND, Kind::Inverse) => {
+                return Err(Problem(format!(
+                    "`band` is {self}: a finite number from 0 on is needed"
+                )));
+            }
+            (TIME | RESULT, _) => return output(reference),
+            _ => return unknown("floating-point", reference),
+        }
+        Ok(())
+    }
+}
+
+impl Value for i32 {
+    fn get(instance: &Instance, reference: u32) -> Result<Self> {
+        match (reference, instance.kind()) {
+            (FLAG, _) => Ok(instance.outputs()?.flag),
+            (HEADING, Kind::Inverse) => Ok(instance.inputs().heading),
+            _ => unknown("integer", reference),
+        }
+    }
+
+    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()> {
+        match (reference, kind, self) {
+            (HEADING, Kind::Inverse, -1..=1) => inputs.heading = self,
+            (HEADING, Kind::Inverse, _) => {
+                return Err(Problem(format!(
+                    "`heading` is {self}: -1, 0 or 1 is needed"
+                )));
+            }
+            (FLAG, _, _) => return output(reference),
+            _ => return unknown("integer", reference),
+        }
+        Ok(())
+    }
+}
+
+impl Value for bool {
+    fn get(instance: &Instance, reference: u32) -> Result<Self> {
+        match reference {
+            START_ON => Ok(instance.inputs().start_on),
+            _ => unknown("boolean", reference),
+        }
+    }
+
+    fn set(self, inputs: &mut Inputs, _: Kind, reference: u32) -> Result<()> {
+        match reference {
+            START_ON => inputs.start_on = self,
+            _ => return unknown("boolean", reference),
+        }
+        Ok(())
+    }
+}
+
+fn unknown<T>(kind: &str, reference: u32) -> Result<T> {
+    Err(Problem(format!(
+        "there is no {kind} variable with the value reference {reference}"
+    )))
+}
+
+fn output<T>(reference: u32) -> Result<T> {
+    Err(Problem(format!(
+        "the variable with the value reference {reference} is an output and cannot be set"
+    )))
+}

@@ -1,0 +1,39 @@
+//! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines are.
+
+use hysteron::{Model, Operator, Sign};
+use std::fmt::Write;
+
+pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
+    let plane = model.plane();
+    let (min, max, levels) = (plane.min(), plane.max(), plane.levels());
+    let block = if inverse { "inverse" } else { "forward" };
+    let operator = match model.operator() {
+        Operator::Mkp => "mkp",
+        Operator::Kp => "kp",
+        Operator::Relay => "relay",
+    };
+    let sign = match model.sign() {
+        Sign::Positive => 1,
+        Sign::Negative => -1,
+    };
+    let (offset, weights) = (model.offset(), model.weights());
+    let mut text = format!(
+        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} {levels}\n\
+         output {offset:?} {sign}\nweights {}\n",
+        weights.len()
+    );
+    for weight in weights {
+        // The shortest that reads back as the same number. Writing to a text cannot fail.
+        let _ = writeln!(text, "{weight:?}");
+    }
+    let (count, checksum) = (text.matches('\n').count(), checksum(text.as_bytes()));
+    let _ = writeln!(text, "end {count} {checksum:016x}");
+    text
+}
+
+/// FNV-1a.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

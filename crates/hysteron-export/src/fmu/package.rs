@@ -1,0 +1,58 @@
+//! The archive that an FMU is.
+
+use super::Fmi;
+use hysteron::{Error, Result};
+use std::io::{Cursor, Write};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+const LINUX: &[u8] = include_bytes!("../../binaries/linux64/hysteron.so");
+const WINDOWS: &[u8] = include_bytes!("../../binaries/win64/hysteron.dll");
+const LICENCE: &str = include_str!("../../../../LICENSE-MIT");
+
+pub(super) struct Files {
+    pub(super) description: String,
+    pub(super) model_text: String,
+    pub(super) model_json: String,
+}
+
+/// The same bytes for the same content: without times, in a fixed order.
+pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
+    let (linux, windows) = match fmi {
+        Fmi::V2 => ("linux64", "win64"),
+        Fmi::V3 => ("x86_64-linux", "x86_64-windows"),
+    };
+    let licence = format!(
+        "The binaries are part of hysteron, under the licence below. The model in resources/ is its maker's.\n\n{LICENCE}"
+    );
+    let entries: [(String, &[u8]); 6] = [
+        ("modelDescription.xml".into(), files.description.as_bytes()),
+        (format!("binaries/{linux}/{name}.so"), LINUX),
+        (format!("binaries/{windows}/{name}.dll"), WINDOWS),
+        ("resources/model.txt".into(), files.model_text.as_bytes()),
+        ("resources/model.json".into(), files.model_json.as_bytes()),
+        (
+            "documentation/licenses/license.txt".into(),
+            licence.as_bytes(),
+        ),
+    ];
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .compression_level(Some(9))
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644);
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let packed = (|| {
+        for (path, bytes) in &entries {
+            zip.start_file(path.as_str(), options)?;
+            zip.write_all(bytes)?;
+        }
+        zip.finish()
+    })();
+    match packed {
+        Ok(cursor) => Ok(cursor.into_inner()),
+        Err(error) => Err(Error::Export(format!(
+            "the archive cannot be made: {error}"
+        ))),
+    }
+}

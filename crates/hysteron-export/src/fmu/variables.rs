@@ -1,0 +1,267 @@
+//! The variables of the blocks.
+
+use hysteron::{Model, Quantity};
+
+/// A variable as FMI describes it.
+pub(super) struct Variable {
+    pub(super) name: String,
+    /// Its place among the constants of `hysteron-capi/src/fmi/values.rs`.
+    pub(super) reference: u32,
+    pub(super) kind: Kind,
+    pub(super) causality: &'static str,
+    pub(super) variability: &'static str,
+    pub(super) initial: Option<&'static str>,
+    pub(super) start: Option<String>,
+    pub(super) unit: Option<String>,
+    /// Whether it is a difference, which the offset of a unit does not concern.
+    pub(super) relative: bool,
+    /// Lowest and highest value, as they are written.
+    pub(super) range: (Option<&'static str>, Option<&'static str>),
+    pub(super) description: String,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    Real,
+    Integer,
+    Boolean,
+}
+
+const SIGN: (Option<&str>, Option<&str>) = (Some("-1"), Some("1"));
+
+/// All of a block, in the order of the description.
+pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
+    let plane = model.plane();
+    let (bottom, max) = (plane.bottom(), plane.max());
+    let active = format!("active from {bottom} to {max}");
+    let (off, on) = model.output_range();
+    let reach = format!("from {off} with all operators off to {on} with all on");
+    // Where the model file has no names: an input called `output` would say the wrong thing.
+    let mut wanted = model.output.clone();
+    if wanted.name == "output" {
+        wanted.name = "target".into();
+    }
+    let variables = match inverse {
+        false => vec![
+            time(),
+            // No minimum and maximum: tools stop at them, and the model does not.
+            input(
+                1,
+                &model.input,
+                bottom,
+                format!("{active}; outside it is taken as the nearest end"),
+            ),
+            output(2, &model.output, reach),
+            flag(
+                3,
+                "clipped",
+                "whether the input lay outside the active range: -1 below, 1 above",
+            ),
+            start_on(),
+        ],
+        true => vec![
+            time(),
+            input(
+                1,
+                &wanted,
+                off,
+                format!("the output that is wanted; {reach}"),
+            ),
+            output(
+                2,
+                &model.input,
+                format!("the input that gives the wanted output; {active}"),
+            ),
+            flag(
+                3,
+                "status",
+                "whether the wanted output can be reached: 0, or -1 below and 1 above every output",
+            ),
+            heading(),
+            band(&model.output),
+            start_on(),
+        ],
+    };
+    with_names(variables)
+}
+
+fn time() -> Variable {
+    Variable {
+        name: "time".into(),
+        reference: 0,
+        kind: Kind::Real,
+        causality: "independent",
+        variability: "continuous",
+        initial: None,
+        start: None,
+        unit: None,
+        relative: false,
+        range: (None, None),
+        description: "simulation time, on which nothing depends".into(),
+    }
+}
+
+fn input(reference: u32, quantity: &Quantity, start: f64, description: String) -> Variable {
+    Variable {
+        name: clean(&quantity.name),
+        reference,
+        causality: "input",
+        start: Some(format!("{start:?}")),
+        unit: unit(quantity),
+        description,
+        ..time()
+    }
+}
+
+fn output(reference: u32, quantity: &Quantity, description: String) -> Variable {
+    Variable {
+        name: clean(&quantity.name),
+        reference,
+        causality: "output",
+        initial: Some("calculated"),
+        unit: unit(quantity),
+        description,
+        ..time()
+    }
+}
+
+fn flag(reference: u32, name: &str, description: &str) -> Variable {
+    Variable {
+        name: name.into(),
+        reference,
+        kind: Kind::Integer,
+        causality: "output",
+        variability: "discrete",
+        initial: Some("calculated"),
+        range: SIGN,
+        description: description.into(),
+        ..time()
+    }
+}
+
+fn heading() -> Variable {
+    Variable {
+        name: "heading".into(),
+        reference: 4,
+        kind: Kind::Integer,
+        causality: "input",
+        variability: "discrete",
+        start: Some("0".into()),
+        range: SIGN,
+        description: "where the wanted output goes next: 1 or -1, so that the input crosses the dead band at once; 0 if unknown"
+            .into(),
+        ..time()
+    }
+}
+
+fn band(output: &Quantity) -> Variable {
+    Variable {
+        name: "band".into(),
+        reference: 5,
+        causality: "parameter",
+        variability: "tunable",
+        initial: Some("exact"),
+        start: Some("0.0".into()),
+        unit: unit(output),
+        relative: true,
+        range: (Some("0.0"), None),
+        description: "reversals of the wanted output up to this size are noise and not followed"
+            .into(),
+        ..time()
+    }
+}
+
+fn start_on() -> Variable {
+    Variable {
+        name: "start_on".into(),
+        reference: 6,
+        kind: Kind::Boolean,
+        causality: "parameter",
+        variability: "fixed",
+        initial: Some("exact"),
+        start: Some("false".into()),
+        description: "start with all operators on, as after an input at the top, instead of off"
+            .into(),
+        ..time()
+    }
+}
+
+fn unit(quantity: &Quantity) -> Option<String> {
+    let unit = quantity.unit.as_deref().map(clean);
+    unit.filter(|unit| !unit.is_empty())
+}
+
+/// Without what no XML or no tool can hold.
+fn clean(text: &str) -> String {
+    let legal = |c: &char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    let text: String = text.chars().filter(legal).collect();
+    text.trim().into()
+}
+
+/// Names that are there and unlike the others: the model file's where they can be.
+fn with_names(mut variables: Vec<Variable>) -> Vec<Variable> {
+    for n in 0..variables.len() {
+        let Variable {
+            name,
+            reference,
+            causality,
+            ..
+        } = &variables[n];
+        let taken = |name: &str| {
+            let others = variables.iter().enumerate();
+            // Among the two signals the second gives way, and to our own names both.
+            others
+                .clone()
+                .any(|(m, other)| m != n && other.name == name && (m < n || other.reference > 2))
+        };
+        let mut name = if name.is_empty() {
+            causality.to_string()
+        } else {
+            name.clone()
+        };
+        if *reference == 1 || *reference == 2 {
+            while taken(&name) {
+                name = format!("{name}_{causality}");
+            }
+        }
+        variables[n].name = name;
+    }
+    variables
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use hysteron::{Operator, Plane, Sign};
+
+    fn names(input: &str, output: &str) -> Vec<String> {
+        let plane = Plane::new(0.0, 1.0, 2).unwrap();
+        let mut model =
+            Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
+        model.input.name = input.into();
+        model.output.name = output.into();
+        of(&model, false).into_iter().map(|v| v.name).collect()
+    }
+
+    #[test]
+    fn names_are_there_and_differ() {
+        assert_eq!(names("a\tb ", "Länge <1>")[1..3], ["ab", "Länge <1>"]);
+        assert_eq!(names("", " \n")[1..3], ["input", "output"]);
+        assert_eq!(names("x", "x")[1..3], ["x", "x_output"]);
+        assert_eq!(
+            names("time", "clipped")[1..3],
+            ["time_input", "clipped_output"]
+        );
+        for (input, output) in [
+            ("x_output", "x"),
+            ("output", ""),
+            ("time", "time_input"),
+            ("time_input", "time"),
+        ] {
+            let names = names(input, output);
+            let different: std::collections::HashSet<_> = names.iter().collect();
+            assert_eq!(different.len(), names.len(), "{names:?}");
+        }
+    }
+}

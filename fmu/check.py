@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Checks exported FMUs from outside: FMPy validates and simulates them, a C program drives their binaries.
+
+    fmu/check.py [HYSTERON]     the command, by default target/release/hysteron
+
+Needs FMPy (pip install fmpy). Uses a C compiler, valgrind, mingw and wine where they are; says what it skips, and fails on
+it where HYSTERON_NO_SKIP is 1. Prints size and time per step as a Markdown table.
+"""
+
+import csv
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+from urllib.request import pathname2url
+
+from common import HYSTERON, ROOT, SKIPPED, Fmu, check, fmpy, has, np, run, step, vectors
+from fmpy.validation import validate_fmu
+
+
+def core(folder, model, run_, inverse):
+    """The command's own numbers, or None where it has no form for the run: headings come from its look-ahead there."""
+    if inverse and any(run_["heading"]):
+        return None
+    table, out = folder / "in.csv", folder / "out.csv"
+    column = "target" if inverse else "input"
+    table.write_text("\n".join([column, *map(repr, run_[column])]) + "\n")
+    if inverse:
+        run(HYSTERON, "invert", model, table, "--target", column, "--band", run_["tolerance"], "-o", out)
+    else:
+        run(HYSTERON, "simulate", model, table, "--input", column, "-o", out)
+    with out.open() as rows:
+        return np.array([float(row["input_model" if inverse else "output_model"]) for row in csv.DictReader(rows)])
+
+
+def every_vector(folder, fmus):
+    samples = exact = 0
+    for name, vector in vectors().items():
+        model = folder / f"{name}.json"
+        model.write_text(json.dumps(vector["model"]))
+        inverse = vector["kind"] == "inverse"
+        wanted = "input" if inverse else "output"
+        for fmi in (2, 3):
+            fmu = fmus[name, fmi] = Fmu(folder, model, inverse, fmi)
+            problems = validate_fmu(str(fmu.path))
+            check(not problems, f"{fmu.path.name}: {problems}")
+            for run_ in vector["runs"]:
+                found, flags = fmu.simulate(run_)
+                error = np.max(np.abs(found - run_[wanted]))
+                check(error <= vector["tolerance"][wanted], f"{name}, {run_['name']}: off by {error}")
+                if inverse:
+                    check(list(flags) == run_["status"], f"{name}, {run_['name']}: status")
+                own = core(folder, model, run_, inverse)
+                if own is not None:
+                    check(np.array_equal(found, own), f"{name}, {run_['name']}: not the command's numbers")
+                    exact += len(found)
+                samples += len(found)
+    print(f"   {samples} samples within the vectors' tolerances, {exact} of them compared with the command's: equal bit for bit")
+
+
+def series(fmus, folder):
+    """Both blocks in series return the reference."""
+    for fmi in (2, 3):
+        model = folder / "inverse-mkp-20.json"
+        inverse, forward = fmus["inverse-mkp-20", fmi], Fmu(folder, model, False, fmi)
+        a, b = inverse.instance(), forward.instance()
+        reach = sum(vectors()["inverse-mkp-20"]["model"]["weights"])
+        worst = 0
+        for n in range(1000):
+            target = reach * (0.5 - 0.5 * (1 - n / 1200) * np.cos(n * 0.05))
+            worst = max(worst, abs(forward.next(b, n, inverse.next(a, n, target)) - target))
+        for slave in (a, b):
+            slave.terminate()
+            slave.freeInstance()
+        # The bound that the inverse itself is tested with.
+        check(worst <= 1e-12 * reach, f"in series: off by {worst}")
+        print(f"   FMI {fmi}: largest error {worst / reach:.1e} of the range")
+
+
+def states(fmus):
+    """Two instances; save, restore, bytes and reset in the middle of a run."""
+    run_ = vectors()["forward-mkp-20"]["runs"][1]["input"]
+    for fmi in (2, 3):
+        fmu = fmus["forward-mkp-20", fmi]
+        plain = fmu.instance("plain")
+        wanted = [fmu.next(plain, n, value) for n, value in enumerate(run_)]
+        one, other = fmu.instance("one"), fmu.instance("other")
+        get, put, free = ((one.getFMUstate, one.setFMUstate, one.freeFMUstate) if fmi == 2 else
+                          (one.getFMUState, one.setFMUState, one.freeFMUState))
+        pack, unpack = ((one.serializeFMUstate, one.deSerializeFMUstate) if fmi == 2 else
+                        (one.serializeFMUState, one.deserializeFMUState))
+        for n, value in enumerate(run_):
+            if n % 5 == 2:
+                state = get()
+                for astray in range(3):
+                    fmu.next(one, n + astray, run_[astray])
+                if n % 2:
+                    data = pack(state)
+                    free(state)
+                    state = unpack(data)
+                put(state)
+                free(state)
+            check(fmu.next(one, n, value) == wanted[n], f"FMI {fmi}: saving changed sample {n}")
+            fmu.next(other, n, run_[-1 - n])
+        one.reset()
+        fmu.start(one)
+        check([fmu.next(one, n, value) for n, value in enumerate(run_)] == wanted, "a reset begins anew")
+        for slave in (plain, one, other):
+            slave.terminate()
+            slave.freeInstance()
+
+
+def corrupted(folder, fmus):
+    """A corrupted model gives an error and a message."""
+    for fmi in (2, 3):
+        source = fmus["forward-mkp-20", fmi].path
+        for change, expected in {
+            "cut": "model.txt, line", "flipped": "model.txt, line", "version": "`hysteron-fmu 2`",
+            "missing": "model.txt", "guid": "GUID",
+        }.items():
+            broken = folder / f"{change}-{fmi}.fmu"
+            with zipfile.ZipFile(source) as old, zipfile.ZipFile(broken, "w") as new:
+                for item in old.namelist():
+                    data = old.read(item)
+                    if item == "resources/model.txt":
+                        data = {"cut": data[:-100], "flipped": data[:500] + bytes([data[500] ^ 1]) + data[501:],
+                                "version": data.replace(b"fmu 1", b"fmu 2")}.get(change, data)
+                        if change == "missing":
+                            continue
+                    if item == "modelDescription.xml" and change == "guid":
+                        data = data.replace(b"{", b"{0")
+                    new.writestr(item, data)
+            messages = []
+            try:
+                fmpy.simulate_fmu(str(broken), logger=lambda *args: messages.append(str(args)))
+                check(False, f"{broken.name}: it ran")
+            except Exception as error:
+                check("nstantiate" in str(error), f"{broken.name}: {error}")
+            check(any(expected in message for message in messages), f"{broken.name}: {messages}")
+
+
+def driven(folder, fmus):
+    """The binaries without Python: replayed, misused, under valgrind and wine."""
+    headers = Path(fmpy.__file__).parent / "c-code"
+    source = Path(__file__).parent / "driver.c"
+    flags = ["-std=c99", "-O2", "-g", "-Wall", "-Wextra", "-D_POSIX_C_SOURCE=200809L", "-ffp-contract=off", f"-I{headers}"]
+    if not has("cc", "gcc"):
+        return None
+    driver = folder / "driver"
+    run("cc", *flags, source, "-o", driver, "-ldl", "-lm")
+    replays = [(fmus[name, 2], vector) for name, vector in vectors().items()
+               if name in ("forward-mkp-20", "forward-relay-5", "inverse-mkp-5-negative")]
+
+    def replay(command, binary, location):
+        for fmu, vector in replays:
+            for run_ in vector["runs"][:2]:
+                if run_.get("tolerance"):
+                    continue  # `band` is not the C program's affair
+                signal = run_["target" if fmu.inverse else "input"]
+                rows, out = folder / "rows.txt", folder / "out.txt"
+                headings = run_["heading"] if fmu.inverse else [9] * len(signal)
+                rows.write_text("".join(f"{value!r} {way}\n" for value, way in zip(signal, headings)))
+                run(*command, "replay", binary(fmu), location(fmu), fmu.about["token"], rows, out)
+                bits = np.array([int(line.split()[0], 16) for line in out.read_text().splitlines()], dtype=np.uint64)
+                check(np.array_equal(bits.view(float), fmu.simulate(run_)[0]), f"{command}: other numbers")
+
+    def on_linux(fmu):
+        return fmu.driven()[0]
+
+    replay([driver], lambda fmu: fmu.binary, on_linux)
+    for fmu in (fmus["forward-mkp-20", 2], fmus["inverse-mkp-20", 2]):
+        run(driver, "misuse", fmu.binary, *fmu.driven())
+    if has("valgrind", "valgrind"):
+        valgrind = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", driver]
+        replay(valgrind, lambda fmu: fmu.binary, on_linux)
+        fmu = fmus["forward-mkp-2", 2]
+        run(*valgrind, "misuse", fmu.binary, *fmu.driven())
+        print("   valgrind: no errors, no leaks")
+    mingw = has("x86_64-w64-mingw32-gcc", "gcc-mingw-w64-x86-64")
+    wine = shutil.which("wine64") or has("wine", "wine64")
+    if mingw and wine:
+        windows = folder / "driver.exe"
+        run(mingw, *flags, source, "-o", windows)
+        os.environ["WINEDEBUG"] = "-all"
+
+        def on_windows(fmu):
+            return "file:///Z:" + pathname2url(str(fmu.folder / "resources"))
+
+        def library(fmu):
+            return f"Z:{fmu.folder}/binaries/win64/{fmu.about['name']}.dll"
+
+        replay([wine, windows], library, on_windows)
+        fmu = fmus["forward-mkp-2", 2]
+        run(wine, windows, "misuse", library(fmu), on_windows(fmu), fmu.about["token"])
+        print("   wine: the Windows library gives the same numbers and refuses the same")
+    return driver
+
+
+def measured(folder, driver):
+    lines = ["| K | FMU | set, step, get | plain loop in C | FMU / plain loop |", "| ---: | ---: | ---: | ---: | ---: |"]
+    for levels in (10, 20, 40, 100):
+        weights = [1 + n % 7 for n in range(levels * (levels + 1) // 2)]
+        model = folder / f"k{levels}.json"
+        model.write_text(json.dumps({
+            "format": "hysteron-model", "version": 1, "operator": "mkp",
+            "plane": {"min": 20, "max": 80, "levels": levels}, "weights": [w / len(weights) for w in weights]}))
+        fmu = Fmu(folder, model)
+        plane = folder / "plane.txt"
+        plane.write_text(" ".join(map(repr, [20.0, 80.0, levels, *(w / len(weights) for w in weights)])))
+        ratio, own, plain = map(float, run(driver, "time", fmu.binary, *fmu.driven(), plane).split())
+        size = fmu.about["bytes"] / 1024
+        lines.append(f"| {levels} | {size:.0f} KiB | {own:.0f} ns | {plain:.0f} ns | {ratio:.2f} |")
+    print("\n".join(lines))
+
+
+def page(folder):
+    """The example of docs/fmu.md."""
+    example = re.search(r"```python\n(.*?)```", (ROOT / "docs/fmu.md").read_text(), re.S)[1]
+    model = json.loads((folder / "forward-mkp-20.json").read_text())
+    model["input"]["name"] = "temperature"
+    (folder / "spring.json").write_text(json.dumps(model))
+    run(HYSTERON, "export", "fmu", folder / "spring.json", "-o", folder / "sf_MKP.fmu")
+    run(sys.executable, "-c", example + "\nassert len(result) == 101 and result['output'].max() > 0", cwd=folder)
+
+
+def main():
+    check(HYSTERON.exists(), f"{HYSTERON} is missing: cargo build --release, or name the command")
+    with tempfile.TemporaryDirectory() as name:
+        folder, fmus = Path(name), {}
+        step("every vector through FMPy, FMI 2.0 and 3.0, all descriptions valid")
+        every_vector(folder, fmus)
+        step("both blocks in series")
+        series(fmus, folder)
+        step("two instances, states, reset")
+        states(fmus)
+        step("a corrupted model")
+        corrupted(folder, fmus)
+        step("the example in docs/fmu.md")
+        page(folder)
+        step("the binaries from C")
+        driver = driven(folder, fmus)
+        if driver:
+            step("size, and time per step (medians of 21 runs in one process)")
+            measured(folder, driver)
+    if SKIPPED and os.environ.get("HYSTERON_NO_SKIP") == "1":
+        sys.exit(f"failed: missing {', '.join(SKIPPED)}")
+    step("all is well")
+
+
+main()
