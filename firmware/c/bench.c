@@ -133,8 +133,9 @@ static void one(const run *r) {
 #endif
     }
     for (n = 0; n < 2; n++)
-        NOTE("steps\t%s\t%s\t%s\t%lu\t%llu\t%lu\t%lu\n", TYPE, r->name, n == 0 ? "forward" : "inverse",
-             tallies[n].steps, tallies[n].sum, tallies[n].most, (unsigned long)tallies[n].which);
+        if (tallies[n].steps > 0)
+            NOTE("steps\t%s\t%s\t%s\t%lu\t%llu\t%lu\t%lu\n", TYPE, r->name, n == 0 ? "forward" : "inverse",
+                 tallies[n].steps, tallies[n].sum, tallies[n].most, (unsigned long)tallies[n].which);
 }
 
 /* Again without printing, for the stack. */

@@ -46,7 +46,10 @@ fn main() {
     let levels = var("LEVELS").map_or(20, |levels| levels.parse().expect("LEVELS: a number"));
     let model = models.iter().find(|m| m.name == format!("bench_{levels}"));
     let weights = &model.expect("LEVELS: 10, 20 or 40").weights;
-    let text = format!("pub const LEVELS: usize = {levels};\npub static WEIGHTS: [Real; {}] = {weights:?};\n", weights.len());
+    let text = format!(
+        "pub const LEVELS: usize = {levels};\npub static WEIGHTS: [Real; {}] = {weights:?};\n",
+        weights.len()
+    );
     std::fs::write(Path::new(&out).join("size.rs"), text).expect("the constants");
 
     if var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") {

@@ -106,7 +106,11 @@ fn vector(name: &str, model: usize, file: &Value, run: &Value) -> Run {
         model,
         tolerance: run["tolerance"].as_f64().unwrap_or(0.0),
         steps: headings.iter().map(|&h| h as i8).zip(values).collect(),
-        expected: Some((numbers(&run[results]), status, number(&file["tolerance"][unit]))),
+        expected: Some((
+            numbers(&run[results]),
+            status,
+            number(&file["tolerance"][unit]),
+        )),
         output_tolerance: number(&file["tolerance"]["output"]),
     }
 }
@@ -160,7 +164,11 @@ fn bench_runs(model: &Model, number: usize) -> Vec<Run> {
         steps,
         expected: None,
         // The vectors' own: 1e-13 of the sum of the weights forward, 1e-12 where a target is met.
-        output_tolerance: if name.starts_with("forward") { 1e-13 } else { 1e-12 } * total,
+        output_tolerance: if name.starts_with("forward") {
+            1e-13
+        } else {
+            1e-12
+        } * total,
     };
     // Both shapes as shares of a range, of the input and of the output.
     let smooth = |n: usize| {
@@ -178,9 +186,15 @@ fn bench_runs(model: &Model, number: usize) -> Vec<Run> {
     let input = |share: f64| (FORWARD, short(model.min + share * (model.max - model.min)));
     let target = |share: f64| (0, short(share * total));
     vec![
-        run("forward, smooth", (0..SAMPLES).map(smooth).map(input).collect()),
+        run(
+            "forward, smooth",
+            (0..SAMPLES).map(smooth).map(input).collect(),
+        ),
         run("forward, walk", walk.iter().copied().map(input).collect()),
-        run("inverse, smooth", (0..SAMPLES).map(smooth).map(target).collect()),
+        run(
+            "inverse, smooth",
+            (0..SAMPLES).map(smooth).map(target).collect(),
+        ),
         run("inverse, walk", walk.iter().copied().map(target).collect()),
         run("forward, adversary", forward_adversary(model)),
         run("inverse, adversary", inverse_adversary(model, total)),
@@ -193,25 +207,38 @@ fn at(model: &Model, x: f64) -> (i8, f64) {
     (FORWARD, short(model.min + (x - 1.0) * step))
 }
 
-/// Loops nested so that the staircase has as many corners as a state can hold, two for each grid cell that it
-/// crosses: each is narrower by a quarter of a cell at both ends, and the ends come to a new cell in turn.
+/// Loops nested so that the staircase has as many corners as a state can hold, 2K, two for each grid cell that it
+/// crosses: each is narrower by a quarter of a cell at both ends, and the ends come to a new cell in turn. The last
+/// one stands inside what is left.
 fn staircase(model: &Model) -> Vec<(i8, f64)> {
-    let top = model.levels as f64;
-    let loops = (0..).map(|n| f64::from(n) / 4.0);
-    let loops = loops.map(|in_| (top - 0.125 - in_, 0.625 + in_));
-    let loops = loops.take_while(|(high, low)| high > low);
-    let ends = loops.flat_map(|(high, low)| [at(model, high), at(model, low)]);
-    ends.collect()
+    let mut steps = Vec::new();
+    let (mut high, mut low) = (model.levels as f64 - 0.125, 0.625);
+    while high > low {
+        steps.extend([at(model, high), at(model, low)]);
+        (high, low) = (high - 0.25, low + 0.25);
+    }
+    (high, low) = (high + 0.1875, low - 0.1875);
+    steps.extend([high, low, (high + low) / 2.0].map(|x| at(model, x)));
+    steps
 }
 
 /// One jump over a full staircase, to each place where that could cost most; then a search at random.
 fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
     let top = model.levels as f64;
     let mut steps = Vec::new();
-    for back in 0..2 {
-        for x in [top, top + 5.0, top - 0.2, 0.0, -5.0, 0.1, top / 2.0 + 3.3, top / 2.0 - 3.3] {
+    for back in 0..3 {
+        for x in [
+            top,
+            top + 5.0,
+            top - 0.2,
+            0.0,
+            -5.0,
+            0.1,
+            top / 2.0 + 3.3,
+            top / 2.0 - 3.3,
+        ] {
             let stairs = staircase(model);
-            // Last up or last down: the jump turns the input, or does not.
+            // Full, or one or two turning points less: the jump turns the input, or does not.
             steps.extend(&stairs[..stairs.len() - back]);
             steps.push(at(model, x));
         }
@@ -236,7 +263,7 @@ fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
 /// Targets all over the range, with each policy, from a full staircase; then forward and inverse at random.
 fn inverse_adversary(model: &Model, total: f64) -> Vec<(i8, f64)> {
     let mut steps = Vec::new();
-    for back in 0..2 {
+    for back in 0..3 {
         for share in [-0.1, 0.0, 0.02, 0.3, 0.6, 0.9, 0.998, 1.0, 1.1] {
             for policy in [0, 1, -1] {
                 let stairs = staircase(model);

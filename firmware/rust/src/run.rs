@@ -113,43 +113,72 @@ fn inverse<T: Number>(
     Ok((solution.input, status))
 }
 
-/// Number of steps of one kind, instructions of all, most in one, and which that was.
+/// Model and inverse, ready to step.
+struct Subject<'a, T> {
+    model: &'a Core<'a, T>,
+    inverse: Inverse<'a, T, &'a mut [T]>,
+    line: Line<T>,
+    tolerance: T,
+}
+
+impl<T: Number> Subject<'_, T> {
+    /// Result and status of one step, and how many instructions it took. Inlined, so that the stack holds
+    /// nothing between whoever measures and the step.
+    #[inline(always)]
+    fn step(
+        &self,
+        state: &mut Memory<'_, T>,
+        (kind, value): (i8, f64),
+    ) -> (Result<(T, i8), Error>, u32) {
+        let value = T::of(value);
+        if kind == FORWARD {
+            count(|| forward(self.model, &self.line, state, value))
+        } else {
+            let tolerance = self.tolerance;
+            count(|| inverse(&self.inverse, &self.line, state, value, kind, tolerance))
+        }
+    }
+}
+
+/// What the steps of one kind took.
 #[derive(Default)]
-struct Tally(u32, u64, u32, usize);
+struct Tally {
+    steps: u32,
+    instructions: u64,
+    most: u32,
+    /// Which step took most.
+    which: usize,
+}
 
 impl Tally {
     fn add(&mut self, instructions: u32, step: usize) {
-        self.0 += 1;
-        self.1 += u64::from(instructions);
-        if instructions > self.2 {
-            (self.2, self.3) = (instructions, step);
+        self.steps += 1;
+        self.instructions += u64::from(instructions);
+        if instructions > self.most {
+            (self.most, self.which) = (instructions, step);
         }
     }
 }
 
 fn one<T: Number>(run: &Run) -> Result<(), Error> {
+    let (name, number) = (run.name, T::NAME);
     let data = &made::MODELS[run.model];
     let mut weights = [T::ZERO; MOST * (MOST + 1) / 2];
     for (place, &weight) in weights.iter_mut().zip(data.weights) {
         *place = T::of(weight);
     }
-    let (min, max) = (T::of(data.min), T::of(data.max));
-    let plane = Plane::new(min, max, data.levels)?;
+    let plane = Plane::new(T::of(data.min), T::of(data.max), data.levels)?;
     let mut table = [T::ZERO; table_len(MOST)];
     let weights = &weights[..data.weights.len()];
     let model = Model::new(plane, data.operator, weights, &mut table[..])?;
-    let line = Line {
-        offset: T::of(data.offset),
-        sign: T::of(data.sign),
-    };
-    let backward = model.inverse().ok();
-    let tolerance = T::of(run.tolerance);
-    let step = |state: &mut Memory<'_, T>, (kind, value): (i8, T)| match (kind, &backward) {
-        (FORWARD, _) => count(|| forward(&model, &line, black_box(state), value)),
-        (heading, Some(backward)) => {
-            count(|| inverse(backward, &line, black_box(state), value, heading, tolerance))
-        }
-        (_, None) => (model.inverse().map(|_| (value, 0)), 0),
+    let subject = Subject {
+        model: &model,
+        inverse: model.inverse()?,
+        line: Line {
+            offset: T::of(data.offset),
+            sign: T::of(data.sign),
+        },
+        tolerance: T::of(run.tolerance),
     };
 
     let mut turns = [Turn::default(); turn_capacity(MOST)];
@@ -157,39 +186,50 @@ fn one<T: Number>(run: &Run) -> Result<(), Error> {
     let mut points = [T::ZERO; turn_capacity(MOST)];
     let mut state = model.state(&mut turns[..])?;
     let mut tallies: [Tally; 2] = Default::default();
-    say!("{} {}", T::NAME, run.name);
-    for (n, &(kind, value)) in run.steps.iter().enumerate() {
+    say!("{number} {name}");
+    for (n, &step) in run.steps.iter().enumerate() {
         // A state saved and restored before this step has to take it in the same way.
         let mut restored = model.state(&mut other_turns[..])?;
-        let held = state.turning_points().count();
-        points.iter_mut().zip(state.turning_points()).for_each(|(point, x)| *point = x);
+        let mut held = 0;
+        for x in state.turning_points() {
+            points[held] = x;
+            held += 1;
+        }
         model.restore(&mut restored, &points[..held], state.input())?;
 
-        let (result, instructions) = step(&mut state, (kind, T::of(value)));
+        let (result, instructions) = subject.step(&mut state, step);
         let (result, status) = result?;
-        let (other, other_status) = step(&mut restored, (kind, T::of(value))).0?;
-        tallies[usize::from(kind != FORWARD)].add(instructions, n);
+        let (other, other_status) = subject.step(&mut restored, step).0?;
+        tallies[usize::from(step.0 != FORWARD)].add(instructions, n);
         let digits = 2 * size_of::<T>();
         say!("{:0digits$x} {status}", result.bits());
         if (other.bits(), other_status) != (result.bits(), status) {
             say!("restored: {:0digits$x} {other_status}", other.bits());
         }
     }
-
     for (kind, tally) in ["forward", "inverse"].iter().zip(tallies) {
-        let Tally(steps, sum, most, which) = tally;
-        note!("steps\t{}\t{}\t{kind}\t{steps}\t{sum}\t{most}\t{which}", T::NAME, run.name);
+        let Tally {
+            steps,
+            instructions,
+            most,
+            which,
+        } = tally;
+        if steps > 0 {
+            note!("steps\t{number}\t{name}\t{kind}\t{steps}\t{instructions}\t{most}\t{which}");
+        }
     }
+
     // Again without printing, for the stack.
     model.reset_off(&mut state)?;
     let used = depth(|| {
-        for &(kind, value) in run.steps {
-            let _ = black_box(step(&mut state, (kind, T::of(value))));
+        for &step in run.steps {
+            // Its errors have shown above.
+            let _ = black_box(subject.step(&mut state, step));
         }
     });
-    note!("stack\t{}\t{}\t{used}", T::NAME, run.name);
+    note!("stack\t{number}\t{name}\t{used}");
     let model_size = size_of_val(&model) + table_len(data.levels) * size_of::<T>();
     let state_size = size_of_val(&state) + turn_capacity(data.levels) * size_of::<Turn<T>>();
-    note!("ram\t{}\t{}\t{model_size}\t{state_size}", T::NAME, run.name);
+    note!("ram\t{number}\t{name}\t{model_size}\t{state_size}");
     Ok(())
 }

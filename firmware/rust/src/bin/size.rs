@@ -44,7 +44,10 @@ mod image {
                 } else {
                     let rising = black_box(true);
                     let way = [Direction::Falling, Direction::Rising];
-                    Policy::Anticipate { heading: way[usize::from(rising)], tolerance }
+                    Policy::Anticipate {
+                        heading: way[usize::from(rising)],
+                        tolerance,
+                    }
                 };
                 black_box(inverse.step(&mut state, black_box(0.0), policy)?);
             }

@@ -7,7 +7,11 @@ use hysteron_core::{Definition, Operator, Plane};
 /// Tolerances in single precision: those in double hold for as many units of rounding, `2⁻²³/2⁻⁵²` times as large.
 const COARSER: f64 = (1_u64 << 29) as f64;
 
-pub fn digits((models, runs): &(Vec<Model>, Vec<Run>), text: &str, plain: bool) -> Result<(), String> {
+pub fn digits(
+    (models, runs): &(Vec<Model>, Vec<Run>),
+    text: &str,
+    plain: bool,
+) -> Result<(), String> {
     let mut lines = text.lines();
     let mut seen = 0;
     while let Some(head) = lines.next() {
@@ -16,19 +20,27 @@ pub fn digits((models, runs): &(Vec<Model>, Vec<Run>), text: &str, plain: bool) 
         let run = run.ok_or(format!("no run has the name of: {head}"))?;
         let rows: Vec<&str> = lines.by_ref().take(run.steps.len()).collect();
         let rows = rows.iter().map(|row| result(row, number));
-        let rows = rows.collect::<Result<Vec<_>, _>>().map_err(|why| format!("{head}: {why}"))?;
+        let rows = rows
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|why| format!("{head}: {why}"))?;
         let coarser = if number == "float" { COARSER } else { 1.0 };
-        let worst = one(&models[run.model], run, &rows, coarser, plain).map_err(|why| format!("{head}: {why}"))?;
+        let worst = one(&models[run.model], run, &rows, coarser, plain)
+            .map_err(|why| format!("{head}: {why}"))?;
         if worst > 1.0 {
             return Err(format!("{head}: {worst:.3} of the tolerance"));
         }
         eprintln!("{head}: {worst:.3} of the tolerance");
         seen += 1;
     }
-    let expected = runs.iter().filter(|run| !plain || is_measured(&models[run.model])).count();
+    let expected = runs
+        .iter()
+        .filter(|run| !plain || is_measured(&models[run.model]))
+        .count();
     // The plain loop runs in one number type at a time.
     if seen != if plain { expected } else { 2 * expected } {
-        return Err(format!("{seen} runs instead of {expected} in each number type"));
+        return Err(format!(
+            "{seen} runs instead of {expected} in each number type"
+        ));
     }
     Ok(())
 }
@@ -48,7 +60,13 @@ fn result(row: &str, number: &str) -> Result<(f64, i8), String> {
 }
 
 /// The largest difference as a share of its tolerance.
-fn one(model: &Model, run: &Run, rows: &[(f64, i8)], coarser: f64, plain: bool) -> Result<f64, String> {
+fn one(
+    model: &Model,
+    run: &Run,
+    rows: &[(f64, i8)],
+    coarser: f64,
+    plain: bool,
+) -> Result<f64, String> {
     let total: f64 = model.weights.iter().sum();
     let (off, on) = match operator(model) {
         Operator::Mkp => (0.0, total),
@@ -70,9 +88,15 @@ fn one(model: &Model, run: &Run, rows: &[(f64, i8)], coarser: f64, plain: bool) 
     };
     for (n, (&(kind, value), &(result, status))) in run.steps.iter().zip(rows).enumerate() {
         let input = if kind == FORWARD { value } else { result };
-        let sum = definition.step(input).map_err(|why| format!("step {n}: {why}"))?;
+        let sum = definition
+            .step(input)
+            .map_err(|why| format!("step {n}: {why}"))?;
         let output = model.offset + model.sign * sum;
-        let expected = if kind == FORWARD { 0 } else { i8::from(value > greatest + reach) - i8::from(value < least - reach) };
+        let expected = if kind == FORWARD {
+            0
+        } else {
+            i8::from(value > greatest + reach) - i8::from(value < least - reach)
+        };
         if kind == FORWARD {
             judge(result - output, run.output_tolerance);
         } else if expected == 0 && !(plain && (value < least || value > greatest)) {
@@ -86,7 +110,10 @@ fn one(model: &Model, run: &Run, rows: &[(f64, i8)], coarser: f64, plain: bool) 
         if let Some((results, statuses, tolerance)) = &run.expected {
             judge(result - results[n], *tolerance);
             if status != statuses[n] {
-                return Err(format!("step {n}: status {status} instead of {}", statuses[n]));
+                return Err(format!(
+                    "step {n}: status {status} instead of {}",
+                    statuses[n]
+                ));
             }
         }
     }

@@ -16,7 +16,10 @@ pub fn write((models, runs): &(Vec<Model>, Vec<Run>), folder: &Path) -> Result<(
         headers += &format!("#include \"{name}.h\"\n");
         file(format!("{name}.json"), m.json.to_string())?;
         if is_measured(m) {
-            weights += &format!("static const hys_real {name}_weights[] = {{{}}};\n", list(&m.weights));
+            weights += &format!(
+                "static const hys_real {name}_weights[] = {{{}}};\n",
+                list(&m.weights)
+            );
             plain += &format!(
                 "static const plain_model {name} = {{{}, {:?}, {:?}, {name}_weights}};\n",
                 m.levels, m.min, m.max
@@ -28,7 +31,11 @@ pub fn write((models, runs): &(Vec<Model>, Vec<Run>), folder: &Path) -> Result<(
         let model = &models[run.model];
         let (kinds, values): (Vec<i8>, Vec<f64>) = run.steps.iter().copied().unzip();
         // The plain loop is the baseline of what is measured, not of the vectors.
-        let (open, close) = if is_measured(model) { ("", "") } else { ("#ifndef PLAIN\n", "#endif\n") };
+        let (open, close) = if is_measured(model) {
+            ("", "")
+        } else {
+            ("#ifndef PLAIN\n", "#endif\n")
+        };
         constants += &format!(
             "{open}static const signed char kinds_{n}[] = {{{}}};\nstatic const hys_real values_{n}[] = {{{}}};\n{close}",
             list(&kinds),
@@ -37,7 +44,11 @@ pub fn write((models, runs): &(Vec<Model>, Vec<Run>), folder: &Path) -> Result<(
         writeln!(
             table,
             "{open}    {{{:?}, &{}, {}, {:?}, {}, kinds_{n}, values_{n}}},\n{close}",
-            run.name, model.name, model.levels, run.tolerance, kinds.len()
+            run.name,
+            model.name,
+            model.levels,
+            run.tolerance,
+            kinds.len()
         )
         .map_err(|why| why.to_string())?;
     }
