@@ -13,6 +13,7 @@ pub trait Number: Real {
         format!("{:x}", self.bits())
     }
     fn wide(self) -> f64;
+    fn from_bits(bits: u64) -> Self;
 }
 
 impl Number for f32 {
@@ -22,6 +23,9 @@ impl Number for f32 {
     fn wide(self) -> f64 {
         f64::from(self)
     }
+    fn from_bits(bits: u64) -> Self {
+        f32::from_bits(bits as u32)
+    }
 }
 
 impl Number for f64 {
@@ -30,6 +34,9 @@ impl Number for f64 {
     }
     fn wide(self) -> f64 {
         self
+    }
+    fn from_bits(bits: u64) -> Self {
+        f64::from_bits(bits)
     }
 }
 
