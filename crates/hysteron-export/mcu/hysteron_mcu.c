@@ -434,7 +434,7 @@ static branch find(const hys_state *state, size_t kind, goal to)
     size_t low = 1u, high = (last - kind) / 2u + 1u;
     size_t end;
     branch found;
-    while (low < high) { /* at most log2(2K + 4) + 1 turns */
+    while (low < high) { /* at most log2(2K + 1) + 1 turns */
         size_t middle = low + (high - low) / 2u;
         hys_real output = turns[2u * middle + kind].y;
         if (kind == 0u ? met_rising(to, output) : met_falling(to, output)) {
@@ -471,7 +471,7 @@ static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goa
     const hys_real *near, *below;
     hys_real knot = ZERO, slope = ZERO, u;
     int off_diagonal;
-    while (low < high) { /* at most log2(K + 1) + 1 turns */
+    while (low < high) { /* at most log2(K) + 1 turns */
         size_t middle = low + (high - low) / 2u;
         if (met_rising(to, on_row(model, middle, min))) {
             high = middle;
@@ -519,7 +519,7 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
     hys_real knot = ZERO, slope = ZERO, v;
     int off_diagonal;
     /* Columns from `last` down to 0: the first whose grid line meets the goal. */
-    while (low < high) { /* at most log2(K + 1) + 1 turns */
+    while (low < high) { /* at most log2(K) + 1 turns */
         size_t middle = low + (high - low) / 2u;
         if (met_rising(to, on_column(model, max, last - middle))) {
             high = middle;

@@ -11,7 +11,7 @@
  *
  * Worst case of one call, K levels:
  *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 turns
- *   hys_inverse_step   two bisections of at most log2(2K + 4) + 1 and log2(K + 1) + 1 halvings, then one hys_step
+ *   hys_inverse_step   two bisections of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then one hys_step
  *   hys_reset_on       one hys_step;  hys_start, hys_reset_off: none of these loops
  *   hys_save           one pass over at most 4K + 3 points
  *   hys_restore        one hys_step for each point

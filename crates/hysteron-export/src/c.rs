@@ -100,7 +100,7 @@ impl CWorstCase {
         Self {
             turning_points: 2 * levels,
             step: 2 * levels + 3,
-            halvings: halvings(2 * levels + 4) + halvings(levels + 1),
+            halvings: halvings(2 * levels + 1) + halvings(levels),
         }
     }
 }
