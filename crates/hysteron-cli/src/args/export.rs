@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Subcommand)]
 pub(crate) enum Export {
     /// Portable C99 with the model as constants, for a microcontroller or a PLC
-    #[command(after_help = "Example:\n  hysteron export c spring.json -o firmware --real float")]
+    #[command(after_help = "Example:\n  hysteron export c spring.json -o mcu --real float")]
     C(ExportC),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(
