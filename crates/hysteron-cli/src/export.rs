@@ -1,6 +1,8 @@
 //! `hysteron export`
 
 use crate::{Result, args, keep_apart, print};
+use hysteron_export::{COptions, Fmu, FmuOptions};
+use serde_json::json;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
     match args {
@@ -11,20 +13,57 @@ pub(crate) fn run(args: &args::Export) -> Result<()> {
 
 fn c(args: &args::ExportC) -> Result<()> {
     let model = model(&args.model, &args.load)?;
-    Ok(hysteron_export::c(&model, &args.out)?)
+    let options = COptions {
+        real: args.real.into(),
+        name: args.name.as_deref(),
+        source: &args.model,
+    };
+    let export = hysteron_export::c(&model, &args.out, &options)?;
+    let (memory, worst) = (export.memory, export.worst_case);
+    if args.json.json {
+        let object = json!({
+            "files": export.files,
+            "name": export.name,
+            "real": export.real.name(),
+            "levels": export.levels,
+            "inverse": export.inverse,
+            "flash_bytes": memory.constants,
+            "ram_bytes": {"state": memory.state, "turns": memory.turns},
+            "worst_case": {
+                "turning_points_passed": worst.turning_points,
+                "step_loop": worst.step,
+                "inverse_halvings": worst.halvings,
+            },
+        });
+        return print(&object.to_string());
+    }
+    let mut lines: Vec<String> = export
+        .files
+        .iter()
+        .map(|f| f.display().to_string())
+        .collect();
+    lines.push(format!(
+        "{} bytes of constants; {} bytes for each state with its turning points",
+        memory.constants,
+        memory.state + memory.turns
+    ));
+    if !export.inverse {
+        lines.push("weights below zero: the C runs forward only".into());
+    }
+    print(&lines.join("\n"))
 }
 
 fn fmu(args: &args::ExportFmu) -> Result<()> {
     keep_apart(&args.model, &args.out)?;
     let model = model(&args.model, &args.load)?;
-    let options = hysteron_export::FmuOptions {
+    let options = FmuOptions {
         inverse: args.inverse,
         fmi: args.fmi.into(),
         name: args.name.clone(),
     };
     let fmu = hysteron_export::fmu(&model, &options, &args.out)?;
     let file = args.out.display().to_string();
-    let hysteron_export::Fmu {
+    let Fmu {
         name,
         token,
         bytes,
@@ -33,7 +72,7 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
         parameters,
     } = fmu;
     if args.json.json {
-        let object = serde_json::json!({
+        let object = json!({
             "file": file, "name": name, "fmi": options.fmi.version(), "token": token, "bytes": bytes,
             "inputs": inputs, "outputs": outputs, "parameters": parameters,
         });

@@ -92,6 +92,12 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
 }
 
 impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
+    /// Outputs `Σ μ γ` closer than this are taken as equal: the rounding of a table entry.
+    #[must_use]
+    pub fn slack(&self) -> T {
+        self.slack
+    }
+
     /// Finds the input for `target` and moves `state` there.
     ///
     /// On a flat stretch it is the first input that reaches the target. A relay model moves in

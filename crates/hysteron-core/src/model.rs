@@ -261,7 +261,8 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     }
 
     /// `Σ μ_ij`.
-    pub(crate) fn total(&self) -> T {
+    #[must_use]
+    pub fn total(&self) -> T {
         self.table()[everett::table_index(self.plane.levels(), 0)]
     }
 

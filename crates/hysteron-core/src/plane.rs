@@ -165,7 +165,8 @@ impl<T: Real> Plane<T> {
     }
 
     /// A move just large enough to be one: a relay that stands on its level switches on the next move only.
-    pub(crate) fn nudge(&self) -> T {
+    #[must_use]
+    pub fn nudge(&self) -> T {
         let size = self
             .max
             .larger(-self.max)

@@ -1,12 +1,211 @@
 //! C99 with the model as constants.
 
-use hysteron::{Model, Result};
-use std::path::Path;
+mod constants;
+mod name;
+mod text;
 
-/// Writes C99 for `model` into `folder`.
+use constants::{Constants, Number};
+use hysteron::{AtomicFile, Error, Model, Result};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+const HEADER: &str = include_str!("../mcu/hysteron_mcu.h");
+const SOURCE: &str = include_str!("../mcu/hysteron_mcu.c");
+
+/// How every file begins that may be replaced.
+const MARK: &str = "/* Written by `hysteron export c`";
+
+/// The number type that the C computes in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CReal {
+    /// `float`, for processors with a unit for it, such as a Cortex-M4F.
+    #[default]
+    Float,
+    /// `double`, the digits of the library itself.
+    Double,
+}
+
+impl CReal {
+    /// The type's name in C.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Float => "float",
+            Self::Double => "double",
+        }
+    }
+
+    /// The line of the header that says it.
+    fn line(self) -> String {
+        format!("typedef {} hys_real;", self.name())
+    }
+}
+
+/// How to write a model as C.
+#[derive(Debug, Clone, Copy)]
+pub struct COptions<'a> {
+    /// The number type.
+    pub real: CReal,
+    /// The model's name in C, and of its files; by default that of `source`, made fit.
+    pub name: Option<&'a str>,
+    /// The file that the model comes from, to be told of in a comment.
+    pub source: &'a Path,
+}
+
+/// What was written, and what it takes on the target.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CExport {
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// The model's name in C.
+    pub name: String,
+    /// The number type.
+    pub real: CReal,
+    /// `K`.
+    pub levels: usize,
+    /// Whether there is an inverse: no weight is below zero.
+    pub inverse: bool,
+    /// Bytes.
+    pub memory: CMemory,
+    /// The worst case of one call.
+    pub worst_case: CWorstCase,
+}
+
+/// Bytes of a model on a 32-bit target with naturally aligned numbers, such as a Cortex-M.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CMemory {
+    /// The model's constants: flash.
+    pub constants: usize,
+    /// A state: RAM.
+    pub state: usize,
+    /// Its turning points: RAM.
+    pub turns: usize,
+}
+
+/// How often the loops of one call turn at most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CWorstCase {
+    /// Turning points passed in a step, `2K`.
+    pub turning_points: usize,
+    /// Turns of the step's loop, `2K + 3`.
+    pub step: usize,
+    /// Halvings of an inverse step's two bisections together, before it steps.
+    pub halvings: usize,
+}
+
+impl CWorstCase {
+    fn of(levels: usize) -> Self {
+        // A bisection of n places takes ⌊log₂ n⌋ + 1 halvings.
+        let halvings = |places: usize| places.ilog2() as usize + 1;
+        Self {
+            turning_points: 2 * levels,
+            step: 2 * levels + 3,
+            halvings: halvings(2 * levels + 1) + halvings(levels),
+        }
+    }
+}
+
+/// Writes C99 for `model` into `folder`, which is made if need be: the algorithm as `hysteron_mcu.h` and `.c`, the same for
+/// every model of a number type, and the model's constants as files of its name.
+///
+/// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign in that type as well. A
+/// model with negative weights has no inverse there either.
 ///
 /// # Errors
-/// [`hysteron::Error::Export`] for a model that cannot be exported, [`hysteron::Error::File`].
-pub fn c(model: &Model, _folder: &Path) -> Result<()> {
-    crate::check(model)
+/// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number type; for a name that cannot
+/// be one in C; for files in the folder that are not from here, or of the other number type. [`Error::File`].
+pub fn c(model: &Model, folder: &Path, options: &COptions<'_>) -> Result<CExport> {
+    crate::check(model)?;
+    let name = name::choose(options.name, options.source)?;
+    match options.real {
+        CReal::Float => write::<f32>(model, folder, options, name),
+        CReal::Double => write::<f64>(model, folder, options, name),
+    }
+}
+
+fn write<T: Number>(
+    model: &Model,
+    folder: &Path,
+    options: &COptions<'_>,
+    name: String,
+) -> Result<CExport> {
+    let constants = Constants::<T>::of(model)?;
+    let levels = model.plane().levels();
+    let export = CExport {
+        files: ["hysteron_mcu.h", "hysteron_mcu.c"]
+            .map(str::to_owned)
+            .into_iter()
+            .chain(["h", "c"].map(|end| format!("{name}.{end}")))
+            .map(|file| folder.join(file))
+            .collect(),
+        name,
+        real: options.real,
+        levels,
+        inverse: constants.slack.is_some(),
+        memory: constants.memory(),
+        worst_case: CWorstCase::of(levels),
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    let algorithm = |text: &str| format!("{MARK}, hysteron {version}. */\n{text}");
+    let header = HEADER.replace(&CReal::Float.line(), &options.real.line());
+    let texts = [
+        algorithm(&header),
+        algorithm(SOURCE),
+        text::header(&export, model, options.source),
+        text::source(&export, &constants),
+    ];
+    std::fs::create_dir_all(folder).map_err(|source| Error::File {
+        path: folder.to_owned(),
+        source,
+    })?;
+    for path in &export.files {
+        may_replace(path, options.real)?;
+    }
+    // All are written beside their places before the first takes its name.
+    let mut written = Vec::new();
+    for (path, text) in export.files.iter().zip(texts) {
+        let mut file = AtomicFile::create(path)?;
+        let done = file.write_all(text.as_bytes()).and_then(|()| file.flush());
+        done.map_err(|source| Error::File {
+            path: path.clone(),
+            source,
+        })?;
+        written.push(file);
+    }
+    written.into_iter().try_for_each(AtomicFile::commit)?;
+    Ok(export)
+}
+
+/// Refuses to replace what others wrote, and the algorithm that models of the other number type in the folder need.
+fn may_replace(path: &Path, real: CReal) -> Result<()> {
+    let found = match std::fs::read(path) {
+        Ok(found) => found,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(source) => {
+            return Err(Error::File {
+                path: path.to_owned(),
+                source,
+            });
+        }
+    };
+    let found = String::from_utf8_lossy(&found);
+    if !found.starts_with(MARK) {
+        return Err(Error::Export(format!(
+            "{}: a file that `export c` did not write: name another folder (-o) or the model otherwise (--name)",
+            path.display()
+        )));
+    }
+    let other = match real {
+        CReal::Float => CReal::Double,
+        CReal::Double => CReal::Float,
+    };
+    if found.contains(&other.line()) {
+        return Err(Error::Export(format!(
+            "{}: the models in this folder are of {}: name another folder (-o), or export with --real {}",
+            path.display(),
+            other.name(),
+            other.name(),
+        )));
+    }
+    Ok(())
 }

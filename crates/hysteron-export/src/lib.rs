@@ -4,7 +4,7 @@
 mod c;
 mod fmu;
 
-pub use c::c;
+pub use c::{CExport, CMemory, COptions, CReal, CWorstCase, c};
 pub use fmu::{Fmi, Fmu, FmuOptions, fmu};
 
 use hysteron::{Error, Model, Result};

@@ -1,13 +1,13 @@
 //! Arguments of `hysteron export`.
 
 use super::{Json, Load};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Subcommand)]
 pub(crate) enum Export {
     /// Portable C99 with the model as constants, for a microcontroller or a PLC
-    #[command(after_help = "Example:\n  hysteron export c spring.json -o firmware --real float")]
+    #[command(after_help = "Example:\n  hysteron export c spring.json -o mcu --real float")]
     C(ExportC),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(
@@ -16,13 +16,36 @@ pub(crate) enum Export {
     Fmu(ExportFmu),
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum CReal {
+    /// Single precision, for processors that compute in it
+    Float,
+    /// Double precision: the digits of `simulate` and `invert`
+    Double,
+}
+
+impl From<CReal> for hysteron_export::CReal {
+    fn from(real: CReal) -> Self {
+        match real {
+            CReal::Float => Self::Float,
+            CReal::Double => Self::Double,
+        }
+    }
+}
+
 #[derive(Args)]
 pub(crate) struct ExportC {
     /// The model
     pub(crate) model: PathBuf,
-    /// Folder for the files
+    /// Folder for the files: hysteron_mcu.h and .c, and the model's
     #[arg(short, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    /// Name of the model in C, and of its files [default: that of the model's file]
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// The number type to compute in
+    #[arg(long, value_enum, default_value_t = CReal::Float)]
+    pub(crate) real: CReal,
     #[command(flatten)]
     pub(crate) load: Load,
     #[command(flatten)]

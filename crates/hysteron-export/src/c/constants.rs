@@ -1,0 +1,121 @@
+//! A model in the number type of the target.
+
+use super::CMemory;
+use hysteron::{Error, Model, Operator, Result, Sign};
+use hysteron_core::{Plane, Real, table_len, turn_capacity};
+
+/// A number type of C.
+pub(super) trait Number: Real {
+    /// Its size and alignment.
+    const BYTES: usize;
+    /// The smallest number that has all its digits.
+    const SMALLEST: Self;
+    /// The nearest number; none where digits are lost beyond that: too large, or too small to be exact.
+    fn of(number: f64) -> Option<Self>;
+    /// As C reads it back to the same bits.
+    fn literal(self) -> String;
+}
+
+impl Number for f32 {
+    const BYTES: usize = 4;
+    const SMALLEST: Self = f32::MIN_POSITIVE;
+
+    fn of(number: f64) -> Option<Self> {
+        let near = number as f32;
+        (near.is_normal() || number == 0.0).then_some(near)
+    }
+
+    fn literal(self) -> String {
+        format!("{self:?}f")
+    }
+}
+
+impl Number for f64 {
+    const BYTES: usize = 8;
+    const SMALLEST: Self = 0.0;
+
+    fn of(number: f64) -> Option<Self> {
+        Some(number)
+    }
+
+    fn literal(self) -> String {
+        format!("{self:?}")
+    }
+}
+
+/// What the C needs of a model: all of it as the core works it out in that type.
+pub(super) struct Constants<T> {
+    pub(super) core: hysteron_core::Model<T, Vec<T>>,
+    pub(super) offset: T,
+    pub(super) falls: bool,
+    /// That of the inverse, where there is one.
+    pub(super) slack: Option<T>,
+}
+
+impl<T: Number> Constants<T> {
+    pub(super) fn of(model: &Model) -> Result<Self> {
+        let convert = |what: &str, number: f64| {
+            T::of(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
+        };
+        let plane = model.plane();
+        let (min, max) = (
+            convert("a level", plane.min())?,
+            convert("a level", plane.max())?,
+        );
+        let weights = model.weights().iter().map(|&mu| convert("a weight", mu));
+        let weights = weights.collect::<Result<Vec<T>>>()?;
+        let offset = convert("an offset", model.offset())?;
+        let levels = plane.levels();
+        let plane = Plane::new(min, max, levels)
+            .map_err(|_| unfit("the levels, too close to be told apart or out of range,"))?;
+        let table = vec![T::ZERO; table_len(levels)];
+        let core = hysteron_core::Model::new(plane, model.operator(), &weights, table)
+            .map_err(|_| unfit("the weights, whose sum is too large,"))?;
+        let slack = core.inverse().ok().map(|inverse| inverse.slack());
+        // Outputs of KP and relays reach twice as far, and sums of small weights have small rounding.
+        let (off, on) = core.output_range();
+        let ends = [off + offset, on + offset, off - offset, on - offset];
+        let small = slack.is_some_and(|slack| slack > T::ZERO && slack < T::SMALLEST);
+        if small || !ends.into_iter().all(Real::is_finite) {
+            return Err(unfit("the range of the output"));
+        }
+        Ok(Self {
+            core,
+            offset,
+            falls: model.sign() == Sign::Negative,
+            slack,
+        })
+    }
+
+    /// The number of `hys_model.kind`.
+    pub(super) fn kind(&self) -> usize {
+        match self.core.operator() {
+            Operator::Mkp => 0,
+            Operator::Kp => 1,
+            Operator::Relay => 2,
+        }
+    }
+
+    /// The table without what follows it in the core's memory.
+    pub(super) fn table(&self) -> &[T] {
+        let levels = self.core.plane().levels();
+        &self.core.table()[..table_len(levels)]
+    }
+
+    /// By the structs in `hysteron_mcu.h`.
+    pub(super) fn memory(&self) -> CMemory {
+        const WORD: usize = 4;
+        let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
+        CMemory {
+            constants: aligned(2 * WORD + 10 * T::BYTES + 3) + self.table().len() * T::BYTES,
+            state: 4 * WORD + 6 * T::BYTES,
+            turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
+        }
+    }
+}
+
+fn unfit(what: &str) -> Error {
+    Error::Export(format!(
+        "{what} does not fit single precision: export with --real double"
+    ))
+}

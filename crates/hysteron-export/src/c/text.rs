@@ -1,0 +1,183 @@
+//! The files that hold a model.
+
+use super::constants::{Constants, Number};
+use super::{CExport, MARK};
+use hysteron::{Model, Operator, Quantity, Sign};
+use hysteron_core::turn_capacity;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Numbers in a line of the table.
+const COLUMNS: usize = 8;
+
+/// Declares the model, and says what it is.
+pub(super) fn header(export: &CExport, model: &Model, source: &Path) -> String {
+    let CExport { name, levels, .. } = export;
+    let shout = name.to_uppercase();
+    let memory = export.memory;
+    let operator = match model.operator() {
+        Operator::Mkp => "MKP",
+        Operator::Kp => "KP",
+        Operator::Relay => "relay",
+    };
+    let file = source.file_name().unwrap_or_default().to_string_lossy();
+    let (low, high) = model.output_range();
+    let lines = [
+        format!("{}: the model of {}", name, plain(&file)),
+        format!(
+            "{operator} operators, K = {levels} levels, {} of {} operators with a weight, {}",
+            model.weights().iter().filter(|mu| **mu != 0.0).count(),
+            model.plane().operators(),
+            export.real.name(),
+        ),
+        format!(
+            "input: {}, from {:?} to {:?}",
+            quantity(&model.input),
+            model.plane().bottom(),
+            model.plane().max()
+        ),
+        format!(
+            "output: {}, from {low:?} (all operators off) to {high:?} (all on){}",
+            quantity(&model.output),
+            match model.sign() {
+                Sign::Positive => "",
+                Sign::Negative => "; falls as the input rises",
+            },
+        ),
+        match export.inverse {
+            true => "inverse: yes".to_owned(),
+            false => {
+                "inverse: none, for there are weights below zero (hys_inverse_step returns HYS_NEGATIVE_WEIGHTS)"
+                    .to_owned()
+            }
+        },
+        format!(
+            "memory on a 32-bit target: {} bytes of constants (flash); for each state {} bytes and {} for its turning points (RAM)",
+            memory.constants, memory.state, memory.turns
+        ),
+        format!(
+            "worst case: {} turning points passed in a step; {} halvings in an inverse step, then a step",
+            export.worst_case.turning_points, export.worst_case.halvings
+        ),
+    ];
+    let lines: String = lines.iter().map(|line| format!(" * {line}\n")).collect();
+    format!(
+        "{MARK}, hysteron {version}.
+{lines} */
+#ifndef {shout}_H
+#define {shout}_H
+
+#include \"hysteron_mcu.h\"
+
+#if HYS_LAYOUT != {layout}
+#error \"{name}: export the model again: hysteron_mcu.h is of another version\"
+#endif
+
+#define {shout}_LEVELS {levels}
+#define {shout}_TURNS {turns}
+
+#ifdef __cplusplus
+extern \"C\" {{
+#endif
+extern const hys_model {name};
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+",
+        version = env!("CARGO_PKG_VERSION"),
+        layout = layout(),
+        turns = turn_capacity(*levels),
+    )
+}
+
+/// Defines it.
+pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> String {
+    let CExport {
+        name, real, levels, ..
+    } = export;
+    let real = real.name();
+    let plane = constants.core.plane();
+    let mut text = format!(
+        "{MARK}, hysteron {version}. */
+#include \"{name}.h\"
+
+/* The constants below are of {real}. */
+typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} ? 1 : -1];
+
+static const hys_real table[] = {{
+",
+        version = env!("CARGO_PKG_VERSION"),
+        bytes = T::BYTES,
+    );
+    let mut rest = constants.table();
+    for p in 0..=*levels {
+        let (row, after) = rest.split_at(p + 1);
+        rest = after;
+        for line in row.chunks(COLUMNS) {
+            let numbers: Vec<String> = line.iter().map(|entry| entry.literal()).collect();
+            let end = if rest.is_empty() && line.as_ptr_range().end == row.as_ptr_range().end {
+                ""
+            } else {
+                ","
+            };
+            let _ = writeln!(text, "    {}{end}", numbers.join(", "));
+        }
+    }
+    let fields = [
+        ("top", T::from_index(*levels)),
+        ("min", plane.min()),
+        ("max", plane.max()),
+        ("bottom", plane.bottom()),
+        ("step", plane.step()),
+        ("per_unit", plane.per_unit()),
+        ("nudge", plane.nudge()),
+        ("total", constants.core.total()),
+        ("slack", constants.slack.unwrap_or(T::ZERO)),
+        ("offset", constants.offset),
+    ];
+    let _ = write!(
+        text,
+        "}};\n\nconst hys_model {name} = {{\n    .table = table,\n    .levels = {levels},\n"
+    );
+    for (field, number) in fields {
+        let _ = writeln!(text, "    .{field} = {},", number.literal());
+    }
+    let _ = write!(
+        text,
+        "    .kind = {},\n    .falls = {},\n    .inverse = {}\n}};\n",
+        constants.kind(),
+        usize::from(constants.falls),
+        usize::from(constants.slack.is_some()),
+    );
+    text
+}
+
+/// The number that the algorithm's header says.
+fn layout() -> &'static str {
+    let line = super::HEADER
+        .lines()
+        .find_map(|line| line.strip_prefix("#define HYS_LAYOUT "));
+    line.unwrap_or("0")
+}
+
+fn quantity(quantity: &Quantity) -> String {
+    let unit = quantity.unit.as_deref().unwrap_or("unit not known");
+    format!("{} [{}]", plain(&quantity.name), plain(unit))
+}
+
+/// Text that stays within a comment, for compilers that read ASCII only.
+fn plain(text: &str) -> String {
+    let mut plain = String::new();
+    for letter in text.chars() {
+        match letter {
+            '°' => plain.push_str("deg"),
+            'µ' | 'μ' => plain.push('u'),
+            '*' | '·' => plain.push('.'),
+            ' '..='~' if letter != '\\' => plain.push(letter),
+            _ => plain.push('?'),
+        }
+    }
+    plain
+}

@@ -1,0 +1,195 @@
+//! Models exported, compiled and run.
+#![allow(clippy::unwrap_used, dead_code)]
+
+pub mod reference;
+pub mod walks;
+
+use hysteron::Model;
+use hysteron_core::turn_capacity;
+use hysteron_export::{COptions, CReal};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What a strict project compiles with.
+pub const STRICT: [&str; 8] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wshadow",
+    "-Werror",
+    "-g",
+];
+
+pub const REALS: [CReal; 2] = [CReal::Float, CReal::Double];
+
+pub fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
+pub fn has(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output();
+    let found = found.is_ok_and(|done| done.status.success());
+    found || skip(&format!("there is no `{tool}`"))
+}
+
+/// As above, for anything else that is missing.
+pub fn skip(why: &str) -> bool {
+    assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
+    eprintln!("skipped: {why}");
+    false
+}
+
+pub fn run(command: &mut Command) {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "{command:?}: {}\n{text}",
+        output.status
+    );
+}
+
+/// Models in one folder, ready to be compiled into one program.
+pub struct Exported {
+    pub folder: tempfile::TempDir,
+    pub real: CReal,
+    pub count: usize,
+    sources: Vec<PathBuf>,
+}
+
+impl Exported {
+    /// Exports `models` as m0, m1, … with a header that lists them.
+    pub fn new(models: &[&Model], real: CReal) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources = vec![folder.path().join("hysteron_mcu.c")];
+        let (mut includes, mut list) = (String::new(), String::new());
+        let mut turns = 0;
+        for (n, model) in models.iter().enumerate() {
+            let name = format!("m{n}");
+            let options = COptions {
+                real,
+                name: Some(&name),
+                source: Path::new("some model.json"),
+            };
+            hysteron_export::c(model, folder.path(), &options).unwrap();
+            sources.push(folder.path().join(format!("{name}.c")));
+            writeln!(includes, "#include \"{name}.h\"").unwrap();
+            write!(list, "&{name}, ").unwrap();
+            turns = turns.max(turn_capacity(model.plane().levels()));
+        }
+        let text = format!(
+            "{includes}#define MOST_TURNS {turns}\nstatic const hys_model *const models[] = {{{list}}};\n"
+        );
+        std::fs::write(folder.path().join("models.h"), text).unwrap();
+        Self {
+            folder,
+            real,
+            count: models.len(),
+            sources,
+        }
+    }
+
+    /// Compiles them with `main`, a file of tests/mcu.
+    pub fn compile(&self, cc: &str, flags: &[&str], main: &str) -> PathBuf {
+        let program = self
+            .folder
+            .path()
+            .join(format!("{main}.{cc}{}", flags.concat()));
+        let mut command = Command::new(cc);
+        command.args(STRICT).args(flags);
+        if self.real == CReal::Float {
+            command.arg("-Wdouble-promotion");
+        }
+        command
+            .arg("-I")
+            .arg(self.folder.path())
+            .arg(here("tests/mcu").join(main))
+            .args(&self.sources)
+            .arg("-o")
+            .arg(&program);
+        run(&mut command);
+        program
+    }
+
+    /// Makes the algorithm end the program where a loop turns more often than the header says.
+    pub fn count_turns(&self) {
+        let path = &self.sources[0];
+        let mut text = std::fs::read_to_string(path).unwrap();
+        let log2 = "static size_t log2_of(size_t n) { size_t k = 0; while (n > 1) { n /= 2; k++; } return k; }";
+        let step = "leave(state, rising, x);";
+        let travel = "static void travel(hys_state *state, hys_real x)\n{";
+        let bisection = "size_t middle = low + (high - low) / 2u;";
+        assert_eq!(text.matches(step).count(), 1);
+        assert_eq!(text.matches(bisection).count(), 3);
+        let limit = "if (++passed > 2 * state->model->levels + 3) { abort(); }";
+        text = text.replace(step, &format!("{limit} {step}"));
+        text = text.replace(travel, &format!("{travel} size_t passed = 0;"));
+        for (at, limit) in [
+            (
+                "branch find(const hys_state *state, size_t kind, goal to)\n{",
+                "log2_of(2 * state->model->levels + 1) + 1",
+            ),
+            (
+                "hys_real min_x, hys_real from, goal to)\n{",
+                "log2_of(model->levels) + 1",
+            ),
+            (
+                "hys_real max_x, hys_real from, goal to)\n{",
+                "log2_of(model->levels) + 1",
+            ),
+        ] {
+            let (before, after) = text.split_once(at).unwrap();
+            let after = after.replacen(
+                bisection,
+                &format!("{bisection} if (++halved > {limit}) {{ abort(); }}"),
+                1,
+            );
+            text = format!("{before}{at} size_t halved = 0;{after}");
+        }
+        std::fs::write(path, format!("#include <stdlib.h>\n{log2}\n{text}")).unwrap();
+    }
+}
+
+/// What the program prints for the commands.
+pub fn answers(program: &mut Command, commands: &str) -> String {
+    let mut child = program
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let commands = commands.to_owned();
+    let writer = std::thread::spawn(move || stdin.write_all(commands.as_bytes()));
+    let output = child.wait_with_output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success(),
+        "{:?}: {}\n{text}",
+        program,
+        output.status
+    );
+    writer.join().unwrap().unwrap();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Fails at the first line that differs.
+pub fn same(commands: &str, expected: &str, found: &str, what: &str) {
+    if expected == found {
+        return;
+    }
+    let lines = commands.lines().zip(expected.lines()).zip(found.lines());
+    for (n, ((command, expected), found)) in lines.enumerate() {
+        assert_eq!(expected, found, "{what}, line {}: {command}", n + 1);
+    }
+    panic!(
+        "{what}: {} lines expected, {} found",
+        expected.lines().count(),
+        found.lines().count()
+    );
+}

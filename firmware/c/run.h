@@ -1,0 +1,30 @@
+/* What is run: `host tables` writes the constants. */
+#ifndef RUN_H
+#define RUN_H
+#include <stddef.h>
+#ifdef PLAIN
+#include "plain.h"
+typedef plain_model model_type;
+#else
+#include "hysteron_mcu.h"
+typedef hys_model model_type;
+#endif
+
+/* Levels that there is memory for. */
+#define MOST 40
+
+enum { FORWARD = 2 }; /* kind of a step; else the heading of an inverse step */
+
+typedef struct {
+    const char *name;
+    const model_type *model;
+    int levels;
+    hys_real tolerance;
+    size_t count;
+    const signed char *kinds;
+    const hys_real *values;
+} run;
+
+extern const run runs[];
+extern const size_t run_count;
+#endif

@@ -1,0 +1,60 @@
+//! Makes Rust constants of the models and runs, and tells the linker of the board's memory.
+
+#[path = "src/data.rs"]
+#[allow(dead_code)]
+mod data;
+
+use std::env::var;
+use std::fmt::Write;
+use std::path::Path;
+
+fn main() {
+    let vectors = Path::new("../../vectors");
+    println!("cargo:rerun-if-changed=../../vectors");
+    println!("cargo:rerun-if-changed=src/data.rs");
+    println!("cargo:rerun-if-changed=memory.x");
+    let (models, runs) = data::all(vectors);
+    let mut text = String::from("pub static MODELS: &[Model] = &[\n");
+    for m in &models {
+        let operator = match m.operator.as_str() {
+            "mkp" => "Mkp",
+            "kp" => "Kp",
+            _ => "Relay",
+        };
+        writeln!(
+            text,
+            "Model {{ operator: Operator::{operator}, min: {:?}, max: {:?}, levels: {}, offset: {:?}, sign: {:?}, weights: &{:?} }},",
+            m.min, m.max, m.levels, m.offset, m.sign, m.weights
+        )
+        .expect("text");
+    }
+    text.push_str("];\npub static RUNS: &[Run] = &[\n");
+    for r in &runs {
+        writeln!(
+            text,
+            "Run {{ name: {:?}, model: {}, tolerance: {:?}, steps: &{:?} }},",
+            r.name, r.model, r.tolerance, r.steps
+        )
+        .expect("text");
+    }
+    text.push_str("];\n");
+    let out = var("OUT_DIR").expect("cargo sets it");
+    std::fs::write(Path::new(&out).join("runs.rs"), text).expect("the constants");
+
+    // The image whose size is measured holds one model.
+    println!("cargo:rerun-if-env-changed=LEVELS");
+    let levels = var("LEVELS").map_or(20, |levels| levels.parse().expect("LEVELS: a number"));
+    let model = models.iter().find(|m| m.name == format!("bench_{levels}"));
+    let weights = &model.expect("LEVELS: 10, 20 or 40").weights;
+    let text = format!(
+        "pub const LEVELS: usize = {levels};\npub static WEIGHTS: [Real; {}] = {weights:?};\n",
+        weights.len()
+    );
+    std::fs::write(Path::new(&out).join("size.rs"), text).expect("the constants");
+
+    if var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") {
+        let here = var("CARGO_MANIFEST_DIR").expect("cargo sets it");
+        println!("cargo:rustc-link-search={here}");
+        println!("cargo:rustc-link-arg-bins=-Tlink.x");
+    }
+}

@@ -1,0 +1,129 @@
+//! Whether digits are right: against the plain definition in double, and against what the vectors expect.
+
+use crate::data::{FORWARD, Model, Run};
+use crate::tables::is_measured;
+use hysteron_core::{Definition, Operator, Plane};
+
+/// Tolerances in single precision: those in double hold for as many units of rounding, `2⁻²³/2⁻⁵²` times as large.
+const COARSER: f64 = (1_u64 << 29) as f64;
+
+pub fn digits(
+    (models, runs): &(Vec<Model>, Vec<Run>),
+    text: &str,
+    plain: bool,
+) -> Result<(), String> {
+    let mut lines = text.lines();
+    let mut seen = 0;
+    while let Some(head) = lines.next() {
+        let (number, name) = head.split_once(' ').unwrap_or((head, ""));
+        let run = runs.iter().find(|run| run.name == name);
+        let run = run.ok_or(format!("no run has the name of: {head}"))?;
+        let rows: Vec<&str> = lines.by_ref().take(run.steps.len()).collect();
+        let rows = rows.iter().map(|row| result(row, number));
+        let rows = rows
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|why| format!("{head}: {why}"))?;
+        let coarser = if number == "float" { COARSER } else { 1.0 };
+        let worst = one(&models[run.model], run, &rows, coarser, plain)
+            .map_err(|why| format!("{head}: {why}"))?;
+        if worst > 1.0 {
+            return Err(format!("{head}: {worst:.3} of the tolerance"));
+        }
+        eprintln!("{head}: {worst:.3} of the tolerance");
+        seen += 1;
+    }
+    let expected = runs
+        .iter()
+        .filter(|run| !plain || is_measured(&models[run.model]))
+        .count();
+    // The plain loop runs in one number type at a time.
+    if seen != if plain { expected } else { 2 * expected } {
+        return Err(format!(
+            "{seen} runs instead of {expected} in each number type"
+        ));
+    }
+    Ok(())
+}
+
+/// Bits and status of a step.
+fn result(row: &str, number: &str) -> Result<(f64, i8), String> {
+    let parse = || {
+        let (bits, status) = row.split_once(' ')?;
+        let value = match (number, bits.len()) {
+            ("float", 8) => f64::from(f32::from_bits(u32::from_str_radix(bits, 16).ok()?)),
+            ("double", 16) => f64::from_bits(u64::from_str_radix(bits, 16).ok()?),
+            _ => return None,
+        };
+        Some((value, status.parse().ok()?))
+    };
+    parse().ok_or(format!("no result: {row}"))
+}
+
+/// The largest difference as a share of its tolerance.
+fn one(
+    model: &Model,
+    run: &Run,
+    rows: &[(f64, i8)],
+    coarser: f64,
+    plain: bool,
+) -> Result<f64, String> {
+    let total: f64 = model.weights.iter().sum();
+    let (off, on) = match operator(model) {
+        Operator::Mkp => (0.0, total),
+        _ => (-total, total),
+    };
+    let ends = [off, on].map(|sum| model.offset + model.sign * sum);
+    let (least, greatest) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let reach = run.tolerance.max(coarser * run.output_tolerance);
+
+    let mut states = vec![0.0; model.weights.len()];
+    let plane = Plane::new(model.min, model.max, model.levels).map_err(|why| why.to_string())?;
+    let definition = Definition::new(plane, operator(model), &model.weights, &mut states);
+    let mut definition = definition.map_err(|why| why.to_string())?;
+    let mut worst = 0.0_f64;
+    let mut judge = |difference: f64, tolerance: f64| {
+        // NaN counts as wrong.
+        let share = difference.abs() / (coarser * tolerance);
+        worst = if share <= worst { worst } else { share };
+    };
+    for (n, (&(kind, value), &(result, status))) in run.steps.iter().zip(rows).enumerate() {
+        let input = if kind == FORWARD { value } else { result };
+        let sum = definition
+            .step(input)
+            .map_err(|why| format!("step {n}: {why}"))?;
+        let output = model.offset + model.sign * sum;
+        let expected = if kind == FORWARD {
+            0
+        } else {
+            i8::from(value > greatest + reach) - i8::from(value < least - reach)
+        };
+        if kind == FORWARD {
+            judge(result - output, run.output_tolerance);
+        } else if expected == 0 && !(plain && (value < least || value > greatest)) {
+            let beyond = (output - value).abs() - run.tolerance;
+            judge(beyond.max(0.0), run.output_tolerance);
+        }
+        // The bisection knows no status.
+        if !plain && status != expected {
+            return Err(format!("step {n}: status {status} instead of {expected}"));
+        }
+        if let Some((results, statuses, tolerance)) = &run.expected {
+            judge(result - results[n], *tolerance);
+            if status != statuses[n] {
+                return Err(format!(
+                    "step {n}: status {status} instead of {}",
+                    statuses[n]
+                ));
+            }
+        }
+    }
+    Ok(worst)
+}
+
+pub fn operator(model: &Model) -> Operator {
+    match model.operator.as_str() {
+        "mkp" => Operator::Mkp,
+        "kp" => Operator::Kp,
+        _ => Operator::Relay,
+    }
+}

@@ -1,0 +1,36 @@
+//! On the host: `tables` writes models and runs for C, `check` judges digits, `report` fills the page.
+
+mod check;
+#[path = "../../data.rs"]
+mod data;
+mod report;
+mod tables;
+
+use std::path::Path;
+
+const USAGE: &str = "usage: host tables VECTORS DIR
+       host check VECTORS DIGITS [plain]
+       host report VECTORS PAGE MEASURES";
+
+fn main() -> Result<(), String> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let [what, vectors, rest @ ..] = &args[..] else {
+        return Err(USAGE.into());
+    };
+    let data = data::all(Path::new(vectors));
+    match (*what, rest) {
+        ("tables", [folder]) => tables::write(&data, Path::new(folder)),
+        ("check", [digits]) => check::digits(&data, &read(digits)?, false),
+        ("check", [digits, "plain"]) => check::digits(&data, &read(digits)?, true),
+        ("report", [page, measures]) => {
+            print!("{}", report::page(&data, &read(page)?, &read(measures)?)?);
+            Ok(())
+        }
+        _ => Err(USAGE.into()),
+    }
+}
+
+fn read(path: &str) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|why| format!("{path}: {why}"))
+}

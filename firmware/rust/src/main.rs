@@ -1,0 +1,23 @@
+//! Every run in both number types through the Rust core. Standard output has the bits of each result; on
+//! the Cortex-M4F standard error has what it took.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod port;
+mod run;
+
+fn all() -> Result<(), hysteron_core::Error> {
+    port::start();
+    run::all::<f32>()?;
+    run::all::<f64>()
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() -> Result<(), hysteron_core::Error> {
+    all()
+}
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    port::end(all())
+}
