@@ -391,6 +391,10 @@ typedef struct HysteronModelInfo {
    * Output with every operator on.
    */
   double output_on;
+  /**
+   * Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
+   */
+  double noise_band;
 } HysteronModelInfo;
 
 #ifdef __cplusplus
@@ -653,6 +657,17 @@ int32_t hysteron_model_info(uint64_t model, struct HysteronModelInfo *info);
 int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity, size_t *count);
 
 /**
+ * Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
+ * "temperature [degC]". As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
+ * the whole takes with that zero, and `text` may be null with size 0.
+ */
+int32_t hysteron_model_quantity(uint64_t model,
+                                int32_t quantity,
+                                char *text,
+                                size_t size,
+                                size_t *needed);
+
+/**
  * A state of `model`, all operators off. It keeps what it needs of the model, which may be freed before it.
  *
  * A model that depends on a load, or has a thermal body in front, has no state: take it at one load.
@@ -702,6 +717,28 @@ int32_t hysteron_inverse_step(uint64_t state,
                               double tolerance,
                               double *input,
                               int32_t *status);
+
+/**
+ * Finds the inputs for `count` targets, one after the other, and moves the state through them. `heading` has as many elements,
+ * each as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD` throughout; so has `status`, which may be null. No array may
+ * overlap another. Where one target or heading cannot be, the state stays as it was.
+ */
+int32_t hysteron_inverse_run(uint64_t state,
+                             const double *target,
+                             const int32_t *heading,
+                             double tolerance,
+                             double *input,
+                             int32_t *status,
+                             size_t count);
+
+/**
+ * Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
+ * the series never moves. Reversals of up to `band` are noise.
+ */
+int32_t hysteron_headings(const double *target,
+                          size_t count,
+                          double band,
+                          int32_t *heading);
 
 /**
  * Saves the state: its turning points, at most `capacity`, and the last input. `count` becomes the number of turning points,

@@ -1,6 +1,7 @@
 //! From results to status codes, and the detail of the last failure.
 
 use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
+use crate::pointer::copy_text;
 #[cfg(feature = "handles")]
 use hysteron::Error;
 #[cfg(not(feature = "handles"))]
@@ -79,23 +80,8 @@ pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
 /// takes with that zero. With a null pointer it only tells the size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_last_error(text: *mut c_char, size: usize) -> usize {
-    let copy = |last: &RefCell<String>| {
-        let last = last.borrow();
-        if !text.is_null() && size > 0 {
-            let mut length = last.len().min(size - 1);
-            while !last.is_char_boundary(length) {
-                length -= 1;
-            }
-            // SAFETY: `text` has `size` bytes by contract, more than `length`, and does not lie in a private string.
-            unsafe {
-                last.as_ptr()
-                    .cast::<c_char>()
-                    .copy_to_nonoverlapping(text, length);
-                text.add(length).write(0);
-            }
-        }
-        last.len() + 1
-    };
+    // SAFETY: `text` has `size` bytes by contract.
+    let copy = |last: &RefCell<String>| unsafe { copy_text(&last.borrow(), text, size) };
     LAST.try_with(copy).unwrap_or(0)
 }
 

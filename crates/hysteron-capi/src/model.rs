@@ -1,8 +1,9 @@
 //! Models by handle.
 
-use crate::fault::guard;
+use crate::codes::HYSTERON_VALUE;
+use crate::fault::{Fault, guard};
 use crate::handles::Table;
-use crate::pointer::{Out, array, copy_out, text};
+use crate::pointer::{Out, array, copy_out, copy_text, text};
 use crate::types::{HysteronModelInfo, operator, operator_kind as kind_of, sign as sign_of};
 use hysteron::{Model, Plane};
 use std::ffi::c_char;
@@ -103,6 +104,7 @@ pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronMode
             offset: model.offset(),
             output_off,
             output_on,
+            noise_band: model.noise_band(),
         });
         Ok(())
     })
@@ -121,5 +123,31 @@ pub unsafe extern "C" fn hysteron_model_weights(
         let values = model.weights().iter().copied();
         // SAFETY: the contract of the crate.
         unsafe { copy_out(values, (weights, capacity), &Out::new(count, "count")?) }
+    })
+}
+
+/// Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
+/// "temperature [degC]". As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
+/// the whole takes with that zero, and `text` may be null with size 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_quantity(
+    model: u64,
+    quantity: i32,
+    text: *mut c_char,
+    size: usize,
+    needed: *mut usize,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let needed = unsafe { Out::new(needed, "needed")? };
+        let model = MODELS.get(model, "model")?;
+        let quantity = match quantity {
+            0 => &model.input,
+            1 => &model.output,
+            _ => return Err(Fault::Call(HYSTERON_VALUE, "quantity")),
+        };
+        // SAFETY: the contract of the crate.
+        needed.set(unsafe { copy_text(&quantity.to_column(), text, size) });
+        Ok(())
     })
 }

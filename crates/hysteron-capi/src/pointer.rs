@@ -70,15 +70,20 @@ pub(crate) unsafe fn array<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
+/// A number of which zero bytes are a value.
+pub(crate) trait Number: Copy {}
+impl Number for f64 {}
+impl Number for i32 {}
+
 /// An array to write, of numbers that were written before or not.
 ///
 /// # Safety
 /// `pointer` is null or valid for writes of `count` elements, which nobody else uses during `'a`.
-pub(crate) unsafe fn array_out<'a>(
-    pointer: *mut f64,
+pub(crate) unsafe fn array_out<'a, T: Number>(
+    pointer: *mut T,
     count: usize,
     name: &'static str,
-) -> Result<&'a mut [f64]> {
+) -> Result<&'a mut [T]> {
     if count == 0 {
         return Ok(&mut []);
     }
@@ -90,9 +95,16 @@ pub(crate) unsafe fn array_out<'a>(
     }
 }
 
-/// Refuses arrays of which a part is the same memory.
-pub(crate) fn apart(a: *const f64, b: *const f64, count: usize, name: &'static str) -> Result<()> {
-    if a.addr().abs_diff(b.addr()) < count.saturating_mul(size_of::<f64>()) {
+/// Refuses arrays of `count` elements each of which a part is the same memory; null is no array.
+pub(crate) fn apart<A, B>(
+    a: *const A,
+    b: *const B,
+    count: usize,
+    name: &'static str,
+) -> Result<()> {
+    let end = |start: usize, size: usize| start.saturating_add(count.saturating_mul(size));
+    let (a_end, b_end) = (end(a.addr(), size_of::<A>()), end(b.addr(), size_of::<B>()));
+    if !a.is_null() && !b.is_null() && a.addr() < b_end && b.addr() < a_end {
         return Err(Fault::Call(HYSTERON_OVERLAP, name));
     }
     Ok(())
@@ -133,4 +145,25 @@ pub(crate) unsafe fn copy_out(
         .zip(values)
         .for_each(|(to, value)| *to = value);
     Ok(())
+}
+
+/// Copies as much of `from` as fits into `size` bytes with a zero byte at the end; gives the bytes that the whole takes.
+///
+/// # Safety
+/// `to` is null or valid for writes of `size` bytes.
+pub(crate) unsafe fn copy_text(from: &str, to: *mut c_char, size: usize) -> usize {
+    if !to.is_null() && size > 0 {
+        let mut length = from.len().min(size - 1);
+        while !from.is_char_boundary(length) {
+            length -= 1;
+        }
+        // SAFETY: `to` has `size` bytes by contract, more than `length`, and does not lie in a string of ours.
+        unsafe {
+            from.as_ptr()
+                .cast::<c_char>()
+                .copy_to_nonoverlapping(to, length);
+            to.add(length).write(0);
+        }
+    }
+    from.len() + 1
 }

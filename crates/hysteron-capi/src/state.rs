@@ -1,11 +1,15 @@
 //! States by handle: forward, inverse, save and restore.
 
+use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::handles::Table;
 use crate::model::MODELS;
 use crate::pointer::{Out, apart, array, array_out, copy_out, optional};
-use crate::types::{clipped as clipped_constant, policy, status as status_constant};
-use hysteron::{Error, Model, State};
+use crate::types::{
+    HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant, policy,
+    status as status_constant,
+};
+use hysteron::{Error, Model, State, headings};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A state, with the model that it is one of.
@@ -148,6 +152,89 @@ pub unsafe extern "C" fn hysteron_inverse_step(
         let solution = inverse.step(&mut running.state(), target, policy)?;
         input.set(solution.input);
         status.set(status_constant(solution.status));
+        Ok(())
+    })
+}
+
+/// Finds the inputs for `count` targets, one after the other, and moves the state through them. `heading` has as many elements,
+/// each as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD` throughout; so has `status`, which may be null. No array may
+/// overlap another. Where one target or heading cannot be, the state stays as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_inverse_run(
+    state: u64,
+    target: *const f64,
+    heading: *const i32,
+    tolerance: f64,
+    input: *mut f64,
+    status: *mut i32,
+    count: usize,
+) -> i32 {
+    guard(|| {
+        let running = STATES.get(state, "state")?;
+        if count > 0 {
+            apart(target, input, count, "input")?;
+            apart(target, status, count, "status")?;
+            apart(input, status, count, "status")?;
+            apart(heading, input, count, "heading")?;
+            apart(heading, status, count, "heading")?;
+        }
+        let wanted = |count, pointer_is_null| if pointer_is_null { 0 } else { count };
+        // SAFETY: the contract of the crate, and apart as checked.
+        let (target, heading, input, status) = unsafe {
+            (
+                array(target, count, "target")?,
+                array(heading, wanted(count, heading.is_null()), "heading")?,
+                array_out(input, count, "input")?,
+                array_out(status, wanted(count, status.is_null()), "status")?,
+            )
+        };
+        let headings = heading
+            .iter()
+            .copied()
+            .map(Some)
+            .chain(std::iter::repeat(None));
+        let policies = headings
+            .take(count)
+            .map(|heading| policy(heading.unwrap_or(HYSTERON_HOLD), tolerance))
+            .collect::<Result<Vec<_>>>()?;
+        let inverse = running.model.inverse()?;
+        let solutions = inverse.through(&mut running.state(), target, policies)?;
+        for (input, solution) in input.iter_mut().zip(&solutions) {
+            *input = solution.input;
+        }
+        for (status, solution) in status.iter_mut().zip(&solutions) {
+            *status = status_constant(solution.status);
+        }
+        Ok(())
+    })
+}
+
+/// Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
+/// the series never moves. Reversals of up to `band` are noise.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_headings(
+    target: *const f64,
+    count: usize,
+    band: f64,
+    heading: *mut i32,
+) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let (target, heading) = unsafe {
+            (
+                array(target, count, "target")?,
+                array_out(heading, count, "heading")?,
+            )
+        };
+        if let Some(index) = target.iter().position(|target| !target.is_finite()) {
+            return Err(hysteron_core::Error::InputNotFinite { index }.into());
+        }
+        if band.is_nan() || band < 0.0 {
+            return Err(Fault::Call(HYSTERON_VALUE, "band"));
+        }
+        for (to, heading) in heading.iter_mut().zip(headings(target, band)) {
+            *to = heading.map_or(HYSTERON_HOLD, heading_constant);
+        }
         Ok(())
     })
 }

@@ -69,6 +69,8 @@ pub struct HysteronModelInfo {
     pub output_off: f64,
     /// Output with every operator on.
     pub output_on: f64,
+    /// Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
+    pub noise_band: f64,
 }
 
 /// Options of adaptation; `hysteron_adaptation_default` fills in the usual ones.
@@ -228,6 +230,13 @@ pub(crate) fn policy(value: i32, tolerance: f64) -> Result<Policy<f64>> {
         _ => return Err(Fault::Call(HYSTERON_VALUE, "policy")),
     };
     Ok(Policy::Anticipate { heading, tolerance })
+}
+
+pub(crate) fn heading(heading: Direction) -> i32 {
+    match heading {
+        Direction::Rising => HYSTERON_RISING,
+        Direction::Falling => HYSTERON_FALLING,
+    }
 }
 
 pub(crate) fn status(status: Status) -> i32 {

@@ -44,13 +44,10 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         args::Policy::Hold => hysteron::Invert::Hold {
             band: args.band.unwrap_or(0.0),
         },
-        args::Policy::Anticipate => {
-            let (off, on) = model.output_range();
-            hysteron::Invert::Anticipate {
-                band: args.band.unwrap_or(hysteron::NOISE * (on - off).abs()),
-                rows: args.look_ahead,
-            }
-        }
+        args::Policy::Anticipate => hysteron::Invert::Anticipate {
+            band: args.band.unwrap_or(model.noise_band()),
+            rows: args.look_ahead,
+        },
     };
     let what = ["targets above the model's range", "targets below it"];
     through(

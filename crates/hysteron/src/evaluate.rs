@@ -2,9 +2,10 @@
 
 use crate::identify::simulate_from_unknown;
 use crate::recording::range;
-use crate::turning::{NOISE, Turning, headings};
+use crate::turning::{NOISE, Turning};
 use crate::{
-    BandEvaluation, Errors, Inverse, Model, Policy, Recording, Result, Start, State, Status,
+    BandEvaluation, Errors, Inverse, Invert, Model, Recording, Result, Solution, Start, State,
+    Status,
 };
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
@@ -126,16 +127,11 @@ fn evaluate_inverse(
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
-    let headings = headings(&recording.output, tolerance);
-    let run = |policy: &dyn Fn(usize) -> Policy<f64>| -> Result<InverseRun> {
-        let mut state = begin.clone();
-        let mut input_model = Vec::with_capacity(recording.len());
-        let mut out_of_reach = 0;
-        for (n, &target) in recording.output.iter().enumerate() {
-            let solution = inverse.step(&mut state, target, policy(n))?;
-            out_of_reach += usize::from(solution.status != Status::Ok);
-            input_model.push(solution.input);
-        }
+    let run = |how: Invert| -> Result<InverseRun> {
+        let solutions = inverse.series(&mut begin.clone(), &recording.output, how)?;
+        let missed = |solution: &&Solution<f64>| solution.status != Status::Ok;
+        let out_of_reach = solutions.iter().filter(missed).count();
+        let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();
         Ok(InverseRun {
             all: compare(&recording.input, &input_model),
             moving: Errors::between(&recording.input, &input_model, |n| moving[n]),
@@ -144,11 +140,10 @@ fn evaluate_inverse(
             out_of_reach,
         })
     };
-    let hold = run(&|_| Policy::Hold { tolerance })?;
-    let anticipate = run(&|n| match headings[n] {
-        Some(heading) => Policy::Anticipate { heading, tolerance },
-        None => Policy::Hold { tolerance },
-    })?;
+    let band = tolerance;
+    let rows = recording.len();
+    let hold = run(Invert::Hold { band })?;
+    let anticipate = run(Invert::Anticipate { band, rows })?;
     Ok(InverseEvaluation {
         moving,
         hold,

@@ -21,6 +21,7 @@ mod evaluate;
 pub mod filter;
 mod identify;
 mod inspect;
+mod inverse;
 mod load;
 mod metrics;
 mod model;
@@ -46,9 +47,10 @@ pub use band::{Band, BandEvaluation};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
+pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Policy, Region, Solution, Status,
+    Output, Policy, Region, Solution, Status, operator_index,
 };
 pub use identify::{
     Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Score, Solver,
@@ -58,9 +60,10 @@ pub use inspect::{
     ColumnSummary, ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series,
     TableSummary, Uncertain, inspect_model, inspect_recording, inspect_table,
 };
+pub use inverse::Inverse;
 pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
-pub use model::{Inverse, Model, Sign, State};
+pub use model::{Model, Sign, State};
 pub use monotone::{AGAINST_INPUT, way_against_input};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
 pub use prepare::{

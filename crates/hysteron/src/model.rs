@@ -1,7 +1,7 @@
 //! The identified model: a core model with its weights, names, offset and sign.
 
 use crate::recording::Quantity;
-use crate::{Direction, Error, FitSummary, Operator, Plane, Policy, Result, Solution, Status};
+use crate::{Error, FitSummary, Operator, Plane, Result};
 use hysteron_core::{Turn, table_len, turn_capacity};
 
 /// The state of a model: its turning points.
@@ -46,7 +46,7 @@ impl Sign {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    core: hysteron_core::Model<f64, Vec<f64>>,
+    pub(crate) core: hysteron_core::Model<f64, Vec<f64>>,
     weights: Vec<f64>,
     offset: f64,
     sign: Sign,
@@ -149,6 +149,13 @@ impl Model {
         (self.outward(off), self.outward(on))
     }
 
+    /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of the output's range.
+    #[must_use]
+    pub fn noise_band(&self) -> f64 {
+        let (off, on) = self.output_range();
+        crate::NOISE * (on - off).abs()
+    }
+
     /// A state with every operator off.
     #[must_use]
     pub fn start(&self) -> State {
@@ -228,27 +235,6 @@ impl Model {
         Ok(output)
     }
 
-    /// The inverse of this model.
-    ///
-    /// # Errors
-    /// [`Error::Core`] naming the first weights below zero, if there are any; [`Error::Thermal`] for a model with a thermal body.
-    pub fn inverse(&self) -> Result<Inverse<'_>> {
-        if self.thermal.is_some() {
-            return Err(crate::thermal::no_inverse());
-        }
-        if let Some(load) = &self.load {
-            let (low, high) = load.range();
-            return Err(Error::Fit(format!(
-                "the model depends on the load `{}`, from {low} to {high}: an inverse is that of one load (--load of the command)",
-                load.quantity.name
-            )));
-        }
-        Ok(Inverse {
-            model: self,
-            core: self.core.inverse()?,
-        })
-    }
-
     /// The operator states `γ_ij` in `[0, 1]`, in the order of the weights, after `history` from every operator off.
     ///
     /// # Errors
@@ -262,59 +248,5 @@ impl Model {
 
     fn outward(&self, sum: f64) -> f64 {
         self.offset + self.sign.factor() * sum
-    }
-}
-
-impl Sign {
-    /// A policy for the output without sign.
-    pub(crate) fn inward(self, policy: Policy<f64>) -> Policy<f64> {
-        match policy {
-            Policy::Anticipate { heading, tolerance } if self == Sign::Negative => {
-                let heading = match heading {
-                    Direction::Rising => Direction::Falling,
-                    Direction::Falling => Direction::Rising,
-                };
-                Policy::Anticipate { heading, tolerance }
-            }
-            other => other,
-        }
-    }
-
-    /// The status for the output with its sign.
-    pub(crate) fn outward(self, solution: Solution<f64>) -> Solution<f64> {
-        let status = match solution.status {
-            Status::Low if self == Sign::Negative => Status::High,
-            Status::High if self == Sign::Negative => Status::Low,
-            other => other,
-        };
-        Solution { status, ..solution }
-    }
-}
-
-/// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model.
-#[derive(Debug, Clone)]
-pub struct Inverse<'m> {
-    model: &'m Model,
-    core: hysteron_core::Inverse<'m, f64, Vec<f64>>,
-}
-
-impl Inverse<'_> {
-    /// Finds the input for `target` and moves `state` there. `O(log K)`.
-    ///
-    /// Status and heading speak of the target as given: with a negative sign, [`Status::Low`] needs an
-    /// input above the plane.
-    ///
-    /// # Errors
-    /// [`Error::Core`] for a target that is not finite or a state of another model; the state is then as it was.
-    pub fn step(
-        &self,
-        state: &mut State,
-        target: f64,
-        policy: Policy<f64>,
-    ) -> Result<Solution<f64>> {
-        let sign = self.model.sign;
-        let raw = sign.factor() * (target - self.model.offset);
-        let solution = self.core.step(state, raw, sign.inward(policy))?;
-        Ok(sign.outward(solution))
     }
 }

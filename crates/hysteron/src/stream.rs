@@ -178,6 +178,28 @@ pub enum Invert {
     },
 }
 
+impl Invert {
+    /// The policy for each target of a series.
+    #[must_use]
+    pub fn policies(self, targets: &[f64]) -> Vec<Policy<f64>> {
+        match self {
+            Invert::Hold { band } => vec![Policy::Hold { tolerance: band }; targets.len()],
+            Invert::Anticipate { band, rows } => {
+                let headings = Headings::new(band, rows).all(targets).into_iter();
+                headings.map(|heading| anticipate(heading, band)).collect()
+            }
+        }
+    }
+}
+
+/// The policy towards a reversal, or at rest where none is in sight.
+fn anticipate(heading: Option<Direction>, tolerance: f64) -> Policy<f64> {
+    match heading {
+        Some(heading) => Policy::Anticipate { heading, tolerance },
+        None => Policy::Hold { tolerance },
+    }
+}
+
 /// Copies `table` to `out` with the columns `input_model` and `status`, the input that gives the
 /// target in column `target`, from every operator off. `progress` is told the bytes read.
 ///
@@ -211,11 +233,7 @@ pub fn invert_table(
             let mut headings = Headings::new(band, rows);
             let mut release =
                 |waiting: &mut VecDeque<(Row, f64)>, heading: Option<Direction>, count: usize| {
-                    let tolerance = band;
-                    let policy = match heading {
-                        Some(heading) => Policy::Anticipate { heading, tolerance },
-                        None => Policy::Hold { tolerance },
-                    };
+                    let policy = anticipate(heading, band);
                     for (row, target) in waiting.drain(..count) {
                         inverting.row(&row, target, policy)?;
                     }

@@ -125,6 +125,20 @@ impl Headings {
         (self.turning.heading, count)
     }
 
+    /// The directions of all samples of a series.
+    #[must_use]
+    pub fn all(mut self, series: &[f64]) -> Vec<Option<Direction>> {
+        let mut result = Vec::with_capacity(series.len());
+        for &y in series {
+            for (heading, count) in self.push(y) {
+                result.extend(std::iter::repeat_n(heading, count));
+            }
+        }
+        let (heading, count) = self.finish();
+        result.extend(std::iter::repeat_n(heading, count));
+        result
+    }
+
     fn release(&mut self, up_to: usize) -> usize {
         let count = up_to.saturating_sub(self.released);
         self.released += count;
@@ -135,16 +149,7 @@ impl Headings {
 /// [`Headings`] of a whole series.
 #[must_use]
 pub fn headings(series: &[f64], band: f64) -> Vec<Option<Direction>> {
-    let mut look = Headings::new(band, series.len());
-    let mut result = Vec::with_capacity(series.len());
-    for &y in series {
-        for (heading, count) in look.push(y) {
-            result.extend(std::iter::repeat_n(heading, count));
-        }
-    }
-    let (heading, count) = look.finish();
-    result.extend(std::iter::repeat_n(heading, count));
-    result
+    Headings::new(band, series.len()).all(series)
 }
 
 #[cfg(test)]

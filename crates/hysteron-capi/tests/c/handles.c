@@ -39,6 +39,38 @@ static void save_and_restore(uint64_t model) {
     OK(hysteron_state_free(broken));
 }
 
+/* A whole series: where it goes next, and the inputs for it. */
+static void series(uint64_t model) {
+    static const double target[7] = {11.0, 12.0, 13.0, 13.0, 12.95, 11.0, 12.5};
+    static const int32_t next[7] = {1, 1, 1, -1, -1, -1, 1};
+    struct HysteronModelInfo info;
+    uint64_t inverse, forward;
+    double input[7], reached[7];
+    int32_t heading[7], status[7];
+    char text[32];
+    size_t needed;
+    int n;
+    OK(hysteron_model_info(model, &info));
+    REQUIRE(info.noise_band == 0.01 * (info.output_on - info.output_off));
+    OK(hysteron_headings(target, 7, 0.1, heading));
+    REQUIRE(memcmp(heading, next, sizeof next) == 0);
+    OK(hysteron_state_new(model, &inverse));
+    OK(hysteron_state_new(model, &forward));
+    OK(hysteron_inverse_run(inverse, target, heading, 0.1, input, status, 7));
+    OK(hysteron_run(forward, input, reached, 7));
+    for (n = 0; n < 7; n++) {
+        REQUIRE(status[n] == HYSTERON_INSIDE);
+        REQUIRE(fabs(reached[n] - target[n]) <= 0.1 + 1e-12);
+    }
+    REQUIRE(input[3] < input[2]); /* the target rests there, and the input is at the far edge of the dead band already */
+    OK(hysteron_model_quantity(model, 1, text, sizeof text, &needed));
+    REQUIRE(strcmp(text, "output") == 0 && needed == 7);
+    OK(hysteron_model_quantity(model, 0, text, 3, &needed));
+    REQUIRE(strcmp(text, "in") == 0 && needed == 6);
+    OK(hysteron_state_free(inverse));
+    OK(hysteron_state_free(forward));
+}
+
 static void adaptation(uint64_t model, uint64_t plant_model, int32_t method) {
     struct HysteronAdaptation options;
     struct HysteronLearning learning;
@@ -94,6 +126,7 @@ void handles(void) {
     OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, 3, WEIGHTS, 6, 10.0, 1, &model));
     OK(hysteron_model_new(HYSTERON_MKP, 20.0, 80.0, 3, stiffer, 6, 10.0, 1, &plant));
     save_and_restore(model);
+    series(model);
     adaptation(model, plant, HYSTERON_GRADIENT);
     adaptation(model, plant, HYSTERON_INCREMENTS);
     adaptation(model, plant, HYSTERON_LEAST_SQUARES);

@@ -41,7 +41,7 @@ static void models(void) {
 static void steps(uint64_t model, uint64_t state) {
     double array[5] = {0.1, 0.9, NAN, 0.3, 0.0}, output[5], before, after, twice[2] = {0.5, 0.2}, input;
     size_t count;
-    int32_t status;
+    int32_t status, headings[5] = {0};
     uint64_t other;
     OK(hysteron_step(state, 0.6, &before, NULL));
     REQUIRE(hysteron_step(state, NAN, &after, NULL) == HYSTERON_INPUT_NOT_FINITE);
@@ -61,11 +61,26 @@ static void steps(uint64_t model, uint64_t state) {
     OK(hysteron_step(state, 0.6, &after, NULL));
     REQUIRE(memcmp(&before, &after, sizeof before) == 0); /* nothing moved */
 
+    /* A series that cannot be leaves the state where it was. */
+    array[0] = 1.0, array[1] = NAN;
+    REQUIRE(hysteron_inverse_run(state, array, NULL, 0.0, output, NULL, 2) == HYSTERON_INPUT_NOT_FINITE);
+    array[1] = 2.0, headings[1] = 5;
+    REQUIRE(hysteron_inverse_run(state, array, headings, 0.0, output, NULL, 2) == HYSTERON_VALUE);
+    REQUIRE(hysteron_inverse_run(state, array, NULL, 0.0, array + 1, NULL, 2) == HYSTERON_OVERLAP);
+    REQUIRE(hysteron_inverse_run(state, array, headings, 0.0, output, headings + 1, 2) == HYSTERON_OVERLAP);
+    REQUIRE(hysteron_inverse_run(state, NULL, NULL, 0.0, output, NULL, 2) == HYSTERON_NULL);
+    REQUIRE(hysteron_headings(array, 2, -1.0, headings) == HYSTERON_VALUE);
+    REQUIRE(hysteron_headings(array, 5, 0.0, headings) == HYSTERON_INPUT_NOT_FINITE); /* one is NaN */
+    OK(hysteron_step(state, 0.6, &after, NULL));
+    REQUIRE(memcmp(&before, &after, sizeof before) == 0);
+
     /* A handle of another kind, of nothing, and one that was freed. */
     REQUIRE(hysteron_step(model, 0.5, &after, NULL) == HYSTERON_HANDLE);
     REQUIRE(hysteron_step(0, 0.5, &after, NULL) == HYSTERON_HANDLE);
     REQUIRE(hysteron_step((uint64_t)-1, 0.5, &after, NULL) == HYSTERON_HANDLE);
     REQUIRE(hysteron_model_free(state) == HYSTERON_HANDLE);
+    REQUIRE(hysteron_model_quantity(model, 2, NULL, 0, &count) == HYSTERON_VALUE);
+    REQUIRE(hysteron_model_quantity(model, 0, NULL, 0, NULL) == HYSTERON_NULL);
     REQUIRE(hysteron_model_write(state, "none.json") == HYSTERON_HANDLE);
     REQUIRE(hysteron_model_write(model, NULL) == HYSTERON_NULL);
     REQUIRE(hysteron_model_write(model, "no/such/folder/model.json") == HYSTERON_FILE);

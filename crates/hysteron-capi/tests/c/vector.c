@@ -38,20 +38,37 @@ static void forward(const struct form *form, FILE *file, size_t count, double to
 }
 
 static void inverse(const struct form *form, FILE *file, size_t count, double tolerance, double policy) {
+    double *target = room(count * sizeof *target), *stepped = room(count * sizeof *stepped);
+    double *run = room(count * sizeof *run);
+    int32_t *heading = room(count * sizeof *heading), *flags = room(count * sizeof *flags);
     size_t n;
     for (n = 0; n < count; n++) {
-        int heading, expected, sign = form->info.sign;
-        double target, input, found;
+        int expected, sign = form->info.sign;
+        double input, found, sum;
         int32_t status;
-        REQUIRE(fscanf(file, "%d %lf %lf %d", &heading, &target, &input, &expected) == 4);
-        OK(hysteron_inverse_step(form->state, target, heading, policy, &found, &status));
-        REQUIRE(fabs(found - input) <= tolerance);
+        REQUIRE(fscanf(file, "%d %lf %lf %d", &heading[n], &target[n], &input, &expected) == 4);
+        OK(hysteron_inverse_step(form->state, target[n], heading[n], policy, &stepped[n], &status));
+        REQUIRE(fabs(stepped[n] - input) <= tolerance);
         REQUIRE(status == expected);
-        target = sign * (target - form->info.offset);
-        OK(hysteron_core_inverse_step(form->model, form->core, target, sign * heading, policy, &found, &status));
+        sum = sign * (target[n] - form->info.offset);
+        OK(hysteron_core_inverse_step(form->model, form->core, sum, sign * heading[n], policy, &found, &status));
         REQUIRE(fabs(found - input) <= tolerance);
         REQUIRE(sign * status == expected);
+        flags[n] = expected;
     }
+    OK(hysteron_state_reset(form->state));
+    {
+        int32_t *status = room(count * sizeof *status);
+        OK(hysteron_inverse_run(form->state, target, heading, policy, run, status, count));
+        REQUIRE(memcmp(run, stepped, count * sizeof *run) == 0);
+        REQUIRE(memcmp(status, flags, count * sizeof *status) == 0);
+        free(status);
+    }
+    free(target);
+    free(stepped);
+    free(run);
+    free(heading);
+    free(flags);
 }
 
 void vector_run(const char *model_file, const char *run_file) {
