@@ -13,7 +13,7 @@
  *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 turns
  *   hys_inverse_step   two bisections of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then one hys_step
  *   hys_reset_on       one hys_step;  hys_start, hys_reset_off: none of these loops
- *   hys_save           one pass over at most 4K + 3 points
+ *   hys_save, hys_rebase   one pass over at most 4K + 3 points
  *   hys_restore        one hys_step for each point
  *
  * Every function returns HYS_OK or why it refused; then state and results are as they were. */

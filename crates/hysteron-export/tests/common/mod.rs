@@ -32,12 +32,23 @@ pub fn here(path: &str) -> PathBuf {
 
 /// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
 pub fn has(tool: &str) -> bool {
-    let found = Command::new(tool).arg("--version").output();
-    let found = found.is_ok_and(|done| done.status.success());
-    found || skip(&format!("there is no `{tool}`"))
+    starts(tool) || skip(&format!("there is no `{tool}`"))
 }
 
-/// As above, for anything else that is missing.
+/// The same for what is welcome and not needed.
+pub fn happens_to_have(what: &str, there: bool) -> bool {
+    if !there {
+        eprintln!("skipped: {what} is not there");
+    }
+    there
+}
+
+pub fn starts(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output();
+    found.is_ok_and(|done| done.status.success())
+}
+
+/// What is missing is skipped, or fails where nothing may be.
 pub fn skip(why: &str) -> bool {
     assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
     eprintln!("skipped: {why}");
@@ -209,11 +220,12 @@ pub fn same(commands: &str, expected: &str, found: &str, what: &str) {
     for (n, ((command, expected), found)) in lines.enumerate() {
         assert_eq!(expected, found, "{what}, line {}: {command}", n + 1);
     }
-    panic!(
-        "{what}: {} lines expected, {} found",
+    assert_eq!(
         expected.lines().count(),
-        found.lines().count()
+        found.lines().count(),
+        "{what}: lines"
     );
+    assert_eq!(expected, found, "{what}");
 }
 
 /// Whether a program for this machine can be made with these flags.
