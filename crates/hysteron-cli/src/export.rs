@@ -17,6 +17,7 @@ fn c(args: &args::ExportC) -> Result<()> {
         real: args.real.into(),
         name: args.name.as_deref(),
         source: &args.model,
+        adaptation: args.adaptation,
     };
     let export = hysteron_export::c(&model, &args.out, &options)?;
     let (memory, worst) = (export.memory, export.worst_case);
@@ -28,7 +29,7 @@ fn c(args: &args::ExportC) -> Result<()> {
             "levels": export.levels,
             "inverse": export.inverse,
             "flash_bytes": memory.constants,
-            "ram_bytes": {"state": memory.state, "turns": memory.turns},
+            "ram_bytes": {"state": memory.state, "turns": memory.turns, "adaptation": memory.adaptation},
             "worst_case": {
                 "turning_points_passed": worst.turning_points,
                 "step_loop": worst.step,
@@ -47,6 +48,9 @@ fn c(args: &args::ExportC) -> Result<()> {
         memory.constants,
         memory.state + memory.turns
     ));
+    if let Some(bytes) = memory.adaptation {
+        lines.push(format!("{bytes} bytes more for a model that learns"));
+    }
     if !export.inverse {
         lines.push("weights below zero: the C runs forward only".into());
     }

@@ -66,6 +66,23 @@ fn files_and_figures_as_json() {
 }
 
 #[test]
+fn a_model_that_learns() {
+    let folder = models();
+    let said = json(folder.path(), "export c spring.json -o mcu --adaptation");
+    assert_eq!(said["files"].as_array().unwrap().len(), 6);
+    assert!(
+        said["ram_bytes"]["adaptation"].as_u64().unwrap() > 100,
+        "{said}"
+    );
+    assert!(folder.path().join("mcu/hysteron_mcu_adapt.c").exists());
+    let said = refused(
+        folder.path(),
+        "export c butterfly.json -o other --adaptation",
+    );
+    assert!(said.contains("below zero"), "{said}");
+}
+
+#[test]
 fn it_says_what_it_wrote() {
     let folder = models();
     let done = run(folder.path(), "export c butterfly.json -o mcu");

@@ -22,7 +22,8 @@ typedef char hys_float_is_float[FLT_EVAL_METHOD == 0 || sizeof(hys_real) == size
 /* The start of every history among the turning points: below the plane, after endless heights. There are enough of these
  * for a look at two corners back to need no case of its own. A minimum, as all turning points at odd places. */
 #define LOOK 4u
-#define START (LOOK + 1u)
+#define START HYS_START
+typedef char hys_start_looks_back[HYS_START == LOOK + 1u ? 1 : -1];
 
 enum { MKP = 0, RELAY = 2 };
 
@@ -340,6 +341,36 @@ int hys_save(const hys_state *state, hys_real *points, size_t capacity, size_t *
     }
     points[held] = state->x;
     *input = state->input;
+    return HYS_OK;
+}
+
+int hys_rebase(hys_state *state)
+{
+    const hys_model *model;
+    hys_turn last;
+    split from, to;
+    size_t n;
+    int code = usable(state);
+    if (code != HYS_OK) {
+        return code;
+    }
+    model = state->model;
+    last = state->turns[START];
+    from = split_of(model, last.x);
+    for (n = START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 turns */
+        hys_real x = n <= state->top ? state->turns[n].x : state->x;
+        hys_real y;
+        to = split_of(model, x);
+        y = x > last.x ? last.y + everett(model, to, from) : last.y - everett(model, from, to);
+        if (n <= state->top) {
+            state->turns[n].y = y;
+            last = state->turns[n];
+            from = to;
+        } else {
+            state->began_y = last.y;
+            state->y = y;
+        }
+    }
     return HYS_OK;
 }
 

@@ -13,7 +13,7 @@
  *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 turns
  *   hys_inverse_step   two bisections of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then one hys_step
  *   hys_reset_on       one hys_step;  hys_start, hys_reset_off: none of these loops
- *   hys_save           one pass over at most 4K + 3 points
+ *   hys_save, hys_rebase   one pass over at most 4K + 3 points
  *   hys_restore        one hys_step for each point
  *
  * Every function returns HYS_OK or why it refused; then state and results are as they were. */
@@ -43,11 +43,13 @@ typedef float hys_real;
 /* Status codes: the numbers of the library's errors. */
 enum {
     HYS_OK = 0,
+    HYS_WEIGHT_NOT_FINITE = 4,  /* a weight, or the weights' sum, is not finite (adaptation) */
     HYS_NEGATIVE_WEIGHTS = 5,   /* the model has weights below zero: there is no inverse */
     HYS_MEMORY_TOO_SMALL = 6,   /* too few turning points, or too small an array */
     HYS_INPUT_NOT_FINITE = 7,   /* input or target is NaN or infinite, or the target overflows */
     HYS_TURNING_POINTS = 8,     /* points to restore do not nest */
     HYS_STATE_MISMATCH = 9,     /* the state was never started */
+    HYS_ADAPTATION = 11,        /* an option of the adaptation is out of its range */
     HYS_NULL = 100,             /* a null pointer */
     HYS_VALUE = 103             /* not one of the values allowed */
 };
@@ -80,6 +82,9 @@ typedef struct {
     unsigned char falls;    /* 1 where the output falls as the operators switch on */
     unsigned char inverse;  /* 1 where no weight is below zero */
 } hys_model;
+
+/* Place of the start of every history among the turning points; after it maxima and minima follow in turn. */
+#define HYS_START 5u
 
 /* What a model remembers of its input. To be read by these functions alone; a copy shares the turning points. */
 typedef struct {
@@ -117,6 +122,10 @@ int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real to
 /* Writes what hys_restore needs: the turning points as positions in [0, K] and the last input. `*count` is how many
  * points there are, at most 4K + 3, also where `capacity` is too small for them: HYS_MEMORY_TOO_SMALL. */
 int hys_save(const hys_state *state, hys_real *points, size_t capacity, size_t *count, hys_real *input);
+
+/* Works out the sums of a state anew after the weights of its model changed; the operators stay as they are. Only models
+ * that learn (hysteron_mcu_adapt.h) do so. One pass over at most 4K + 3 points. */
+int hys_rebase(hys_state *state);
 
 /* Puts a started state of the same model back to what was saved, bit for bit. HYS_TURNING_POINTS, HYS_INPUT_NOT_FINITE. */
 int hys_restore(hys_state *state, const hys_real *points, size_t count, hys_real input);

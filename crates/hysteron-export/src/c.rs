@@ -12,6 +12,9 @@ use std::path::{Path, PathBuf};
 const HEADER: &str = include_str!("../mcu/hysteron_mcu.h");
 const SOURCE: &str = include_str!("../mcu/hysteron_mcu.c");
 
+const ADAPT_HEADER: &str = include_str!("../mcu/hysteron_mcu_adapt.h");
+const ADAPT_SOURCE: &str = include_str!("../mcu/hysteron_mcu_adapt.c");
+
 /// How every file begins that may be replaced.
 const MARK: &str = "/* Written by `hysteron export c`";
 
@@ -50,6 +53,8 @@ pub struct COptions<'a> {
     pub name: Option<&'a str>,
     /// The file that the model comes from, to be told of in a comment.
     pub source: &'a Path,
+    /// Whether the model shall be able to learn on the target.
+    pub adaptation: bool,
 }
 
 /// What was written, and what it takes on the target.
@@ -80,6 +85,8 @@ pub struct CMemory {
     pub state: usize,
     /// Its turning points: RAM.
     pub turns: usize,
+    /// Where the model shall learn: what that takes beside, but for the turning points. RAM.
+    pub adaptation: Option<usize>,
 }
 
 /// How often the loops of one call turn at most.
@@ -106,7 +113,8 @@ impl CWorstCase {
 }
 
 /// Writes C99 for `model` into `folder`, which is made if need be: the algorithm as `hysteron_mcu.h` and `.c`, the same for
-/// every model of a number type, and the model's constants as files of its name.
+/// every model of a number type, and the model's constants as files of its name. With [`COptions::adaptation`] also
+/// `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with [`hysteron_core::Method::Gradient`].
 ///
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign in that type as well. A
 /// model with negative weights has no inverse there either.
@@ -130,30 +138,36 @@ fn write<T: Number>(
     name: String,
 ) -> Result<CExport> {
     let constants = Constants::<T>::of(model)?;
+    if options.adaptation && constants.slack.is_none() {
+        let text = "adaptation keeps weights at zero or above, but there are some below zero: fit with --solver nnls";
+        return Err(Error::Export(text.into()));
+    }
     let levels = model.plane().levels();
+    let adapt = options.adaptation.then_some("hysteron_mcu_adapt");
+    let stems = ["hysteron_mcu"]
+        .into_iter()
+        .chain(adapt)
+        .chain([name.as_str()]);
     let export = CExport {
-        files: ["hysteron_mcu.h", "hysteron_mcu.c"]
-            .map(str::to_owned)
-            .into_iter()
-            .chain(["h", "c"].map(|end| format!("{name}.{end}")))
-            .map(|file| folder.join(file))
+        files: stems
+            .flat_map(|stem| ["h", "c"].map(|end| folder.join(format!("{stem}.{end}"))))
             .collect(),
         name,
         real: options.real,
         levels,
         inverse: constants.slack.is_some(),
-        memory: constants.memory(),
+        memory: constants.memory(options.adaptation),
         worst_case: CWorstCase::of(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
     let algorithm = |text: &str| format!("{MARK}, hysteron {version}. */\n{text}");
     let header = HEADER.replace(&CReal::Float.line(), &options.real.line());
-    let texts = [
-        algorithm(&header),
-        algorithm(SOURCE),
-        text::header(&export, model, options.source),
-        text::source(&export, &constants),
-    ];
+    let mut texts = vec![algorithm(&header), algorithm(SOURCE)];
+    if options.adaptation {
+        texts.extend([ADAPT_HEADER, ADAPT_SOURCE].map(algorithm));
+    }
+    texts.push(text::header(&export, &constants, model, options.source));
+    texts.push(text::source(&export, &constants));
     std::fs::create_dir_all(folder).map_err(|source| Error::File {
         path: folder.to_owned(),
         source,

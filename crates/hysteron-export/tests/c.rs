@@ -4,7 +4,9 @@
 mod common;
 
 use common::reference::{Call, Number, script};
-use common::{Exported, REALS, answers, has, run, same, skip, walks};
+use common::{
+    Exported, REALS, answers, happens_to_have, has, links, run, same, skip, starts, walks,
+};
 use hysteron::{Model, Operator, Plane, Sign};
 use hysteron_core::operator_count;
 use hysteron_export::CReal;
@@ -29,7 +31,11 @@ fn compare(exported: &Exported, program: &mut Command, cases: &[(&Model, Vec<Cal
 fn compilers() -> Vec<(&'static str, Vec<&'static str>)> {
     let mut found = Vec::new();
     for cc in ["gcc", "clang"] {
-        if !has(cc) {
+        let there = match cc {
+            "gcc" => has(cc),
+            _ => happens_to_have(cc, starts(cc)),
+        };
+        if !there {
             continue;
         }
         for level in ["-O0", "-O2", "-Os", "-O3"] {
@@ -38,28 +44,11 @@ fn compilers() -> Vec<(&'static str, Vec<&'static str>)> {
         // Without being told, products and sums still stay apart.
         found.push((cc, vec!["-O2", "-march=native", "-ffp-contract=fast"]));
         let narrow = ["-m32", "-msse2", "-mfpmath=sse", "-O2"];
-        if links(cc, &narrow) || skip("no 32-bit programs can be linked") {
+        if happens_to_have("a C library of 32 bits", links(cc, &narrow)) {
             found.push((cc, narrow.to_vec()));
         }
     }
     found
-}
-
-fn links(cc: &str, flags: &[&str]) -> bool {
-    let folder = tempfile::tempdir().unwrap();
-    let source = folder.path().join("a.c");
-    std::fs::write(
-        &source,
-        "#include <stdio.h>\nint main(void) { return puts(\"\") < 0; }\n",
-    )
-    .unwrap();
-    let done = Command::new(cc)
-        .args(flags)
-        .arg(&source)
-        .arg("-o")
-        .arg(folder.path().join("a"))
-        .output();
-    done.is_ok_and(|done| done.status.success())
 }
 
 /// Models from small to large, of each operator.
@@ -228,20 +217,22 @@ fn the_algorithm_needs_no_library() {
     }
     let [one, _] = pair();
     for real in REALS {
-        let exported = Exported::new(&[&one], real);
-        for level in ["-O0", "-O2", "-Os"] {
-            run(Command::new("cc")
-                .args([
-                    "-std=c99",
-                    "-ffreestanding",
-                    level,
-                    "-c",
-                    "hysteron_mcu.c",
-                    "m0.c",
-                ])
+        let exported = Exported::learning(&[&one], real);
+        for level in ["-O0", "-O2", "-Os", "-O3"] {
+            let objects =
+                ["hysteron_mcu", "hysteron_mcu_adapt", "m0"].map(|stem| format!("{stem}.o"));
+            for object in &objects {
+                run(Command::new("cc")
+                    .args(["-std=c99", "-ffreestanding", level, "-c"])
+                    .arg(object.replace(".o", ".c"))
+                    .current_dir(exported.folder.path()));
+            }
+            run(Command::new("ld")
+                .args(["-r", "-o", "all.o"])
+                .args(&objects)
                 .current_dir(exported.folder.path()));
             let symbols = Command::new("nm")
-                .args(["-u", "hysteron_mcu.o", "m0.o"])
+                .args(["-u", "all.o"])
                 .current_dir(exported.folder.path())
                 .output()
                 .unwrap();
@@ -269,16 +260,21 @@ fn memory_is_what_is_told() {
             real,
             name: Some("one"),
             source: std::path::Path::new("one.json"),
+            adaptation: true,
         };
         let memory = hysteron_export::c(&one, folder.path(), &options)
             .unwrap()
             .memory;
         let text = format!(
-            "#include \"one.c\"\n\
-             typedef char constants[sizeof(hys_model) + sizeof table == {} ? 1 : -1];\n\
+            "#include \"one.c\"\n#include \"hysteron_mcu_adapt.h\"\n\
+             typedef char constants[sizeof(hys_model) + sizeof table + sizeof one_weights == {} ? 1 : -1];\n\
+             typedef char adapt[sizeof(hys_adaptive) + ONE_ADAPT_NUMBERS * sizeof(hys_real) == {} ? 1 : -1];\n\
              typedef char state[sizeof(hys_state) == {} ? 1 : -1];\n\
              typedef char turns[ONE_TURNS * sizeof(hys_turn) == {} ? 1 : -1];\n",
-            memory.constants, memory.state, memory.turns
+            memory.constants,
+            memory.adaptation.unwrap() + memory.state,
+            memory.state,
+            memory.turns
         );
         std::fs::write(folder.path().join("sizes.c"), text).unwrap();
         run(Command::new(ARM)

@@ -22,6 +22,7 @@ fn options(real: CReal) -> COptions<'static> {
         real,
         name: None,
         source: Path::new("folder/some spring.json"),
+        adaptation: false,
     }
 }
 
@@ -75,6 +76,40 @@ fn four_files_that_name_the_model() {
     };
     c(&model, &inner, &named).unwrap();
     assert_eq!(names(&inner).len(), 6);
+}
+
+#[test]
+fn adaptation_is_an_option() {
+    let folder = tempfile::tempdir().unwrap();
+    let learns = COptions {
+        adaptation: true,
+        ..options(CReal::Float)
+    };
+    let plain = c(
+        &model(20.0, 80.0, [1.0; 3], 0.0),
+        folder.path(),
+        &options(CReal::Float),
+    )
+    .unwrap();
+    assert_eq!((plain.files.len(), plain.memory.adaptation), (4, None));
+    let export = c(&model(20.0, 80.0, [1.0; 3], 0.0), folder.path(), &learns).unwrap();
+    assert_eq!(export.files.len(), 6);
+    assert_eq!(names(folder.path()).len(), 6);
+    // The weights join the constants.
+    assert_eq!(export.memory.constants, plain.memory.constants + 3 * 4);
+    let header = std::fs::read_to_string(folder.path().join("some_spring.h")).unwrap();
+    assert!(
+        header.contains("#define SOME_SPRING_OPERATORS 3\n#define SOME_SPRING_ADAPT_NUMBERS 21\n"),
+        "{header}"
+    );
+    let empty = tempfile::tempdir().unwrap();
+    let said = refused(
+        &model(20.0, 80.0, [1.0, -1.0, 1.0], 0.0),
+        empty.path(),
+        &learns,
+    );
+    assert!(said.contains("below zero"), "{said}");
+    assert!(names(empty.path()).is_empty());
 }
 
 #[test]

@@ -29,6 +29,7 @@ fn the_readme_on_a_microcontroller() {
         real: CReal::Float,
         name: None,
         source: std::path::Path::new("spring.json"),
+        adaptation: false,
     };
     let memory = c(&model, folder.path(), &options).unwrap().memory;
     for figure in [

@@ -46,6 +46,9 @@ pub(crate) struct ExportC {
     /// The number type to compute in
     #[arg(long, value_enum, default_value_t = CReal::Float)]
     pub(crate) real: CReal,
+    /// Also write what lets the weights follow the plant on the target
+    #[arg(long)]
+    pub(crate) adaptation: bool,
     #[command(flatten)]
     pub(crate) load: Load,
     #[command(flatten)]

@@ -45,6 +45,7 @@ impl Number for f64 {
 
 /// What the C needs of a model: all of it as the core works it out in that type.
 pub(super) struct Constants<T> {
+    pub(super) weights: Vec<T>,
     pub(super) core: hysteron_core::Model<T, Vec<T>>,
     pub(super) offset: T,
     pub(super) falls: bool,
@@ -80,6 +81,7 @@ impl<T: Number> Constants<T> {
             return Err(unfit("the range of the output"));
         }
         Ok(Self {
+            weights,
             core,
             offset,
             falls: model.sign() == Sign::Negative,
@@ -102,15 +104,29 @@ impl<T: Number> Constants<T> {
         &self.core.table()[..table_len(levels)]
     }
 
-    /// By the structs in `hysteron_mcu.h`.
-    pub(super) fn memory(&self) -> CMemory {
+    /// By the structs in the headers.
+    pub(super) fn memory(&self, adaptation: bool) -> CMemory {
         const WORD: usize = 4;
         let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
+        let model = aligned(2 * WORD + 10 * T::BYTES + 3);
+        let state = 4 * WORD + 6 * T::BYTES;
+        let options = aligned(5 * T::BYTES + WORD);
+        let adaptive = aligned(
+            aligned(model + state + options + 3 * T::BYTES + 8 * WORD) + 7 * T::BYTES + WORD + 2,
+        );
+        let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
-            constants: aligned(2 * WORD + 10 * T::BYTES + 3) + self.table().len() * T::BYTES,
-            state: 4 * WORD + 6 * T::BYTES,
+            constants: model + (table + if adaptation { weights } else { 0 }) * T::BYTES,
+            state,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
+            adaptation: adaptation.then(|| adaptive - state + self.adaptation_numbers() * T::BYTES),
         }
+    }
+
+    /// Table, three times the parameters, and the operators' states.
+    pub(super) fn adaptation_numbers(&self) -> usize {
+        let operators = self.weights.len();
+        self.table().len() + 3 * (operators + 1) + operators
     }
 }
 

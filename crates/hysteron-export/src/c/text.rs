@@ -3,7 +3,7 @@
 use super::constants::{Constants, Number};
 use super::{CExport, MARK};
 use hysteron::{Model, Operator, Quantity, Sign};
-use hysteron_core::turn_capacity;
+use hysteron_core::{operator_index, table_index, turn_capacity};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -11,7 +11,12 @@ use std::path::Path;
 const COLUMNS: usize = 8;
 
 /// Declares the model, and says what it is.
-pub(super) fn header(export: &CExport, model: &Model, source: &Path) -> String {
+pub(super) fn header<T: Number>(
+    export: &CExport,
+    constants: &Constants<T>,
+    model: &Model,
+    source: &Path,
+) -> String {
     let CExport { name, levels, .. } = export;
     let shout = name.to_uppercase();
     let memory = export.memory;
@@ -22,7 +27,7 @@ pub(super) fn header(export: &CExport, model: &Model, source: &Path) -> String {
     };
     let file = source.file_name().unwrap_or_default().to_string_lossy();
     let (low, high) = model.output_range();
-    let lines = [
+    let mut lines = vec![
         format!("{}: the model of {}", name, plain(&file)),
         format!(
             "{operator} operators, K = {levels} levels, {} of {} operators with a weight, {}",
@@ -60,6 +65,16 @@ pub(super) fn header(export: &CExport, model: &Model, source: &Path) -> String {
             export.worst_case.turning_points, export.worst_case.halvings
         ),
     ];
+    let (mut sizes, mut weights) = (String::new(), String::new());
+    if let Some(bytes) = memory.adaptation {
+        lines.push(format!("adaptation: {bytes} bytes beside (RAM)"));
+        sizes = format!(
+            "#define {shout}_OPERATORS {}\n#define {shout}_ADAPT_NUMBERS {}\n",
+            constants.weights.len(),
+            constants.adaptation_numbers()
+        );
+        weights = format!("extern const hys_real {name}_weights[{shout}_OPERATORS];\n");
+    }
     let lines: String = lines.iter().map(|line| format!(" * {line}\n")).collect();
     format!(
         "{MARK}, hysteron {version}.
@@ -75,12 +90,12 @@ pub(super) fn header(export: &CExport, model: &Model, source: &Path) -> String {
 
 #define {shout}_LEVELS {levels}
 #define {shout}_TURNS {turns}
-
+{sizes}
 #ifdef __cplusplus
 extern \"C\" {{
 #endif
 extern const hys_model {name};
-#ifdef __cplusplus
+{weights}#ifdef __cplusplus
 }}
 #endif
 
@@ -106,25 +121,12 @@ pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> S
 /* The constants below are of {real}. */
 typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} ? 1 : -1];
 
-static const hys_real table[] = {{
-",
+static const hys_real table[] = ",
         version = env!("CARGO_PKG_VERSION"),
         bytes = T::BYTES,
     );
-    let mut rest = constants.table();
-    for p in 0..=*levels {
-        let (row, after) = rest.split_at(p + 1);
-        rest = after;
-        for line in row.chunks(COLUMNS) {
-            let numbers: Vec<String> = line.iter().map(|entry| entry.literal()).collect();
-            let end = if rest.is_empty() && line.as_ptr_range().end == row.as_ptr_range().end {
-                ""
-            } else {
-                ","
-            };
-            let _ = writeln!(text, "    {}{end}", numbers.join(", "));
-        }
-    }
+    let rows = (0..=*levels).map(|p| &constants.table()[table_index(p, 0)..][..=p]);
+    text += &array(rows);
     let fields = [
         ("top", T::from_index(*levels)),
         ("min", plane.min()),
@@ -139,7 +141,7 @@ static const hys_real table[] = {{
     ];
     let _ = write!(
         text,
-        "}};\n\nconst hys_model {name} = {{\n    .table = table,\n    .levels = {levels},\n"
+        "\nconst hys_model {name} = {{\n    .table = table,\n    .levels = {levels},\n"
     );
     for (field, number) in fields {
         let _ = writeln!(text, "    .{field} = {},", number.literal());
@@ -151,7 +153,21 @@ static const hys_real table[] = {{
         usize::from(constants.falls),
         usize::from(constants.slack.is_some()),
     );
+    if export.memory.adaptation.is_some() {
+        let rows = (1..=*levels).map(|j| &constants.weights[operator_index(1, j)..][..j]);
+        let _ = write!(text, "\nconst hys_real {name}_weights[] = {}", array(rows));
+    }
     text
+}
+
+/// The rows of a triangle as one array's value.
+fn array<'a, T: Number + 'a>(rows: impl Iterator<Item = &'a [T]>) -> String {
+    let lines = rows.flat_map(|row| row.chunks(COLUMNS)).map(|line| {
+        let numbers: Vec<String> = line.iter().map(|number| number.literal()).collect();
+        format!("    {}", numbers.join(", "))
+    });
+    let lines: Vec<String> = lines.collect();
+    format!("{{\n{}\n}};\n", lines.join(",\n"))
 }
 
 /// The number that the algorithm's header says.

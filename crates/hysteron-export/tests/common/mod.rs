@@ -5,7 +5,7 @@ pub mod reference;
 pub mod walks;
 
 use hysteron::Model;
-use hysteron_core::turn_capacity;
+use hysteron_core::{operator_count, table_len, turn_capacity};
 use hysteron_export::{COptions, CReal};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -32,12 +32,23 @@ pub fn here(path: &str) -> PathBuf {
 
 /// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
 pub fn has(tool: &str) -> bool {
-    let found = Command::new(tool).arg("--version").output();
-    let found = found.is_ok_and(|done| done.status.success());
-    found || skip(&format!("there is no `{tool}`"))
+    starts(tool) || skip(&format!("there is no `{tool}`"))
 }
 
-/// As above, for anything else that is missing.
+/// The same for what is welcome and not needed.
+pub fn happens_to_have(what: &str, there: bool) -> bool {
+    if !there {
+        eprintln!("skipped: {what} is not there");
+    }
+    there
+}
+
+pub fn starts(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output();
+    found.is_ok_and(|done| done.status.success())
+}
+
+/// What is missing is skipped, or fails where nothing may be.
 pub fn skip(why: &str) -> bool {
     assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
     eprintln!("skipped: {why}");
@@ -58,38 +69,60 @@ pub fn run(command: &mut Command) {
 pub struct Exported {
     pub folder: tempfile::TempDir,
     pub real: CReal,
-    pub count: usize,
     sources: Vec<PathBuf>,
 }
 
 impl Exported {
     /// Exports `models` as m0, m1, … with a header that lists them.
     pub fn new(models: &[&Model], real: CReal) -> Self {
+        Self::with(models, real, false)
+    }
+
+    /// The same for models that learn.
+    pub fn learning(models: &[&Model], real: CReal) -> Self {
+        Self::with(models, real, true)
+    }
+
+    fn with(models: &[&Model], real: CReal, adaptation: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut sources = vec![folder.path().join("hysteron_mcu.c")];
-        let (mut includes, mut list) = (String::new(), String::new());
-        let mut turns = 0;
+        if adaptation {
+            sources.push(folder.path().join("hysteron_mcu_adapt.c"));
+        }
+        let (mut includes, mut list, mut weights) = (String::new(), String::new(), String::new());
+        let mut largest = 0;
         for (n, model) in models.iter().enumerate() {
             let name = format!("m{n}");
             let options = COptions {
                 real,
                 name: Some(&name),
                 source: Path::new("some model.json"),
+                adaptation,
             };
             hysteron_export::c(model, folder.path(), &options).unwrap();
             sources.push(folder.path().join(format!("{name}.c")));
             writeln!(includes, "#include \"{name}.h\"").unwrap();
             write!(list, "&{name}, ").unwrap();
-            turns = turns.max(turn_capacity(model.plane().levels()));
+            write!(weights, "{name}_weights, ").unwrap();
+            largest = largest.max(model.plane().levels());
         }
-        let text = format!(
-            "{includes}#define MOST_TURNS {turns}\nstatic const hys_model *const models[] = {{{list}}};\n"
+        let mut text = format!(
+            "{includes}#define MOST_TURNS {}\nstatic const hys_model *const models[] = {{{list}}};\n",
+            turn_capacity(largest)
         );
+        if adaptation {
+            let operators = operator_count(largest);
+            let numbers = table_len(largest) + 3 * (operators + 1) + operators;
+            writeln!(
+                text,
+                "#define MOST_NUMBERS {numbers}\nstatic const hys_real *const weights[] = {{{weights}}};"
+            )
+            .unwrap();
+        }
         std::fs::write(folder.path().join("models.h"), text).unwrap();
         Self {
             folder,
             real,
-            count: models.len(),
             sources,
         }
     }
@@ -187,9 +220,28 @@ pub fn same(commands: &str, expected: &str, found: &str, what: &str) {
     for (n, ((command, expected), found)) in lines.enumerate() {
         assert_eq!(expected, found, "{what}, line {}: {command}", n + 1);
     }
-    panic!(
-        "{what}: {} lines expected, {} found",
+    assert_eq!(
         expected.lines().count(),
-        found.lines().count()
+        found.lines().count(),
+        "{what}: lines"
     );
+    assert_eq!(expected, found, "{what}");
+}
+
+/// Whether a program for this machine can be made with these flags.
+pub fn links(cc: &str, flags: &[&str]) -> bool {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("a.c");
+    std::fs::write(
+        &source,
+        "#include <stdio.h>\nint main(void) { return puts(\"\") < 0; }\n",
+    )
+    .unwrap();
+    let done = Command::new(cc)
+        .args(flags)
+        .arg(&source)
+        .arg("-o")
+        .arg(folder.path().join("a"))
+        .output();
+    done.is_ok_and(|done| done.status.success())
 }

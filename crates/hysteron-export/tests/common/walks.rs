@@ -63,7 +63,7 @@ pub fn calls(rng: &mut StdRng, model: &Model, count: usize) -> Vec<Call> {
             }
             5..=7 => calls.extend(targets(rng, model, burst)),
             8 => calls.extend([Call::Save, Call::Restore]),
-            _ => calls.push(odd(rng, model)),
+            _ => calls.extend([odd(rng, model), Call::Save]),
         }
     }
     calls
@@ -177,7 +177,7 @@ fn odd(rng: &mut StdRng, model: &Model) -> Call {
         6 => Call::RestoreGiven(not, vec![k, 0.25]),
         _ => {
             // Nested points of any depth within the first cells, −0 among them.
-            let depth = rng.random_range(0..30);
+            let depth = rng.random_range(0..12);
             let (mut low, mut high) = (0.0, k);
             let points = (0..depth).map(|n| {
                 let at = rng.random::<f64>() * 0.5;

@@ -1,0 +1,498 @@
+#include "hysteron_mcu_adapt.h"
+
+/* No product may be fused with a sum. GCC does not know the standard's pragma; it also likes to make calls of loops that
+ * copy, for which a target without a C library has nothing. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=off", "no-tree-loop-distribute-patterns")
+#else
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+#define ZERO ((hys_real)0)
+#define ONE ((hys_real)1)
+#define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
+
+/* Running sums of a long sum: those of the library, whose digits depend on it. */
+#define LANES 8u
+
+static int is_finite(hys_real x)
+{
+    return x - x == ZERO;
+}
+
+static hys_real larger(hys_real a, hys_real b)
+{
+    return a > b ? a : b;
+}
+
+static hys_real smaller(hys_real a, hys_real b)
+{
+    return a < b ? a : b;
+}
+
+static hys_real limited(hys_real x, hys_real low, hys_real high)
+{
+    return smaller(larger(x, low), high);
+}
+
+static hys_real number(size_t n)
+{
+    return (hys_real)(int32_t)n;
+}
+
+static size_t operators(const hys_adaptive *self)
+{
+    return self->model.levels * (self->model.levels + 1u) / 2u;
+}
+
+/* Place of operator (i, j), 1 <= i <= j, among the weights. */
+static size_t place(size_t i, size_t j)
+{
+    return j * (j - 1u) / 2u + (i - 1u);
+}
+
+static void copy(hys_real *to, const hys_real *from, size_t count)
+{
+    size_t n;
+    for (n = 0u; n < count; n++) {
+        to[n] = from[n];
+    }
+}
+
+/* ---- The operators' states ---- */
+
+/* The ridge of level k: 0 below it, 1 from one step further up on. */
+static hys_real ridge(hys_real x, size_t k)
+{
+    return limited(x - number(k - 1u), ZERO, ONE);
+}
+
+/* The row or column whose ridge a position lies on. */
+static size_t touched(const hys_model *model, hys_real x)
+{
+    size_t cell = (size_t)(int32_t)x;
+    return (cell < model->levels ? cell : model->levels - 1u) + 1u;
+}
+
+/* Rising, only rows are touched, falling, only columns: at most one pass over the operators. */
+static void follow(hys_adaptive *self, hys_real from, hys_real to)
+{
+    const hys_model *model = &self->model;
+    size_t first = touched(model, smaller(from, to)), last = touched(model, larger(from, to));
+    size_t i, j;
+    if (to > from) {
+        for (j = first; j <= last; j++) { /* at most K turns */
+            hys_real on = ridge(to, j);
+            for (i = 1u; i <= j; i++) { /* at most K turns */
+                hys_real *gamma = self->gamma + place(i, j);
+                *gamma = larger(*gamma, on);
+            }
+        }
+    } else if (to < from) {
+        for (i = first; i <= last; i++) { /* at most K turns */
+            hys_real off = ridge(to, i);
+            for (j = i; j <= model->levels; j++) { /* at most K turns */
+                hys_real *gamma = self->gamma + place(i, j);
+                *gamma = smaller(*gamma, off);
+            }
+        }
+    }
+}
+
+/* Whether the state is where the operators stand. */
+static int is_aligned(const hys_adaptive *self)
+{
+    const hys_state *here = &self->state;
+    return self->aligned && here->x == self->seen_x && here->top == self->seen_top && here->end == self->seen_end &&
+           here->began_cell == self->seen_cell && here->began_part == self->seen_part;
+}
+
+static void see(hys_adaptive *self)
+{
+    const hys_state *here = &self->state;
+    self->seen_x = here->x;
+    self->seen_end = here->end;
+    self->seen_part = here->began_part;
+    self->seen_top = here->top;
+    self->seen_cell = here->began_cell;
+    self->aligned = 1u;
+}
+
+/* Works the operators' states out from the turning points. */
+static void align(hys_adaptive *self)
+{
+    const hys_state *state = &self->state;
+    size_t i, j, n, count = operators(self);
+    for (n = 0u; n < count; n++) {
+        self->gamma[n] = ZERO;
+    }
+    for (n = HYS_START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 turns */
+        hys_real x = n <= state->top ? state->turns[n].x : state->x;
+        for (j = 1u; j <= self->model.levels; j++) { /* K turns */
+            for (i = 1u; i <= j; i++) { /* at most K turns */
+                hys_real *gamma = self->gamma + place(i, j);
+                *gamma = larger(ridge(x, j), smaller(*gamma, ridge(x, i)));
+            }
+        }
+    }
+    self->learned = state->x;
+}
+
+/* ---- Weights and table ---- */
+
+/* What parameter n moves the output by: what its operator puts out, or the offset's share. */
+static hys_real regressor(const hys_adaptive *self, size_t n, size_t count)
+{
+    hys_real gamma;
+    if (n == count) {
+        return self->options.offset_share;
+    }
+    gamma = self->gamma[n];
+    return self->model.kind == 0u ? gamma : gamma + gamma - ONE;
+}
+
+/* The sum of parameters times regressor; without parameters, of the regressor's squares. */
+static hys_real dot(const hys_adaptive *self, const hys_real *parameters)
+{
+    hys_real sums[LANES], sum = ZERO;
+    size_t n, count = operators(self), whole = (count + 1u) / LANES * LANES;
+    for (n = 0u; n < LANES; n++) {
+        sums[n] = ZERO;
+    }
+    for (n = 0u; n < whole; n++) { /* at most N + 1 turns */
+        hys_real phi = regressor(self, n, count);
+        sums[n % LANES] += (parameters != NULL ? parameters[n] : phi) * phi;
+    }
+    for (n = 0u; n < LANES; n++) {
+        sum += sums[n];
+    }
+    for (n = whole; n <= count; n++) { /* less than LANES turns */
+        hys_real phi = regressor(self, n, count);
+        sum += (parameters != NULL ? parameters[n] : phi) * phi;
+    }
+    return sum;
+}
+
+/* The offset without sign. */
+static hys_real offset_of(const hys_adaptive *self)
+{
+    return self->offset + self->options.offset_share * self->theta[operators(self)];
+}
+
+/* Writes the table and what depends on it from the weights. */
+static void rewrite(hys_adaptive *self)
+{
+    hys_model *model = &self->model;
+    hys_real *row = self->table;
+    size_t p, q;
+    row[0] = ZERO;
+    for (p = 1u; p <= model->levels; p++) { /* K turns */
+        const hys_real *above = row, *weights = self->theta + place(1u, p);
+        hys_real sum = ZERO;
+        row += p;
+        row[p] = ZERO;
+        for (q = p; q-- > 0u;) { /* at most K turns */
+            sum += weights[q];
+            row[q] = above[q] + sum;
+        }
+    }
+    model->total = row[0];
+    model->slack = number(4u) * EPSILON * model->total;
+    model->offset = model->falls ? -offset_of(self) : offset_of(self);
+}
+
+static void clear_trial(hys_adaptive *self)
+{
+    self->now_squares = ZERO;
+    self->candidate_squares = ZERO;
+    self->good_squares = ZERO;
+    self->rounding_squares = ZERO;
+    self->samples = 0u;
+}
+
+static void take_back(hys_adaptive *self)
+{
+    size_t count = operators(self) + 1u;
+    copy(self->theta, self->good, count);
+    copy(self->candidate, self->good, count);
+    clear_trial(self);
+}
+
+/* ---- Learning ---- */
+
+/* Adds a sample to the trial. At its end the candidate becomes good where it predicted no worse; says whether the present
+ * weights did far worse, with more than four times the mean square, and were taken back. */
+static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real good, hys_real measured)
+{
+    hys_real rounding = number(256u) * EPSILON * measured;
+    size_t count = operators(self) + 1u;
+    self->now_squares += now * now;
+    self->candidate_squares += candidate * candidate;
+    self->good_squares += good * good;
+    self->rounding_squares += rounding * rounding;
+    self->samples += 1u;
+    if (self->samples < self->options.trial) {
+        return 0;
+    }
+    now = self->now_squares;
+    candidate = self->candidate_squares;
+    good = self->good_squares;
+    rounding = self->rounding_squares;
+    clear_trial(self);
+    /* Sums that overflow say nothing: an outlier of that size is in all of them. */
+    if (candidate <= good && is_finite(candidate)) {
+        copy(self->good, self->candidate, count);
+    }
+    if (now > number(4u) * (smaller(candidate, good) + rounding)) {
+        copy(self->theta, self->good, count);
+        copy(self->candidate, self->good, count);
+        return 1;
+    }
+    copy(self->candidate, self->theta, count);
+    return 0;
+}
+
+/* Moves the parameters along the regressor by a share of the error; weights stay at zero or above. */
+static void update(hys_adaptive *self, hys_real error)
+{
+    size_t n, count = operators(self);
+    hys_real leakage = self->options.leakage;
+    hys_real step = self->options.gain * error / (self->floor + dot(self, NULL));
+    if (!is_finite(step)) {
+        return;
+    }
+    for (n = 0u; n <= count; n++) { /* N + 1 turns */
+        hys_real theta = self->theta[n], offline = n < count ? self->offline[n] : ZERO;
+        theta = theta + step * regressor(self, n, count) + leakage * (offline - theta);
+        self->theta[n] = n < count ? larger(theta, ZERO) : theta;
+    }
+}
+
+static int learn(hys_adaptive *self, hys_real measured, hys_real error)
+{
+    hys_real rest = measured - self->offset, zone = self->options.dead_zone, counted;
+    hys_real candidate = rest - dot(self, self->candidate), good = rest - dot(self, self->good);
+    if (judge(self, error, candidate, good, measured)) {
+        return HYS_ROLLED_BACK;
+    }
+    counted = error - limited(error, -zone, zone);
+    if (counted == ZERO) {
+        return HYS_WAITING;
+    }
+    update(self, counted);
+    return HYS_LEARNED;
+}
+
+/* Whether the input moved since it was learned from: without that, a sample is the same equation again. */
+static int moves(hys_adaptive *self)
+{
+    hys_real way = self->state.x - self->learned;
+    int moved = larger(way, -way) > self->options.movement;
+    if (moved) {
+        self->learned = self->state.x;
+    }
+    return moved;
+}
+
+/* The model but for its weights; member by member, because a copy of the whole may be a call. */
+static void inherit(hys_adaptive *self, const hys_model *from)
+{
+    hys_model *model = &self->model;
+    model->table = self->table;
+    model->levels = from->levels;
+    model->top = from->top;
+    model->min = from->min;
+    model->max = from->max;
+    model->bottom = from->bottom;
+    model->step = from->step;
+    model->per_unit = from->per_unit;
+    model->nudge = from->nudge;
+    model->kind = from->kind;
+    model->falls = from->falls;
+    model->inverse = 1u;
+}
+
+static int usable(const hys_adaptive *self)
+{
+    if (self == NULL) {
+        return HYS_NULL;
+    }
+    return self->table == NULL || self->state.model != &self->model ? HYS_STATE_MISMATCH : HYS_OK;
+}
+
+void hys_adapt_usual(hys_adapt_options *options)
+{
+    if (options != NULL) {
+        options->gain = number(30u) / number(100u);
+        options->offset_share = ONE;
+        options->dead_zone = ZERO;
+        options->leakage = ZERO;
+        options->movement = number(5u) / number(100u);
+        options->trial = 256u;
+    }
+}
+
+static int from_zero(hys_real x)
+{
+    return x >= ZERO && is_finite(x);
+}
+
+int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_real *weights, hys_real offset,
+                    const hys_adapt_options *options, hys_real *memory, size_t numbers, hys_turn *turns, size_t count)
+{
+    hys_adaptive *self = adaptive;
+    hys_real size = ZERO;
+    size_t n, levels, all, table;
+    if (self == NULL || model == NULL || weights == NULL || options == NULL || memory == NULL || turns == NULL) {
+        return HYS_NULL;
+    }
+    levels = model->levels;
+    all = levels * (levels + 1u) / 2u;
+    table = all + levels + 1u;
+    if (numbers < table + 3u * (all + 1u) + all || count < 4u * levels + 8u) {
+        return HYS_MEMORY_TOO_SMALL;
+    }
+    if (!(options->gain > ZERO && options->gain < number(2u) && from_zero(options->offset_share) &&
+          from_zero(options->dead_zone) && options->leakage >= ZERO && options->leakage <= ONE &&
+          from_zero(options->movement) && options->trial > 0u)) {
+        return HYS_ADAPTATION;
+    }
+    if (!is_finite(offset)) {
+        return HYS_INPUT_NOT_FINITE;
+    }
+    for (n = 0u; n < all; n++) { /* N turns */
+        size += larger(weights[n], -weights[n]);
+        if (!is_finite(size + size)) {
+            return HYS_WEIGHT_NOT_FINITE;
+        }
+    }
+    for (n = 0u; n < all; n++) { /* N turns */
+        if (weights[n] < ZERO) {
+            return HYS_NEGATIVE_WEIGHTS;
+        }
+    }
+    self->table = memory;
+    self->theta = memory + table;
+    self->good = self->theta + (all + 1u);
+    self->candidate = self->good + (all + 1u);
+    self->gamma = self->candidate + (all + 1u);
+    self->options.gain = options->gain;
+    self->options.offset_share = options->offset_share;
+    self->options.dead_zone = options->dead_zone;
+    self->options.leakage = options->leakage;
+    self->options.movement = options->movement;
+    self->options.trial = options->trial;
+    self->offline = weights;
+    inherit(self, model);
+    self->offset = model->falls ? -offset : offset;
+    self->floor = number(all) / number(100u);
+    self->aligned = 0u;
+    self->frozen = 0u;
+    copy(self->theta, weights, all);
+    self->theta[all] = ZERO;
+    copy(self->good, self->theta, all + 1u);
+    copy(self->candidate, self->theta, all + 1u);
+    clear_trial(self);
+    rewrite(self);
+    (void)hys_start(&self->model, &self->state, turns, count);
+    self->learned = ZERO;
+    return HYS_OK;
+}
+
+int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hys_real *output, int *outcome)
+{
+    hys_adaptive *self = adaptive;
+    hys_real from, own, offset, error, expected;
+    int found, moved, code = usable(self);
+    if (code != HYS_OK) {
+        return code;
+    }
+    if (output == NULL || outcome == NULL) {
+        return HYS_NULL;
+    }
+    if (!is_finite(input) || !is_finite(measured)) {
+        return HYS_INPUT_NOT_FINITE;
+    }
+    if (!is_aligned(self)) {
+        align(self);
+    }
+    from = self->state.x;
+    (void)hys_step(&self->state, input, &expected);
+    follow(self, from, self->state.x);
+    see(self);
+    if (self->model.falls) {
+        measured = -measured;
+    }
+    own = self->model.kind == 0u ? self->state.y : self->state.y + self->state.y - self->model.total;
+    offset = offset_of(self);
+    error = measured - own - offset;
+    moved = moves(self);
+    if (self->frozen) {
+        found = HYS_FROZEN;
+    } else {
+        found = moved ? learn(self, measured, error) : HYS_AT_REST;
+    }
+    if (found == HYS_LEARNED) {
+        rewrite(self);
+        if (!is_finite(self->model.total + self->model.total) || !is_finite(offset_of(self))) {
+            take_back(self);
+            found = HYS_ROLLED_BACK;
+        }
+    }
+    if (found == HYS_ROLLED_BACK) {
+        rewrite(self);
+    }
+    if (found == HYS_LEARNED || found == HYS_ROLLED_BACK) {
+        (void)hys_rebase(&self->state);
+    }
+    expected = own + offset;
+    *output = self->model.falls ? -expected : expected;
+    *outcome = found;
+    return HYS_OK;
+}
+
+const hys_real *hys_adapt_weights(const hys_adaptive *adaptive)
+{
+    return usable(adaptive) == HYS_OK ? adaptive->theta : NULL;
+}
+
+int hys_adapt_freeze(hys_adaptive *adaptive, int frozen)
+{
+    int code = usable(adaptive);
+    if (code == HYS_OK) {
+        adaptive->frozen = frozen != 0 ? 1u : 0u;
+    }
+    return code;
+}
+
+int hys_adapt_keep(hys_adaptive *adaptive)
+{
+    int code = usable(adaptive);
+    if (code == HYS_OK) {
+        size_t count = operators(adaptive) + 1u;
+        copy(adaptive->good, adaptive->theta, count);
+        copy(adaptive->candidate, adaptive->theta, count);
+        clear_trial(adaptive);
+    }
+    return code;
+}
+
+int hys_adapt_roll_back(hys_adaptive *adaptive)
+{
+    int code = usable(adaptive);
+    if (code == HYS_OK) {
+        take_back(adaptive);
+        rewrite(adaptive);
+        (void)hys_rebase(&adaptive->state);
+    }
+    return code;
+}
+
+int hys_adapt_realign(hys_adaptive *adaptive)
+{
+    int code = usable(adaptive);
+    if (code == HYS_OK) {
+        adaptive->aligned = 0u;
+    }
+    return code;
+}

@@ -1,0 +1,112 @@
+/* As driver.c, for models that learn. `weights`, an array beside `models`, and MOST_NUMBERS are in models.h. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hysteron_mcu_adapt.h"
+#include "models.h"
+
+static hys_turn turns[MOST_TURNS], others[MOST_TURNS];
+static hys_real memory[MOST_NUMBERS];
+static hys_adaptive adaptive;
+static hys_state compensator;
+
+static hys_real number(const char *text)
+{
+    uint64_t wide = strtoull(text, NULL, 16);
+    uint32_t narrow = (uint32_t)wide;
+    hys_real x;
+    memcpy(&x, sizeof x == 4 ? (const void *)&narrow : (const void *)&wide, sizeof x);
+    return x;
+}
+
+static uint64_t bits(hys_real x)
+{
+    uint32_t narrow = 0;
+    uint64_t wide = 0;
+    memcpy(sizeof x == 4 ? (void *)&narrow : (void *)&wide, &x, sizeof x);
+    return sizeof x == 4 ? narrow : wide;
+}
+
+static const char *word(void)
+{
+    const char *found = strtok(NULL, " \n");
+    return found == NULL ? "0" : found;
+}
+
+int main(void)
+{
+    static char line[4096];
+    size_t n = 0, k, needed;
+    while (fgets(line, sizeof line, stdin) != NULL) {
+        const char *command = strtok(line, " \n");
+        hys_adapt_options options;
+        hys_real x, y, z = 0, input = 0;
+        int code, heading, status = 7;
+        switch (command == NULL ? ' ' : command[0]) {
+        case 'm':
+            n = (size_t)atoi(word());
+            hys_adapt_usual(&options);
+            if (atoi(word()) != 0) {
+                options.gain = number(word());
+                options.offset_share = number(word());
+                options.dead_zone = number(word());
+                options.leakage = number(word());
+                options.movement = number(word());
+                options.trial = (uint32_t)atoi(word());
+            }
+            k = models[n]->levels;
+            /* Exactly what is asked for, in memory that held something else. */
+            memset(memory, 0x55, sizeof memory);
+            needed = (k + 1) * (k + 2) / 2 + 2 * k * (k + 1) + 3;
+            code = hys_adapt_start(&adaptive, models[n], weights[n], models[n]->offset, &options, memory, needed, turns, 4 * k + 8);
+            printf("m %d\n", code != 0 ? code : hys_start(&adaptive.model, &compensator, others, 4 * k + 8));
+            break;
+        case 'a':
+            x = number(word());
+            y = number(word());
+            code = hys_adapt_step(&adaptive, x, y, &z, &status);
+            printf("a %d %" PRIx64 " %d\n", code, bits(z), status);
+            break;
+        case 's':
+            x = number(word());
+            code = hys_step(&adaptive.state, x, &z);
+            printf("s %d\n", code);
+            break;
+        case 'i':
+            x = number(word());
+            heading = atoi(word());
+            y = number(word());
+            code = hys_rebase(&compensator);
+            code = code != 0 ? code : hys_inverse_step(&compensator, x, heading, y, &input, &status);
+            printf("i %d %" PRIx64 " %d\n", code, bits(input), status);
+            break;
+        case 'f':
+            printf("f %d\n", hys_adapt_freeze(&adaptive, atoi(word())));
+            break;
+        case 'k':
+            printf("k %d\n", hys_adapt_keep(&adaptive));
+            break;
+        case 'b':
+            printf("b %d\n", hys_adapt_roll_back(&adaptive));
+            break;
+        case '0':
+            code = hys_reset_off(&adaptive.state);
+            printf("0 %d\n", code != 0 ? code : hys_adapt_realign(&adaptive));
+            break;
+        case 'w':
+            k = models[n]->levels;
+            printf("w %" PRIx64, bits(adaptive.model.offset));
+            for (k = k * (k + 1) / 2; k-- > 0;) {
+                printf(" %" PRIx64, bits(hys_adapt_weights(&adaptive)[k]));
+            }
+            printf("\n");
+            break;
+        default:
+            printf("?\n");
+            return 1;
+        }
+    }
+    return 0;
+}

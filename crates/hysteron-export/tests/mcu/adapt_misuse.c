@@ -1,0 +1,88 @@
+/* What adaptation refuses. */
+#include <stdio.h>
+#include <string.h>
+
+#include "hysteron_mcu_adapt.h"
+#include "models.h"
+
+#define CHECK(what)                                              \
+    do {                                                         \
+        if (!(what)) {                                           \
+            fprintf(stderr, "line %d: %s\n", __LINE__, #what);   \
+            return 1;                                            \
+        }                                                        \
+    } while (0)
+
+static hys_adaptive adaptive;
+static hys_real memory[MOST_NUMBERS];
+static hys_turn turns[MOST_TURNS];
+static hys_adapt_options options;
+
+static int start(const hys_real *theirs)
+{
+    return hys_adapt_start(&adaptive, models[0], theirs, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS);
+}
+
+int main(void)
+{
+    const hys_model *model = models[0];
+    const hys_real *w = weights[0];
+    hys_real bad[MOST_NUMBERS], zero = 0, nan = zero / zero, infinity = 1 / zero, y = 42;
+    int outcome = 42;
+
+    CHECK(hys_adapt_step(&adaptive, 1, 1, &y, &outcome) == HYS_STATE_MISMATCH);
+    CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH && hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
+    CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH && hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
+    CHECK(hys_adapt_weights(&adaptive) == NULL && hys_adapt_weights(NULL) == NULL);
+    hys_adapt_usual(NULL);
+    hys_adapt_usual(&options);
+    CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, NULL, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, NULL, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, NULL, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, NULL, MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS - 1, turns, MOST_TURNS) ==
+          HYS_MEMORY_TOO_SMALL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS - 1) ==
+          HYS_MEMORY_TOO_SMALL);
+    CHECK(hys_adapt_start(&adaptive, model, w, nan, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) ==
+          HYS_INPUT_NOT_FINITE);
+#define REFUSED(field, value)                 \
+    do {                                      \
+        hys_adapt_usual(&options);            \
+        options.field = value;                \
+        CHECK(start(w) == HYS_ADAPTATION);    \
+    } while (0)
+    REFUSED(gain, 0);
+    REFUSED(gain, 2);
+    REFUSED(gain, nan);
+    REFUSED(offset_share, -1);
+    REFUSED(offset_share, infinity);
+    REFUSED(dead_zone, -1);
+    REFUSED(dead_zone, nan);
+    REFUSED(leakage, 2);
+    REFUSED(leakage, nan);
+    REFUSED(movement, -1);
+    REFUSED(movement, infinity);
+    REFUSED(trial, 0);
+    hys_adapt_usual(&options);
+    memset(bad, 0, sizeof bad);
+    bad[1] = -1;
+    CHECK(start(bad) == HYS_NEGATIVE_WEIGHTS);
+    bad[1] = nan;
+    CHECK(start(bad) == HYS_WEIGHT_NOT_FINITE);
+    CHECK(hys_adapt_step(&adaptive, 1, 1, &y, &outcome) == HYS_STATE_MISMATCH);
+
+    CHECK(start(w) == HYS_OK);
+    CHECK(hys_adapt_step(NULL, 1, 1, &y, &outcome) == HYS_NULL);
+    CHECK(hys_adapt_step(&adaptive, 1, 1, NULL, &outcome) == HYS_NULL);
+    CHECK(hys_adapt_step(&adaptive, 1, 1, &y, NULL) == HYS_NULL);
+    CHECK(hys_adapt_step(&adaptive, nan, 1, &y, &outcome) == HYS_INPUT_NOT_FINITE);
+    CHECK(hys_adapt_step(&adaptive, 1, infinity, &y, &outcome) == HYS_INPUT_NOT_FINITE);
+    CHECK(hys_adapt_freeze(NULL, 1) == HYS_NULL && hys_adapt_keep(NULL) == HYS_NULL);
+    CHECK(hys_adapt_roll_back(NULL) == HYS_NULL && hys_adapt_realign(NULL) == HYS_NULL && hys_rebase(NULL) == HYS_NULL);
+    CHECK(y == 42 && outcome == 42);
+    CHECK(hys_adapt_step(&adaptive, model->max, 1, &y, &outcome) == HYS_OK && outcome == HYS_LEARNED);
+    return 0;
+}
