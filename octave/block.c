@@ -1,0 +1,301 @@
+#include "block.h"
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+static struct block *blocks;
+
+/* ---- Errors ---- */
+
+static const char *identifier(int32_t status) {
+    switch (status) {
+    case HYSTERON_NEGATIVE_WEIGHTS: return "hysteron:negativeWeights";
+    case HYSTERON_INPUT_NOT_FINITE: return "hysteron:notFinite";
+    case HYSTERON_TURNING_POINTS: return "hysteron:turningPoints";
+    case HYSTERON_FILE: return "hysteron:file";
+    case HYSTERON_MODEL_FILE: return "hysteron:modelFile";
+    case HYSTERON_FIT: return "hysteron:load";
+    case HYSTERON_THERMAL: return "hysteron:thermal";
+    default: return "hysteron:error";
+    }
+}
+
+static void raise(int32_t status) {
+    char detail[1024];
+    if (status != HYSTERON_OK) {
+        hysteron_last_error(detail, sizeof detail);
+        mexErrMsgIdAndTxt(identifier(status), "%s", detail);
+    }
+}
+
+/* ---- Arguments ---- */
+
+char *text(const mxArray *value, const char *name) {
+    char *found = mxIsChar(value) && mxGetM(value) <= 1 ? mxArrayToString(value) : NULL;
+    if (found == NULL) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be a text in one row", name);
+    }
+    return found;
+}
+
+static const mxArray *reals(const mxArray *value, const char *name) {
+    mxArray *converted, *given = (mxArray *)value;
+    if (!mxIsNumeric(value) || mxIsComplex(value) || mxIsSparse(value)) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be an array of real numbers, not %s%s", name,
+                          mxIsComplex(value) ? "complex " : mxIsSparse(value) ? "sparse " : "", mxGetClassName(value));
+    }
+    if (mxIsDouble(value)) {
+        return value;
+    }
+    mexCallMATLAB(1, &converted, 1, &given, "double");
+    return converted;
+}
+
+const mxArray *samples(const mxArray *value, const char *name) {
+    const mxArray *array = reals(value, name);
+    const double *x = mxGetPr(array);
+    size_t n, count = mxGetNumberOfElements(array);
+    for (n = 0; n < count; n++) {
+        if (!(x[n] - x[n] == 0.0)) {
+            mexErrMsgIdAndTxt("hysteron:notFinite", "`%s(%.0f)` is %s: every sample has to be a finite number", name,
+                              (double)n + 1.0, isnan(x[n]) ? "NaN" : "infinite");
+        }
+    }
+    return array;
+}
+
+double number(const mxArray *value, const char *name) {
+    const mxArray *array = samples(value, name);
+    if (mxGetNumberOfElements(array) != 1) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be one number", name);
+    }
+    return *mxGetPr(array);
+}
+
+void options(int nrhs, const mxArray *prhs[], int from, const char *const names[], const mxArray *values[], int count) {
+    int n, option;
+    for (n = from; n < nrhs; n += 2) {
+        const char *name = text(prhs[n], "option");
+        for (option = 0; option < count && strcmp(name, names[option]) != 0; option++) {
+        }
+        if (option == count) {
+            mexErrMsgIdAndTxt("hysteron:argument", "there is no option `%s` here: see the help", name);
+        }
+        if (n + 1 == nrhs) {
+            mexErrMsgIdAndTxt("hysteron:argument", "the option `%s` needs a value", name);
+        }
+        values[option] = prhs[n + 1];
+    }
+}
+
+mxArray *shaped_like(const mxArray *other, mxClassID type) {
+    return mxCreateNumericArray(mxGetNumberOfDimensions(other), mxGetDimensions(other), type, mxREAL);
+}
+
+/* ---- Blocks ---- */
+
+static void close_block(struct block *block) {
+    struct block **place = &blocks;
+    while (*place != block) {
+        place = &(*place)->next;
+    }
+    *place = block->next;
+    hysteron_state_free(block->state);
+    hysteron_model_free(block->model);
+    free(block);
+}
+
+/* When the function is cleared, or the session ends. */
+static void close_all(void) {
+    while (blocks != NULL) {
+        close_block(blocks);
+    }
+}
+
+/* Numbers begin anew when the function is cleared and loaded again; a block of before must not be taken for a new one. */
+static uint64_t next_id(void) {
+    static uint64_t last;
+    if (last == 0) {
+        last = ((uint64_t)time(NULL) << 24) ^ ((uint64_t)(size_t)&last & 0xfff000u);
+        mexAtExit(close_all);
+    }
+    return ++last;
+}
+
+static struct block *open_block(const mxArray *path, const mxArray *load) {
+    const char *name = text(path, "model");
+    double at = load == NULL ? 0.0 : number(load, "load");
+    uint64_t model, at_load, state = 0;
+    struct block *block;
+    int32_t status;
+    raise(hysteron_model_read(name, &model));
+    if (load != NULL) {
+        status = hysteron_model_at_load(model, at, &at_load);
+        hysteron_model_free(model);
+        raise(status);
+        model = at_load;
+    }
+    status = hysteron_state_new(model, &state);
+    block = status == HYSTERON_OK ? malloc(sizeof *block) : NULL;
+    if (block == NULL) {
+        hysteron_state_free(state);
+        hysteron_model_free(model);
+        raise(status);
+        mexErrMsgIdAndTxt("hysteron:error", "no memory left");
+    }
+    block->id = next_id();
+    block->model = model;
+    block->state = state;
+    block->next = blocks;
+    blocks = block;
+    return block;
+}
+
+static struct block *find(const mxArray *value) {
+    struct block *block = NULL;
+    if (mxIsUint64(value) && mxGetNumberOfElements(value) == 1) {
+        uint64_t id = *(const uint64_t *)mxGetData(value);
+        for (block = blocks; block != NULL && block->id != id; block = block->next) {
+        }
+    }
+    if (block == NULL) {
+        mexErrMsgIdAndTxt("hysteron:block", "this is no open block of this function: open one with 'open', or name a model file");
+    }
+    return block;
+}
+
+struct block *take(const mxArray *first, const mxArray *load) {
+    if (mxIsChar(first)) {
+        return open_block(first, load);
+    }
+    if (load != NULL) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`load` is told when a block is opened");
+    }
+    return find(first);
+}
+
+void done(struct block *block, const mxArray *first, int32_t status) {
+    char detail[1024];
+    if (status != HYSTERON_OK) {
+        hysteron_last_error(detail, sizeof detail);
+    }
+    if (mxIsChar(first)) {
+        close_block(block);
+    }
+    if (status != HYSTERON_OK) {
+        mexErrMsgIdAndTxt(identifier(status), "%s", detail);
+    }
+}
+
+/* ---- Commands ---- */
+
+static mxArray *saved(const struct block *block) {
+    static const char *names[] = {"turning_points", "input"};
+    mxArray *result = mxCreateStructMatrix(1, 1, 2, names), *points;
+    double input, none;
+    size_t count;
+    hysteron_state_save(block->state, &none, 0, &count, &input); /* too small for any: tells how many */
+    points = mxCreateDoubleMatrix(1, count, mxREAL);
+    raise(hysteron_state_save(block->state, mxGetPr(points), count, &count, &input));
+    mxSetField(result, 0, "turning_points", points);
+    mxSetField(result, 0, "input", mxCreateDoubleScalar(input));
+    return result;
+}
+
+static void restore(const struct block *block, const mxArray *from) {
+    const mxArray *points, *input;
+    if (!mxIsStruct(from) || mxGetNumberOfElements(from) != 1 ||
+        (points = mxGetField(from, 0, "turning_points")) == NULL || (input = mxGetField(from, 0, "input")) == NULL) {
+        mexErrMsgIdAndTxt("hysteron:argument", "what to restore has to be a struct that 'save' gave");
+    }
+    points = samples(points, "turning_points");
+    raise(hysteron_state_restore(block->state, mxGetPr(points), mxGetNumberOfElements(points), number(input, "input")));
+}
+
+static mxArray *quantity(uint64_t model, int32_t which) {
+    char name[1024];
+    size_t needed;
+    raise(hysteron_model_quantity(model, which, name, sizeof name, &needed));
+    return mxCreateString(name);
+}
+
+static mxArray *info(const struct block *block) {
+    static const char *names[] = {"operator", "levels", "range",  "input",  "output",
+                                  "offset",   "sign",   "output_off", "output_on", "noise_band"};
+    static const char *operators[] = {"mkp", "kp", "relay"};
+    mxArray *result = mxCreateStructMatrix(1, 1, 10, names), *range = mxCreateDoubleMatrix(1, 2, mxREAL);
+    struct HysteronModelInfo info;
+    raise(hysteron_model_info(block->model, &info));
+    mxGetPr(range)[0] = info.min;
+    mxGetPr(range)[1] = info.max;
+    mxSetField(result, 0, "operator", mxCreateString(operators[info.operator_kind]));
+    mxSetField(result, 0, "levels", mxCreateDoubleScalar((double)info.levels));
+    mxSetField(result, 0, "range", range);
+    mxSetField(result, 0, "input", quantity(block->model, 0));
+    mxSetField(result, 0, "output", quantity(block->model, 1));
+    mxSetField(result, 0, "offset", mxCreateDoubleScalar(info.offset));
+    mxSetField(result, 0, "sign", mxCreateDoubleScalar(info.sign));
+    mxSetField(result, 0, "output_off", mxCreateDoubleScalar(info.output_off));
+    mxSetField(result, 0, "output_on", mxCreateDoubleScalar(info.output_on));
+    mxSetField(result, 0, "noise_band", mxCreateDoubleScalar(info.noise_band));
+    return result;
+}
+
+/* The commands, with how many arguments follow the word. */
+static const struct {
+    const char *word;
+    int least, most;
+} COMMANDS[] = {{"open", 1, 3}, {"reset", 1, 2}, {"save", 1, 1}, {"restore", 2, 2}, {"info", 1, 1}, {"close", 1, 1}};
+
+enum { OPEN, RESET, SAVE, RESTORE, INFO, CLOSE, COUNT };
+
+int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
+    static const char *const names[] = {"load"};
+    const mxArray *load = NULL;
+    const char *word;
+    struct block *block;
+    int which;
+    if (nrhs < 2) {
+        mexErrMsgIdAndTxt("hysteron:argument", "%s needs a model and samples, or a command and a block: see help %s", function,
+                          function);
+    }
+    if (!mxIsChar(prhs[0])) {
+        return 0;
+    }
+    word = text(prhs[0], "model");
+    for (which = 0; which < COUNT && strcmp(word, COMMANDS[which].word) != 0; which++) {
+    }
+    if (which == COUNT) {
+        return 0;
+    }
+    if (nrhs - 1 < COMMANDS[which].least || nrhs - 1 > COMMANDS[which].most) {
+        mexErrMsgIdAndTxt("hysteron:argument", "'%s' takes %d to %d arguments: see help %s", word, COMMANDS[which].least,
+                          COMMANDS[which].most, function);
+    }
+    if (which == OPEN) {
+        options(nrhs, prhs, 2, names, &load, 1);
+        block = open_block(prhs[1], load);
+        plhs[0] = mxCreateNumericMatrix(1, 1, mxUINT64_CLASS, mxREAL);
+        *(uint64_t *)mxGetData(plhs[0]) = block->id;
+        return 1;
+    }
+    block = which == INFO ? take(prhs[1], NULL) : find(prhs[1]);
+    switch (which) {
+    case RESET:
+        if (nrhs == 3 && strcmp(text(prhs[2], "start"), "on") != 0 && strcmp(text(prhs[2], "start"), "off") != 0) {
+            mexErrMsgIdAndTxt("hysteron:argument", "a block is reset to 'off' or 'on'");
+        }
+        raise(nrhs == 3 && strcmp(text(prhs[2], "start"), "on") == 0 ? hysteron_state_saturate(block->state)
+                                                                     : hysteron_state_reset(block->state));
+        break;
+    case SAVE: plhs[0] = saved(block); break;
+    case RESTORE: restore(block, prhs[2]); break;
+    case INFO:
+        plhs[0] = info(block);
+        done(block, prhs[1], HYSTERON_OK);
+        break;
+    default: close_block(block); break;
+    }
+    (void)nlhs; /* a place for one result is always there */
+    return 1;
+}

@@ -1,0 +1,42 @@
+/* What sf_MKP and sf_Inverse_MKP share: blocks that are open, arguments, errors. */
+#ifndef BLOCK_H
+#define BLOCK_H
+
+#include "hysteron.h"
+#include "mex.h"
+
+/* A model and a state of it. */
+struct block {
+    uint64_t id;
+    uint64_t model;
+    uint64_t state;
+    struct block *next;
+};
+
+/* Does what a call whose first argument is a word (`open`, `reset`, `save`, `restore`, `info`, `close`) asks for; says
+ * whether it was one. `function` is the name that errors speak of. */
+int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]);
+
+/* The block that the first argument names: one that is open, or, of a model file, one made for this call. The latter takes
+ * the option `load`. To be given back by `done`. */
+struct block *take(const mxArray *first, const mxArray *load);
+
+/* Ends the use of a block: raises the error of `status`, if it is one. */
+void done(struct block *block, const mxArray *first, int32_t status);
+
+/* Real samples as doubles, all finite: the array itself, or a copy of other types. */
+const mxArray *samples(const mxArray *value, const char *name);
+
+/* One real, finite number. */
+double number(const mxArray *value, const char *name);
+
+/* The options, in pairs of name and value from argument `from` on. `values` has a place for each of the `names`. */
+void options(int nrhs, const mxArray *prhs[], int from, const char *const names[], const mxArray *values[], int count);
+
+/* A text, which Octave and MATLAB free when the call ends. */
+char *text(const mxArray *value, const char *name);
+
+/* An array of the shape of another. */
+mxArray *shaped_like(const mxArray *other, mxClassID type);
+
+#endif

@@ -1,0 +1,75 @@
+/* The block sf_Inverse_MKP: displacement to temperature. What it does says sf_Inverse_MKP.m. */
+#include "block.h"
+#include <string.h>
+
+enum { POLICY, BAND, HEADING, LOAD, COUNT };
+
+static const char *const NAMES[COUNT] = {"policy", "band", "heading", "load"};
+
+/* Whether the policy is to anticipate. */
+static int anticipates(const mxArray *policy) {
+    const char *word = policy == NULL ? "hold" : text(policy, "policy");
+    if (strcmp(word, "hold") != 0 && strcmp(word, "anticipate") != 0) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`policy` is 'hold' or 'anticipate', not '%s'", word);
+    }
+    return word[0] == 'a';
+}
+
+/* Headings that the caller knows: one for each target, or one for all. */
+static void given(const mxArray *value, int32_t *heading, size_t count) {
+    const mxArray *array = samples(value, "heading");
+    size_t n, length = mxGetNumberOfElements(array);
+    if (length != 1 && length != count) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`heading` has %.0f numbers for %.0f targets", (double)length, (double)count);
+    }
+    for (n = 0; n < count; n++) {
+        double way = mxGetPr(array)[length == 1 ? 0 : n];
+        if (way != -1.0 && way != 0.0 && way != 1.0) {
+            mexErrMsgIdAndTxt("hysteron:argument", "`heading(%.0f)` is %g: -1, 0 or 1 is needed", (double)n + 1.0, way);
+        }
+        heading[n] = (int32_t)way;
+    }
+}
+
+void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
+    const mxArray *values[COUNT] = {NULL, NULL, NULL, NULL}, *target;
+    int32_t *heading, *flags, status = HYSTERON_OK;
+    struct HysteronModelInfo info;
+    struct block *block;
+    double band = 0.0;
+    int anticipate;
+    size_t n, count;
+    if (command("sf_Inverse_MKP", nlhs, plhs, nrhs, prhs)) {
+        return;
+    }
+    options(nrhs, prhs, 2, NAMES, values, COUNT);
+    target = samples(prhs[1], "target");
+    count = mxGetNumberOfElements(target);
+    anticipate = anticipates(values[POLICY]);
+    if (values[BAND] != NULL && (band = number(values[BAND], "band")) < 0.0) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`band` is %g: 0 or more is needed", band);
+    }
+    heading = mxCalloc(count + 1, sizeof *heading);
+    flags = mxCalloc(count + 1, sizeof *flags);
+    if (values[HEADING] != NULL) {
+        given(values[HEADING], heading, count);
+    }
+    plhs[0] = shaped_like(prhs[1], mxDOUBLE_CLASS);
+    if (nlhs > 1) {
+        plhs[1] = shaped_like(prhs[1], mxINT8_CLASS);
+    }
+    block = take(prhs[0], values[LOAD]);
+    if (anticipate && values[BAND] == NULL && (status = hysteron_model_info(block->model, &info)) == HYSTERON_OK) {
+        band = info.noise_band;
+    }
+    if (status == HYSTERON_OK && anticipate && values[HEADING] == NULL) {
+        status = hysteron_headings(mxGetPr(target), count, band, heading);
+    }
+    if (status == HYSTERON_OK) {
+        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, band, mxGetPr(plhs[0]), flags, count);
+    }
+    for (n = 0; n < count && nlhs > 1; n++) {
+        ((int8_t *)mxGetData(plhs[1]))[n] = (int8_t)flags[n];
+    }
+    done(block, prhs[0], status);
+}
