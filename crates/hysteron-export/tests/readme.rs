@@ -45,7 +45,12 @@ fn the_readme_on_a_microcontroller() {
         return;
     }
     std::fs::write(folder.path().join("main.c"), program).unwrap();
-    let sources = ["main.c", "spring.c", "hysteron_mcu.c"];
+    let sources = [
+        "main.c",
+        "spring.c",
+        "hysteron_mcu.c",
+        "hysteron_mcu_inverse.c",
+    ];
     run(Command::new("cc")
         .args(STRICT)
         .arg("-Wdouble-promotion")

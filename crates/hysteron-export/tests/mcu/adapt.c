@@ -47,7 +47,7 @@ int main(void)
         switch (command == NULL ? ' ' : command[0]) {
         case 'm':
             n = (size_t)atoi(word());
-            hys_adapt_usual(&options);
+            hys_adapt_defaults(&options);
             if (atoi(word()) != 0) {
                 options.gain = number(word());
                 options.offset_share = number(word());

@@ -34,8 +34,8 @@ int main(void)
     CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH && hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH && hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_weights(&adaptive) == NULL && hys_adapt_weights(NULL) == NULL);
-    hys_adapt_usual(NULL);
-    hys_adapt_usual(&options);
+    hys_adapt_defaults(NULL);
+    hys_adapt_defaults(&options);
     CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, model, NULL, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
@@ -50,7 +50,7 @@ int main(void)
           HYS_INPUT_NOT_FINITE);
 #define REFUSED(field, value)                 \
     do {                                      \
-        hys_adapt_usual(&options);            \
+        hys_adapt_defaults(&options);            \
         options.field = value;                \
         CHECK(start(w) == HYS_ADAPTATION);    \
     } while (0)
@@ -66,7 +66,7 @@ int main(void)
     REFUSED(movement, -1);
     REFUSED(movement, infinity);
     REFUSED(trial, 0);
-    hys_adapt_usual(&options);
+    hys_adapt_defaults(&options);
     memset(bad, 0, sizeof bad);
     bad[1] = -1;
     CHECK(start(bad) == HYS_NEGATIVE_WEIGHTS);
