@@ -127,13 +127,13 @@ fn bad_names_and_folders_are_refused() {
 fn models_that_need_more_than_an_input_are_refused() {
     let folder = models();
     let spring = fs::read_to_string(folder.path().join("spring.json")).unwrap();
-    let thermal = r#""thermal": {"kind": "first-order", "tau_heating": 1.0, "tau_cooling": 1.0, "ambient": 0.0, "gain": 1.0}, "weights""#;
+    let thermal = r#""thermal": {"kind": "first-order", "tau_heating": 1.0, "tau_cooling": 1.0, "gain": 1.0}, "weights""#;
     fs::write(
         folder.path().join("wire.json"),
         spring.replace("\"weights\"", thermal),
     )
     .unwrap();
     let said = refused(folder.path(), "export c wire.json -o mcu");
-    assert!(said.contains("thermal"), "{said}");
+    assert!(said.contains("the model has a thermal body"), "{said}");
     assert!(!folder.path().join("mcu").exists());
 }

@@ -3,10 +3,9 @@
 
 mod common;
 
+use common::programs::{happens_to_have, has, links, run, skip, starts};
 use common::reference::{Call, Number, script};
-use common::{
-    Exported, REALS, answers, happens_to_have, has, links, run, same, skip, starts, walks,
-};
+use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Operator, Plane, Sign};
 use hysteron_core::operator_count;
 use hysteron_export::CReal;

@@ -70,6 +70,12 @@ fn the_algorithm_and_two_files_that_name_the_model() {
         assert!(header.contains(part), "{part}: {header}");
     }
     assert!(header.is_ascii());
+    // The algorithm is under a licence, the model is not.
+    for file in expected {
+        let text = std::fs::read_to_string(inner.join(file)).unwrap();
+        let ours = file.starts_with("hysteron_mcu");
+        assert_eq!(text.contains("SPDX-License-Identifier"), ours, "{file}");
+    }
     // Written again, and a second model beside the first.
     c(&model, &inner, &options(CReal::Float)).unwrap();
     let named = COptions {

@@ -5,11 +5,10 @@ pub mod programs;
 pub mod reference;
 pub mod walks;
 
-pub use programs::{happens_to_have, has, links, run, skip, starts};
-
 use hysteron::Model;
 use hysteron_core::{operator_count, table_len, turn_capacity};
 use hysteron_export::{COptions, CReal};
+use programs::run;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! Programs that tests start, and what happens where one is missing. The tests of the C interface share this file.
 #![allow(clippy::unwrap_used, dead_code)]
 
+use std::path::Path;
 use std::process::Command;
 
 /// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
@@ -54,4 +55,17 @@ pub fn links(cc: &str, flags: &[&str]) -> bool {
         .arg(folder.path().join("a"))
         .output();
     done.is_ok_and(|done| done.status.success())
+}
+
+/// A section of the README, and the C program in it.
+pub fn readme(title: &str) -> (String, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
+    let readme = std::fs::read_to_string(path).unwrap();
+    let between = |text: &str, start: &str, end: &str| {
+        let after = text.split_once(start).unwrap().1;
+        after.split(end).next().unwrap().to_owned()
+    };
+    let section = between(&readme, &format!("\n## {title}\n"), "\n## ");
+    let program = between(&section, "```c\n", "```");
+    (section, program)
 }

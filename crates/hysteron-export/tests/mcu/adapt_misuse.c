@@ -1,17 +1,9 @@
 /* What adaptation refuses. */
-#include <stdio.h>
 #include <string.h>
 
+#include "check.h"
 #include "hysteron_mcu_adapt.h"
 #include "models.h"
-
-#define CHECK(what)                                              \
-    do {                                                         \
-        if (!(what)) {                                           \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #what);   \
-            return 1;                                            \
-        }                                                        \
-    } while (0)
 
 static hys_adaptive adaptive;
 static hys_real memory[MOST_NUMBERS];
