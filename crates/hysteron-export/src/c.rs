@@ -39,6 +39,10 @@ const ADAPTATION: [(&str, &str); 2] = [
 /// How every file begins that may be replaced.
 const MARK: &str = "/* Written by `hysteron export c`";
 
+/// Of the algorithm; a model is its maker's.
+const LICENCE: &str =
+    "Copyright (c) 2026 the hysteron developers. SPDX-License-Identifier: MIT OR Apache-2.0";
+
 /// The number type that the C computes in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CReal {
@@ -186,7 +190,7 @@ fn write<T: Number>(
     let (float, wanted) = (CReal::Float.line(), options.real.line());
     let texts = algorithm.iter().map(|(_, text)| {
         let text = text.replace(&float, &wanted);
-        format!("{MARK}, hysteron {version}. */\n{text}")
+        format!("{MARK}, hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
     texts.push(text::header(&export, &constants, model, options.source));
