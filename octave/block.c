@@ -125,7 +125,7 @@ static uint64_t next_id(void) {
 static struct block *open_block(const mxArray *path, const mxArray *load) {
     const char *name = text(path, "model");
     double at = load == NULL ? 0.0 : number(load, "load");
-    uint64_t model, at_load, state = 0;
+    uint64_t model, at_load, state;
     struct block *block;
     int32_t status;
     raise(hysteron_model_read(name, &model));
@@ -136,11 +136,14 @@ static struct block *open_block(const mxArray *path, const mxArray *load) {
         model = at_load;
     }
     status = hysteron_state_new(model, &state);
-    block = status == HYSTERON_OK ? malloc(sizeof *block) : NULL;
+    if (status != HYSTERON_OK) {
+        hysteron_model_free(model);
+        raise(status);
+    }
+    block = malloc(sizeof *block);
     if (block == NULL) {
         hysteron_state_free(state);
         hysteron_model_free(model);
-        raise(status);
         mexErrMsgIdAndTxt("hysteron:error", "no memory left");
     }
     block->id = next_id();
@@ -249,7 +252,7 @@ static const struct {
 
 enum { OPEN, RESET, SAVE, RESTORE, INFO, CLOSE, COUNT };
 
-int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
+int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     static const char *const names[] = {"load"};
     const mxArray *load = NULL;
     const char *word;
@@ -275,6 +278,7 @@ int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxA
     if (which == OPEN) {
         options(nrhs, prhs, 2, names, &load, 1);
         block = open_block(prhs[1], load);
+        /* A place for one result is always there, whoever asks for it. */
         plhs[0] = mxCreateNumericMatrix(1, 1, mxUINT64_CLASS, mxREAL);
         *(uint64_t *)mxGetData(plhs[0]) = block->id;
         return 1;
@@ -296,6 +300,5 @@ int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxA
         break;
     default: close_block(block); break;
     }
-    (void)nlhs; /* a place for one result is always there */
     return 1;
 }

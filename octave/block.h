@@ -15,7 +15,7 @@ struct block {
 
 /* Does what a call whose first argument is a word (`open`, `reset`, `save`, `restore`, `info`, `close`) asks for; says
  * whether it was one. `function` is the name that errors speak of. */
-int command(const char *function, int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]);
+int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs[]);
 
 /* The block that the first argument names: one that is open, or, of a model file, one made for this call. The latter takes
  * the option `load`. To be given back by `done`. */

@@ -39,7 +39,7 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     double band = 0.0;
     int anticipate;
     size_t n, count;
-    if (command("sf_Inverse_MKP", nlhs, plhs, nrhs, prhs)) {
+    if (command("sf_Inverse_MKP", plhs, nrhs, prhs)) {
         return;
     }
     options(nrhs, prhs, 2, NAMES, values, COUNT);

@@ -10,7 +10,7 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     struct block *block;
     int32_t status = HYSTERON_OK, side;
     size_t n, count;
-    if (command("sf_MKP", nlhs, plhs, nrhs, prhs)) {
+    if (command("sf_MKP", plhs, nrhs, prhs)) {
         return;
     }
     options(nrhs, prhs, 2, names, &load, 1);

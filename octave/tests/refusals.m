@@ -51,11 +51,12 @@ refused('hysteron:notFinite', @() sf_MKP('restore', block, struct('turning_point
 
 text = fileread(model);
 for length = [0, 1, 40, numel(text) - 2]
-    file = fopen(bad, 'w');
-    fwrite(file, text(1:length));
-    fclose(file);
+    write_text(bad, text(1:length));
     refused('hysteron:modelFile', @() sf_MKP(bad, 1));
 end
+thermal = '"thermal": {"kind": "first-order", "gain": 1, "tau_heating": 1, "tau_cooling": 1}, "weights"';
+write_text(bad, strrep(text, '"weights"', thermal));
+refused('hysteron:thermal', @() sf_MKP(bad, 1), 'thermal body');
 write_model(bad, '[1, 0.5, 1, 0, 0.5]');
 refused('hysteron:modelFile', @() sf_MKP(bad, 1), 'weights');
 write_model(bad, '[1, -0.5, 1, 0, 0.5, 1]');

@@ -9,7 +9,7 @@ for n = 1:numel(files)
     file = fileread(fullfile(folder, files(n).name));
     vector = jsondecode(file);
     % Of the text itself: jsondecode would round nothing, but jsonencode might.
-    write(model, model_text(file));
+    write_text(model, model_text(file));
     runs = vector.runs;
     if isstruct(runs)
         runs = num2cell(runs);
@@ -46,12 +46,6 @@ for n = 1:numel(files)
 end
 assert(numel(files) >= 15 && samples > 4000);
 printf('vectors: %d files, %d samples, as whole signals and step by step\n', numel(files), samples);
-end
-
-function write(path, text)
-file = fopen(path, 'w');
-fwrite(file, text);
-fclose(file);
 end
 
 % The object behind the key "model", by counting braces: model files have none inside texts.

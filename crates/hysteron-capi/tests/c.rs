@@ -1,39 +1,21 @@
 //! A C program that uses the whole interface, over the test vectors; under valgrind where it is installed.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../../hysteron-export/tests/common/programs.rs"]
+mod programs;
+
+use programs::{has, links, run, skip};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+const SANITIZE: &str = "-fsanitize=address,undefined";
 const SOURCES: [&str; 5] = ["main.c", "vector.c", "handles.c", "memory.c", "misuse.c"];
 
 fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-/// Whether a tool can be started. Without it a test skips and says so, or fails where none may be skipped.
-fn has(tool: &str) -> bool {
-    let found = Command::new(tool).arg("--version").output().is_ok();
-    if !found {
-        assert!(
-            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
-            "no `{tool}`"
-        );
-        eprintln!("skipped: there is no `{tool}`");
-    }
-    found
-}
-
-fn run(command: &mut Command) {
-    let output = command.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success(),
-        "{command:?}: {}\n{text}",
-        output.status
-    );
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -42,25 +24,6 @@ enum Library {
     Shared,
     /// The static one, with everything in C and every allocation of both watched by the compiler's sanitizers.
     Sanitized,
-}
-
-/// Whether the compiler brings its sanitizers' libraries.
-fn sanitizes(folder: &Path) -> bool {
-    let (source, program) = (folder.join("empty.c"), folder.join("empty"));
-    std::fs::write(&source, "int main(void) { return 0; }\n").unwrap();
-    let mut cc = Command::new("cc");
-    cc.args(["-fsanitize=address,undefined", "-o"])
-        .arg(&program)
-        .arg(&source);
-    let done = cc.output().unwrap().status.success();
-    if !done {
-        assert!(
-            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
-            "no sanitizers"
-        );
-        eprintln!("skipped: the C compiler has no sanitizers");
-    }
-    done
 }
 
 /// Compiles strictly and links with one of the libraries, which cargo builds beside the tests.
@@ -81,7 +44,7 @@ fn compile(sources: &[PathBuf], library: Library, program: &Path) {
     ]);
     cc.arg("-I").arg(here("include")).args(sources);
     if library == Library::Sanitized {
-        cc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+        cc.args([SANITIZE, "-fno-sanitize-recover=all"]);
     }
     if library == Library::Shared {
         let (start, end) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
@@ -101,7 +64,7 @@ fn programs(folder: &Path) -> Vec<PathBuf> {
     }
     let sources = SOURCES.map(|name| here("tests/c").join(name));
     let mut kinds = vec![(Library::Static, "static"), (Library::Shared, "shared")];
-    if sanitizes(folder) {
+    if links("cc", &[SANITIZE]) || skip("`cc` has no sanitizers") {
         kinds.push((Library::Sanitized, "sanitized"));
     }
     let compiled = |(library, name)| {
@@ -229,17 +192,10 @@ fn the_readme_in_c() {
     if !has("cc") {
         return;
     }
-    let readme = std::fs::read_to_string(here("../../README.md")).unwrap();
-    let block = readme
-        .split("```c\n")
-        .nth(1)
-        .unwrap()
-        .split("```")
-        .next()
-        .unwrap();
+    let (_, program_text) = programs::readme("From C");
     let folder = tempfile::tempdir().unwrap();
     let (source, program) = (folder.path().join("spring.c"), folder.path().join("spring"));
-    std::fs::write(&source, block).unwrap();
+    std::fs::write(&source, program_text).unwrap();
     compile(&[source], Library::Static, &program);
     let there = || {
         let mut command = Command::new(&program);

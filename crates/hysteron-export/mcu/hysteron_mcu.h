@@ -10,7 +10,7 @@
  * Where the compiler tells of another choice, compilation stops.
  *
  * Worst case of one call, K levels:
- *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 turns
+ *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 iterations
  *   hys_inverse_step   two bisections of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then one hys_step
  *   hys_reset_on       one hys_step;  hys_start, hys_reset_off: none of these loops
  *   hys_save, hys_rebase   one pass over at most 4K + 3 points
@@ -82,9 +82,6 @@ typedef struct {
     unsigned char falls;    /* 1 where the output falls as the operators switch on */
     unsigned char inverse;  /* 1 where no weight is below zero */
 } hys_model;
-
-/* Place of the start of every history among the turning points; after it maxima and minima follow in turn. */
-#define HYS_START 5u
 
 /* What a model remembers of its input. To be read by these functions alone; a copy shares the turning points. */
 typedef struct {

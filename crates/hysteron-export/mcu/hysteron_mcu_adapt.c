@@ -1,44 +1,10 @@
 #include "hysteron_mcu_adapt.h"
+#include "hysteron_mcu_internal.h"
 
-/* No product may be fused with a sum. GCC does not know the standard's pragma; it also likes to make calls of loops that
- * copy, for which a target without a C library has nothing. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("fp-contract=off", "no-tree-loop-distribute-patterns")
-#else
-#pragma STDC FP_CONTRACT OFF
-#endif
-
-#define ZERO ((hys_real)0)
-#define ONE ((hys_real)1)
 #define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
 
 /* Running sums of a long sum: those of the library, whose digits depend on it. */
 #define LANES 8u
-
-static int is_finite(hys_real x)
-{
-    return x - x == ZERO;
-}
-
-static hys_real larger(hys_real a, hys_real b)
-{
-    return a > b ? a : b;
-}
-
-static hys_real smaller(hys_real a, hys_real b)
-{
-    return a < b ? a : b;
-}
-
-static hys_real limited(hys_real x, hys_real low, hys_real high)
-{
-    return smaller(larger(x, low), high);
-}
-
-static hys_real number(size_t n)
-{
-    return (hys_real)(int32_t)n;
-}
 
 static size_t operators(const hys_adaptive *self)
 {
@@ -70,7 +36,7 @@ static hys_real ridge(hys_real x, size_t k)
 /* The row or column whose ridge a position lies on. */
 static size_t touched(const hys_model *model, hys_real x)
 {
-    size_t cell = (size_t)(int32_t)x;
+    size_t cell = whole(x);
     return (cell < model->levels ? cell : model->levels - 1u) + 1u;
 }
 
@@ -81,17 +47,17 @@ static void follow(hys_adaptive *self, hys_real from, hys_real to)
     size_t first = touched(model, smaller(from, to)), last = touched(model, larger(from, to));
     size_t i, j;
     if (to > from) {
-        for (j = first; j <= last; j++) { /* at most K turns */
+        for (j = first; j <= last; j++) { /* at most K iterations */
             hys_real on = ridge(to, j);
-            for (i = 1u; i <= j; i++) { /* at most K turns */
+            for (i = 1u; i <= j; i++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
                 *gamma = larger(*gamma, on);
             }
         }
     } else if (to < from) {
-        for (i = first; i <= last; i++) { /* at most K turns */
+        for (i = first; i <= last; i++) { /* at most K iterations */
             hys_real off = ridge(to, i);
-            for (j = i; j <= model->levels; j++) { /* at most K turns */
+            for (j = i; j <= model->levels; j++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
                 *gamma = smaller(*gamma, off);
             }
@@ -126,10 +92,10 @@ static void align(hys_adaptive *self)
     for (n = 0u; n < count; n++) {
         self->gamma[n] = ZERO;
     }
-    for (n = HYS_START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 turns */
+    for (n = START + 1u; n <= state->top + 1u; n++) { /* at most 4K + 3 iterations */
         hys_real x = n <= state->top ? state->turns[n].x : state->x;
-        for (j = 1u; j <= self->model.levels; j++) { /* K turns */
-            for (i = 1u; i <= j; i++) { /* at most K turns */
+        for (j = 1u; j <= self->model.levels; j++) { /* K iterations */
+            for (i = 1u; i <= j; i++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
                 *gamma = larger(ridge(x, j), smaller(*gamma, ridge(x, i)));
             }
@@ -148,25 +114,25 @@ static hys_real regressor(const hys_adaptive *self, size_t n, size_t count)
         return self->options.offset_share;
     }
     gamma = self->gamma[n];
-    return self->model.kind == 0u ? gamma : gamma + gamma - ONE;
+    return self->model.kind == MKP ? gamma : gamma + gamma - ONE;
 }
 
 /* The sum of parameters times regressor; without parameters, of the regressor's squares. */
 static hys_real dot(const hys_adaptive *self, const hys_real *parameters)
 {
     hys_real sums[LANES], sum = ZERO;
-    size_t n, count = operators(self), whole = (count + 1u) / LANES * LANES;
+    size_t n, count = operators(self), even = (count + 1u) / LANES * LANES;
     for (n = 0u; n < LANES; n++) {
         sums[n] = ZERO;
     }
-    for (n = 0u; n < whole; n++) { /* at most N + 1 turns */
+    for (n = 0u; n < even; n++) { /* at most N + 1 iterations */
         hys_real phi = regressor(self, n, count);
         sums[n % LANES] += (parameters != NULL ? parameters[n] : phi) * phi;
     }
     for (n = 0u; n < LANES; n++) {
         sum += sums[n];
     }
-    for (n = whole; n <= count; n++) { /* less than LANES turns */
+    for (n = even; n <= count; n++) { /* less than LANES iterations */
         hys_real phi = regressor(self, n, count);
         sum += (parameters != NULL ? parameters[n] : phi) * phi;
     }
@@ -186,12 +152,12 @@ static void rewrite(hys_adaptive *self)
     hys_real *row = self->table;
     size_t p, q;
     row[0] = ZERO;
-    for (p = 1u; p <= model->levels; p++) { /* K turns */
+    for (p = 1u; p <= model->levels; p++) { /* K iterations */
         const hys_real *above = row, *weights = self->theta + place(1u, p);
         hys_real sum = ZERO;
         row += p;
         row[p] = ZERO;
-        for (q = p; q-- > 0u;) { /* at most K turns */
+        for (q = p; q-- > 0u;) { /* at most K iterations */
             sum += weights[q];
             row[q] = above[q] + sum;
         }
@@ -261,7 +227,7 @@ static void update(hys_adaptive *self, hys_real error)
     if (!is_finite(step)) {
         return;
     }
-    for (n = 0u; n <= count; n++) { /* N + 1 turns */
+    for (n = 0u; n <= count; n++) { /* N + 1 iterations */
         hys_real theta = self->theta[n], offline = n < count ? self->offline[n] : ZERO;
         theta = theta + step * regressor(self, n, count) + leakage * (offline - theta);
         self->theta[n] = n < count ? larger(theta, ZERO) : theta;
@@ -320,7 +286,7 @@ static int usable(const hys_adaptive *self)
     return self->table == NULL || self->state.model != &self->model ? HYS_STATE_MISMATCH : HYS_OK;
 }
 
-void hys_adapt_usual(hys_adapt_options *options)
+void hys_adapt_defaults(hys_adapt_options *options)
 {
     if (options != NULL) {
         options->gain = number(30u) / number(100u);
@@ -360,13 +326,13 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     if (!is_finite(offset)) {
         return HYS_INPUT_NOT_FINITE;
     }
-    for (n = 0u; n < all; n++) { /* N turns */
+    for (n = 0u; n < all; n++) { /* N iterations */
         size += larger(weights[n], -weights[n]);
         if (!is_finite(size + size)) {
             return HYS_WEIGHT_NOT_FINITE;
         }
     }
-    for (n = 0u; n < all; n++) { /* N turns */
+    for (n = 0u; n < all; n++) { /* N iterations */
         if (weights[n] < ZERO) {
             return HYS_NEGATIVE_WEIGHTS;
         }
@@ -423,7 +389,7 @@ int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hy
     if (self->model.falls) {
         measured = -measured;
     }
-    own = self->model.kind == 0u ? self->state.y : self->state.y + self->state.y - self->model.total;
+    own = own_sum(&self->model, self->state.y);
     offset = offset_of(self);
     error = measured - own - offset;
     moved = moves(self);

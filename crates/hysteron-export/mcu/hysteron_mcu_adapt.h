@@ -7,7 +7,7 @@
  *     static hys_turn turns[SPRING_TURNS];
  *     static hys_adaptive adaptive;
  *     hys_adapt_options options;
- *     hys_adapt_usual(&options);
+ *     hys_adapt_defaults(&options);
  *     hys_adapt_start(&adaptive, &spring, spring_weights, spring.offset, &options, memory, SPRING_ADAPT_NUMBERS,
  *                     turns, SPRING_TURNS);
  *     hys_adapt_step(&adaptive, temperature, displacement, &expected, &outcome);      each sample
@@ -31,7 +31,7 @@
 extern "C" {
 #endif
 
-/* The usual value, and the range. */
+/* The default of each, and its range. */
 typedef struct {
     hys_real gain;          /* 0.3, above 0 and below 2: 1 takes nearly the whole error of a sample away */
     hys_real offset_share;  /* 1, from 0: how freely the offset moves, beside one weight */
@@ -69,7 +69,7 @@ typedef struct {
     unsigned char aligned, frozen;
 } hys_adaptive;
 
-void hys_adapt_usual(hys_adapt_options *options);
+void hys_adapt_defaults(hys_adapt_options *options);
 
 /* Starts with every operator off, from `weights` (N, row by row) and `offset`: those exported, or what was learned before.
  * `model` and `weights` are not changed and have to stay; `memory` has `numbers` elements, NAME_ADAPT_NUMBERS of the model at

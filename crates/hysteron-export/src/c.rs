@@ -9,14 +9,39 @@ use hysteron::{AtomicFile, Error, Model, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// Names and texts of the algorithm's files, the first with the number type.
+const ALGORITHM: [(&str, &str); 4] = [
+    ("hysteron_mcu.h", HEADER),
+    ("hysteron_mcu.c", include_str!("../mcu/hysteron_mcu.c")),
+    (
+        "hysteron_mcu_inverse.c",
+        include_str!("../mcu/hysteron_mcu_inverse.c"),
+    ),
+    (
+        "hysteron_mcu_internal.h",
+        include_str!("../mcu/hysteron_mcu_internal.h"),
+    ),
+];
 const HEADER: &str = include_str!("../mcu/hysteron_mcu.h");
-const SOURCE: &str = include_str!("../mcu/hysteron_mcu.c");
 
-const ADAPT_HEADER: &str = include_str!("../mcu/hysteron_mcu_adapt.h");
-const ADAPT_SOURCE: &str = include_str!("../mcu/hysteron_mcu_adapt.c");
+/// The same for models that learn.
+const ADAPTATION: [(&str, &str); 2] = [
+    (
+        "hysteron_mcu_adapt.h",
+        include_str!("../mcu/hysteron_mcu_adapt.h"),
+    ),
+    (
+        "hysteron_mcu_adapt.c",
+        include_str!("../mcu/hysteron_mcu_adapt.c"),
+    ),
+];
 
 /// How every file begins that may be replaced.
 const MARK: &str = "/* Written by `hysteron export c`";
+
+/// Of the algorithm; a model is its maker's.
+const LICENCE: &str =
+    "Copyright (c) 2026 the hysteron developers. SPDX-License-Identifier: MIT OR Apache-2.0";
 
 /// The number type that the C computes in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -89,12 +114,12 @@ pub struct CMemory {
     pub adaptation: Option<usize>,
 }
 
-/// How often the loops of one call turn at most.
+/// How many iterations the loops of one call take at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CWorstCase {
     /// Turning points passed in a step, `2K`.
     pub turning_points: usize,
-    /// Turns of the step's loop, `2K + 3`.
+    /// Iterations of the step's loop, `2K + 3`.
     pub step: usize,
     /// Halvings of an inverse step's two bisections together, before it steps.
     pub halvings: usize,
@@ -112,9 +137,10 @@ impl CWorstCase {
     }
 }
 
-/// Writes C99 for `model` into `folder`, which is made if need be: the algorithm as `hysteron_mcu.h` and `.c`, the same for
-/// every model of a number type, and the model's constants as files of its name. With [`COptions::adaptation`] also
-/// `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with [`hysteron_core::Method::Gradient`].
+/// Writes C99 for `model` into `folder`, which is made if need be: the algorithm as `hysteron_mcu.h`, `.c` and
+/// `hysteron_mcu_inverse.c`, the same for every model of a number type, and the model's constants as files of its name. With
+/// [`COptions::adaptation`] also `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
+/// [`hysteron_core::Method::Gradient`].
 ///
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign in that type as well. A
 /// model with negative weights has no inverse there either.
@@ -143,15 +169,16 @@ fn write<T: Number>(
         return Err(Error::Export(text.into()));
     }
     let levels = model.plane().levels();
-    let adapt = options.adaptation.then_some("hysteron_mcu_adapt");
-    let stems = ["hysteron_mcu"]
-        .into_iter()
-        .chain(adapt)
-        .chain([name.as_str()]);
+    let parts: &[&[(&str, &str)]] = match options.adaptation {
+        false => &[&ALGORITHM],
+        true => &[&ALGORITHM, &ADAPTATION],
+    };
+    let algorithm = parts.concat();
+    let own = ["h", "c"].map(|end| format!("{name}.{end}"));
+    let files = algorithm.iter().map(|(file, _)| *file);
+    let files = files.chain(own.iter().map(String::as_str));
     let export = CExport {
-        files: stems
-            .flat_map(|stem| ["h", "c"].map(|end| folder.join(format!("{stem}.{end}"))))
-            .collect(),
+        files: files.map(|file| folder.join(file)).collect(),
         name,
         real: options.real,
         levels,
@@ -160,12 +187,12 @@ fn write<T: Number>(
         worst_case: CWorstCase::of(levels),
     };
     let version = env!("CARGO_PKG_VERSION");
-    let algorithm = |text: &str| format!("{MARK}, hysteron {version}. */\n{text}");
-    let header = HEADER.replace(&CReal::Float.line(), &options.real.line());
-    let mut texts = vec![algorithm(&header), algorithm(SOURCE)];
-    if options.adaptation {
-        texts.extend([ADAPT_HEADER, ADAPT_SOURCE].map(algorithm));
-    }
+    let (float, wanted) = (CReal::Float.line(), options.real.line());
+    let texts = algorithm.iter().map(|(_, text)| {
+        let text = text.replace(&float, &wanted);
+        format!("{MARK}, hysteron {version}.\n * {LICENCE} */\n{text}")
+    });
+    let mut texts: Vec<String> = texts.collect();
     texts.push(text::header(&export, &constants, model, options.source));
     texts.push(text::source(&export, &constants));
     std::fs::create_dir_all(folder).map_err(|source| Error::File {

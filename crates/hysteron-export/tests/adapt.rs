@@ -3,8 +3,9 @@
 
 mod common;
 
+use common::programs::{has, links, run, skip};
 use common::reference::Number;
-use common::{Exported, REALS, answers, has, run, same, skip, walks};
+use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Sign};
 use hysteron_core::{
     Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Status, Turn,
@@ -324,7 +325,7 @@ fn sanitizers_and_valgrind_find_nothing() {
     for real in REALS {
         let all = exported(&cases, real);
         let one = exported(small, real);
-        if common::links("cc", &SANITIZE) || skip("`cc` has no sanitizers") {
+        if links("cc", &SANITIZE) || skip("`cc` has no sanitizers") {
             let program = all.compile("cc", &SANITIZE, "adapt.c");
             compare(&all, &mut Command::new(program), &cases, "sanitized");
             run(&mut Command::new(one.compile(

@@ -40,7 +40,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn four_files_that_name_the_model() {
+fn the_algorithm_and_two_files_that_name_the_model() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("a/b");
     let mut model = model(20.0, 80.0, [1.0, 0.0, 0.5], 0.1);
@@ -51,6 +51,8 @@ fn four_files_that_name_the_model() {
     let expected = [
         "hysteron_mcu.c",
         "hysteron_mcu.h",
+        "hysteron_mcu_internal.h",
+        "hysteron_mcu_inverse.c",
         "some_spring.c",
         "some_spring.h",
     ];
@@ -68,6 +70,12 @@ fn four_files_that_name_the_model() {
         assert!(header.contains(part), "{part}: {header}");
     }
     assert!(header.is_ascii());
+    // The algorithm is under a licence, the model is not.
+    for file in expected {
+        let text = std::fs::read_to_string(inner.join(file)).unwrap();
+        let ours = file.starts_with("hysteron_mcu");
+        assert_eq!(text.contains("SPDX-License-Identifier"), ours, "{file}");
+    }
     // Written again, and a second model beside the first.
     c(&model, &inner, &options(CReal::Float)).unwrap();
     let named = COptions {
@@ -75,7 +83,7 @@ fn four_files_that_name_the_model() {
         ..options(CReal::Float)
     };
     c(&model, &inner, &named).unwrap();
-    assert_eq!(names(&inner).len(), 6);
+    assert_eq!(names(&inner).len(), 8);
 }
 
 #[test]
@@ -91,10 +99,10 @@ fn adaptation_is_an_option() {
         &options(CReal::Float),
     )
     .unwrap();
-    assert_eq!((plain.files.len(), plain.memory.adaptation), (4, None));
+    assert_eq!((plain.files.len(), plain.memory.adaptation), (6, None));
     let export = c(&model(20.0, 80.0, [1.0; 3], 0.0), folder.path(), &learns).unwrap();
-    assert_eq!(export.files.len(), 6);
-    assert_eq!(names(folder.path()).len(), 6);
+    assert_eq!(export.files.len(), 8);
+    assert_eq!(names(folder.path()).len(), 8);
     // The weights join the constants.
     assert_eq!(export.memory.constants, plain.memory.constants + 3 * 4);
     let header = std::fs::read_to_string(folder.path().join("some_spring.h")).unwrap();
@@ -139,7 +147,7 @@ fn a_folder_has_one_number_type() {
     };
     let said = refused(&model, folder.path(), &other);
     assert!(said.contains("--real double"), "{said}");
-    assert_eq!(names(folder.path()).len(), 4);
+    assert_eq!(names(folder.path()).len(), 6);
     assert_eq!(
         std::fs::read(folder.path().join("hysteron_mcu.h")).unwrap(),
         before

@@ -3,24 +3,15 @@
 
 mod common;
 
-use common::{STRICT, has, here, run};
+use common::programs::{has, readme, run};
+use common::{STRICT, here};
 use hysteron::Model;
 use hysteron_export::{COptions, CReal, c};
 use std::process::Command;
 
 #[test]
 fn the_readme_on_a_microcontroller() {
-    let readme = std::fs::read_to_string(here("../../README.md")).unwrap();
-    let section = readme.split("## On a microcontroller\n").nth(1).unwrap();
-    let section = section.split("\n## ").next().unwrap();
-    let program = section
-        .split("```c\n")
-        .nth(1)
-        .unwrap()
-        .split("```")
-        .next()
-        .unwrap();
-
+    let (section, program) = readme("On a microcontroller");
     let folder = tempfile::tempdir().unwrap();
     let vector = std::fs::read_to_string(here("../../vectors/inverse-mkp-20.json")).unwrap();
     let vector: serde_json::Value = serde_json::from_str(&vector).unwrap();
@@ -45,7 +36,12 @@ fn the_readme_on_a_microcontroller() {
         return;
     }
     std::fs::write(folder.path().join("main.c"), program).unwrap();
-    let sources = ["main.c", "spring.c", "hysteron_mcu.c"];
+    let sources = [
+        "main.c",
+        "spring.c",
+        "hysteron_mcu.c",
+        "hysteron_mcu_inverse.c",
+    ];
     run(Command::new("cc")
         .args(STRICT)
         .arg("-Wdouble-promotion")

@@ -3,8 +3,9 @@
 
 mod common;
 
+use common::programs::has;
 use common::reference::{Call, Number, script};
-use common::{Exported, answers, has, here, same};
+use common::{Exported, answers, here, same};
 use hysteron::{Model, Operator};
 use hysteron_export::CReal;
 use serde_json::Value;

@@ -1,11 +1,13 @@
 //! Models that are adapted over recordings. The measured ones stay in `../shared/data`; without them the test says so and passes.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::shared;
 use hysteron::{
     AdaptOptions, Adaptive, Columns, DriftParts, FirstOrder, FitOptions, Learner, Model, Operator,
     Plane, Recording, Repair, Sign, Start, adapt, fit, fit_experiment,
 };
-use std::path::Path;
 
 const LEARNERS: [Learner; 4] = [
     Learner::Gradient,
@@ -288,13 +290,11 @@ fn two_samples_have_no_thirds() {
 /// A nickel-titanium-hafnium alloy at 200 MPa, and then at 400.
 #[test]
 fn a_measured_alloy_is_followed_to_another_stress() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let loops = [200, 400].map(|stress| folder.join(format!("sma_nitihf_bigelow_{stress}MPa.csv")));
-    if !loops.iter().all(|path| path.exists()) {
-        eprintln!("skipped: {} is not there", loops[0].display());
+    let loops = [200, 400].map(|stress| shared(&format!("sma_nitihf_bigelow_{stress}MPa.csv")));
+    let [Some(before), Some(after)] = loops else {
         return;
-    }
-    let [before, after] = loops.map(|path| {
+    };
+    let [before, after] = [before, after].map(|path| {
         let columns = Columns::new("temperature_C", "strain_percent");
         Recording::read(&path, columns, Repair::Refuse).unwrap().0
     });

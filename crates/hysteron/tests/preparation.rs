@@ -1,10 +1,12 @@
 //! Preparation of real recordings. The data stay in `../shared/data`; without them the tests say so and pass.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::shared;
 use hysteron::{
     Columns, FitOptions, PrepareOptions, Recording, Repair, fit, prepare, rate_dependence,
 };
-use std::path::Path;
 
 /// Name, time, input and output of every recording.
 const RECORDINGS: [(&str, Option<&str>, &str, &str); 28] = [
@@ -90,11 +92,9 @@ const RECORDINGS: [(&str, Option<&str>, &str, &str); 28] = [
 
 /// Every recording that is there.
 fn recordings() -> Vec<(&'static str, Recording)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    if !folder.exists() {
-        eprintln!("skipped: {} is not there", folder.display());
+    let Some(folder) = shared("") else {
         return Vec::new();
-    }
+    };
     let read = |(name, time, input, output)| {
         let columns = Columns {
             time,

@@ -1,20 +1,10 @@
 //! Fits of real recordings. The data stay in `../shared/data`; without them the tests say so and pass.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Columns, FitOptions, Operator, Recording, Repair, Solver, fit};
-use std::path::{Path, PathBuf};
+mod common;
 
-/// The recording's path, or `None` after saying that the test is skipped.
-fn shared(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/data")
-        .join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there", path.display());
-    None
-}
+use common::shared;
+use hysteron::{Columns, FitOptions, Operator, Recording, Repair, Solver, fit};
 
 /// RMSE over all rows at the optimum, from SciPy 1.17 on the dense matrix with a free offset
 /// (`scipy.optimize.nnls`, `numpy.linalg.lstsq`), plane 0 to 3.5, all off at the start.

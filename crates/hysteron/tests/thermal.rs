@@ -1,6 +1,9 @@
 //! A thermal body and the weights behind it, from a drive whose temperature nobody measured.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::shared;
 use hysteron::{
     Columns, FirstOrder, FitOptions, Model, Operator, Plane, Recording, Repair, Sign, evaluate,
     fit, fit_thermal,
@@ -8,7 +11,6 @@ use hysteron::{
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use std::path::Path;
 
 /// Ramps and steps of different height: a drive that tells heating and cooling apart.
 fn drive() -> (Vec<f64>, Vec<f64>) {
@@ -82,13 +84,7 @@ fn a_known_body_is_found_again_through_noise() {
 #[test]
 fn ramp_and_step_of_a_measured_wire_validate_each_other() {
     let read = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../../../shared/data")
-            .join(name);
-        if !path.exists() {
-            eprintln!("skipped: {} is not there", path.display());
-            return None;
-        }
+        let path = shared(name)?;
         let columns = Columns {
             time: Some("time_s"),
             ..Columns::new("duty", "position_m")

@@ -37,7 +37,7 @@ impl From<CReal> for hysteron_export::CReal {
 pub(crate) struct ExportC {
     /// The model
     pub(crate) model: PathBuf,
-    /// Folder for the files: hysteron_mcu.h and .c, and the model's
+    /// Folder for the files: the algorithm (hysteron_mcu…) and the model's
     #[arg(short, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Name of the model in C, and of its files [default: that of the model's file]

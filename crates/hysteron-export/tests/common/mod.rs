@@ -1,12 +1,14 @@
 //! Models exported, compiled and run.
 #![allow(clippy::unwrap_used, dead_code)]
 
+pub mod programs;
 pub mod reference;
 pub mod walks;
 
 use hysteron::Model;
 use hysteron_core::{operator_count, table_len, turn_capacity};
 use hysteron_export::{COptions, CReal};
+use programs::run;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -30,41 +32,6 @@ pub fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
-pub fn has(tool: &str) -> bool {
-    starts(tool) || skip(&format!("there is no `{tool}`"))
-}
-
-/// The same for what is welcome and not needed.
-pub fn happens_to_have(what: &str, there: bool) -> bool {
-    if !there {
-        eprintln!("skipped: {what} is not there");
-    }
-    there
-}
-
-pub fn starts(tool: &str) -> bool {
-    let found = Command::new(tool).arg("--version").output();
-    found.is_ok_and(|done| done.status.success())
-}
-
-/// What is missing is skipped, or fails where nothing may be.
-pub fn skip(why: &str) -> bool {
-    assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
-    eprintln!("skipped: {why}");
-    false
-}
-
-pub fn run(command: &mut Command) {
-    let output = command.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success(),
-        "{command:?}: {}\n{text}",
-        output.status
-    );
-}
-
 /// Models in one folder, ready to be compiled into one program.
 pub struct Exported {
     pub folder: tempfile::TempDir,
@@ -85,7 +52,8 @@ impl Exported {
 
     fn with(models: &[&Model], real: CReal, adaptation: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let mut sources = vec![folder.path().join("hysteron_mcu.c")];
+        let algorithm = ["hysteron_mcu.c", "hysteron_mcu_inverse.c"];
+        let mut sources: Vec<PathBuf> = algorithm.map(|name| folder.path().join(name)).into();
         if adaptation {
             sources.push(folder.path().join("hysteron_mcu_adapt.c"));
         }
@@ -149,42 +117,49 @@ impl Exported {
         program
     }
 
-    /// Makes the algorithm end the program where a loop turns more often than the header says.
-    pub fn count_turns(&self) {
-        let path = &self.sources[0];
-        let mut text = std::fs::read_to_string(path).unwrap();
-        let log2 = "static size_t log2_of(size_t n) { size_t k = 0; while (n > 1) { n /= 2; k++; } return k; }";
-        let step = "leave(state, rising, x);";
-        let travel = "static void travel(hys_state *state, hys_real x)\n{";
-        let bisection = "size_t middle = low + (high - low) / 2u;";
-        assert_eq!(text.matches(step).count(), 1);
-        assert_eq!(text.matches(bisection).count(), 3);
-        let limit = "if (++passed > 2 * state->model->levels + 3) { abort(); }";
-        text = text.replace(step, &format!("{limit} {step}"));
-        text = text.replace(travel, &format!("{travel} size_t passed = 0;"));
-        for (at, limit) in [
-            (
-                "branch find(const hys_state *state, size_t kind, goal to)\n{",
-                "log2_of(2 * state->model->levels + 1) + 1",
-            ),
-            (
-                "hys_real min_x, hys_real from, goal to)\n{",
-                "log2_of(model->levels) + 1",
-            ),
-            (
-                "hys_real max_x, hys_real from, goal to)\n{",
-                "log2_of(model->levels) + 1",
-            ),
-        ] {
-            let (before, after) = text.split_once(at).unwrap();
-            let after = after.replacen(
-                bisection,
-                &format!("{bisection} if (++halved > {limit}) {{ abort(); }}"),
-                1,
+    /// Makes the algorithm end the program where a loop has more iterations than the header says.
+    pub fn count_iterations(&self) {
+        self.edit("hysteron_mcu.c", |text| {
+            let (travel, step) = (
+                "static void travel(hys_state *state, hys_real x)\n{",
+                "leave(state, rising, x);",
             );
-            text = format!("{before}{at} size_t halved = 0;{after}");
-        }
-        std::fs::write(path, format!("#include <stdlib.h>\n{log2}\n{text}")).unwrap();
+            let limit = "if (++passed > 2 * state->model->levels + 3) { abort(); }";
+            assert_eq!(text.matches(step).count(), 1);
+            text.replace(step, &format!("{limit} {step}"))
+                .replace(travel, &format!("{travel} size_t passed = 0;"))
+        });
+        self.edit("hysteron_mcu_inverse.c", |mut text| {
+            let bisection = "size_t middle = low + (high - low) / 2u;";
+            assert_eq!(text.matches(bisection).count(), 3);
+            for (at, limit) in [
+                (
+                    "branch find(const hys_state *state, size_t kind, goal to)\n{",
+                    "log2_of(2 * state->model->levels + 1) + 1",
+                ),
+                (
+                    "hys_real min_x, hys_real from, goal to)\n{",
+                    "log2_of(model->levels) + 1",
+                ),
+                (
+                    "hys_real max_x, hys_real from, goal to)\n{",
+                    "log2_of(model->levels) + 1",
+                ),
+            ] {
+                let (before, after) = text.split_once(at).unwrap();
+                let counted = format!("{bisection} if (++halved > {limit}) {{ abort(); }}");
+                let after = after.replacen(bisection, &counted, 1);
+                text = format!("{before}{at} size_t halved = 0;{after}");
+            }
+            let log2 = "static size_t log2_of(size_t n) { size_t k = 0; while (n > 1) { n /= 2; k++; } return k; }";
+            format!("{log2}\n{text}")
+        });
+    }
+
+    fn edit(&self, file: &str, change: impl FnOnce(String) -> String) {
+        let path = self.folder.path().join(file);
+        let text = change(std::fs::read_to_string(&path).unwrap());
+        std::fs::write(path, format!("#include <stdlib.h>\n{text}")).unwrap();
     }
 }
 
@@ -226,22 +201,4 @@ pub fn same(commands: &str, expected: &str, found: &str, what: &str) {
         "{what}: lines"
     );
     assert_eq!(expected, found, "{what}");
-}
-
-/// Whether a program for this machine can be made with these flags.
-pub fn links(cc: &str, flags: &[&str]) -> bool {
-    let folder = tempfile::tempdir().unwrap();
-    let source = folder.path().join("a.c");
-    std::fs::write(
-        &source,
-        "#include <stdio.h>\nint main(void) { return puts(\"\") < 0; }\n",
-    )
-    .unwrap();
-    let done = Command::new(cc)
-        .args(flags)
-        .arg(&source)
-        .arg("-o")
-        .arg(folder.path().join("a"))
-        .output();
-    done.is_ok_and(|done| done.status.success())
 }

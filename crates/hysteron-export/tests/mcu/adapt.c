@@ -1,39 +1,14 @@
 /* As driver.c, for models that learn. `weights`, an array beside `models`, and MOST_NUMBERS are in models.h. */
-#include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "hysteron_mcu_adapt.h"
 #include "models.h"
+#include "words.h"
 
 static hys_turn turns[MOST_TURNS], others[MOST_TURNS];
 static hys_real memory[MOST_NUMBERS];
 static hys_adaptive adaptive;
 static hys_state compensator;
-
-static hys_real number(const char *text)
-{
-    uint64_t wide = strtoull(text, NULL, 16);
-    uint32_t narrow = (uint32_t)wide;
-    hys_real x;
-    memcpy(&x, sizeof x == 4 ? (const void *)&narrow : (const void *)&wide, sizeof x);
-    return x;
-}
-
-static uint64_t bits(hys_real x)
-{
-    uint32_t narrow = 0;
-    uint64_t wide = 0;
-    memcpy(sizeof x == 4 ? (void *)&narrow : (void *)&wide, &x, sizeof x);
-    return sizeof x == 4 ? narrow : wide;
-}
-
-static const char *word(void)
-{
-    const char *found = strtok(NULL, " \n");
-    return found == NULL ? "0" : found;
-}
 
 int main(void)
 {
@@ -47,7 +22,7 @@ int main(void)
         switch (command == NULL ? ' ' : command[0]) {
         case 'm':
             n = (size_t)atoi(word());
-            hys_adapt_usual(&options);
+            hys_adapt_defaults(&options);
             if (atoi(word()) != 0) {
                 options.gain = number(word());
                 options.offset_share = number(word());

@@ -1,17 +1,9 @@
 /* What adaptation refuses. */
-#include <stdio.h>
 #include <string.h>
 
+#include "check.h"
 #include "hysteron_mcu_adapt.h"
 #include "models.h"
-
-#define CHECK(what)                                              \
-    do {                                                         \
-        if (!(what)) {                                           \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #what);   \
-            return 1;                                            \
-        }                                                        \
-    } while (0)
 
 static hys_adaptive adaptive;
 static hys_real memory[MOST_NUMBERS];
@@ -34,8 +26,8 @@ int main(void)
     CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH && hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH && hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_weights(&adaptive) == NULL && hys_adapt_weights(NULL) == NULL);
-    hys_adapt_usual(NULL);
-    hys_adapt_usual(&options);
+    hys_adapt_defaults(NULL);
+    hys_adapt_defaults(&options);
     CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
     CHECK(hys_adapt_start(&adaptive, model, NULL, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
@@ -50,7 +42,7 @@ int main(void)
           HYS_INPUT_NOT_FINITE);
 #define REFUSED(field, value)                 \
     do {                                      \
-        hys_adapt_usual(&options);            \
+        hys_adapt_defaults(&options);            \
         options.field = value;                \
         CHECK(start(w) == HYS_ADAPTATION);    \
     } while (0)
@@ -66,7 +58,7 @@ int main(void)
     REFUSED(movement, -1);
     REFUSED(movement, infinity);
     REFUSED(trial, 0);
-    hys_adapt_usual(&options);
+    hys_adapt_defaults(&options);
     memset(bad, 0, sizeof bad);
     bad[1] = -1;
     CHECK(start(bad) == HYS_NEGATIVE_WEIGHTS);

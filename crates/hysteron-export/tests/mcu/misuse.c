@@ -1,16 +1,8 @@
-/* What must be refused, and leave everything as it was. `A` and `B` are names of two models, the second without an inverse. */
-#include <stdio.h>
+/* What must be refused, and leave everything as it was. The second of the models has no inverse. */
 #include <string.h>
 
+#include "check.h"
 #include "models.h"
-
-#define CHECK(what)                                              \
-    do {                                                         \
-        if (!(what)) {                                           \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #what);   \
-            return 1;                                            \
-        }                                                        \
-    } while (0)
 
 int main(void)
 {

@@ -1,0 +1,117 @@
+/* What the parts of the algorithm share; not for applications. */
+#ifndef HYSTERON_MCU_INTERNAL_H
+#define HYSTERON_MCU_INTERNAL_H
+
+#include "hysteron_mcu.h"
+
+/* No product may be fused with a sum. GCC does not know the standard's pragma; it also likes to make calls of loops that
+ * copy, for which a target without a C library has nothing. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("fp-contract=off", "no-tree-loop-distribute-patterns")
+#else
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+/* float also needs sums of float: FLT_EVAL_METHOD 1 would make them double. */
+#ifdef FLT_EVAL_METHOD
+typedef char hys_float_is_float[FLT_EVAL_METHOD == 0 || sizeof(hys_real) == sizeof(double) ? 1 : -1];
+#endif
+
+#define ZERO ((hys_real)0)
+#define ONE ((hys_real)1)
+
+/* Place of the start of every history among the turning points: below the plane, after endless heights. There are enough
+ * of these for a look at two corners back to need no case of its own. A minimum, as all turning points at odd places. */
+#define LOOK 4u
+#define START (LOOK + 1u)
+
+enum { MKP = 0, RELAY = 2 };
+
+static inline int is_finite(hys_real x)
+{
+    return x - x == ZERO;
+}
+
+static inline hys_real larger(hys_real a, hys_real b)
+{
+    return a > b ? a : b;
+}
+
+static inline hys_real smaller(hys_real a, hys_real b)
+{
+    return a < b ? a : b;
+}
+
+static inline hys_real limited(hys_real x, hys_real low, hys_real high)
+{
+    return smaller(larger(x, low), high);
+}
+
+/* K and positions fit int32_t, whose conversions are one instruction on most targets. */
+static inline hys_real number(size_t n)
+{
+    return (hys_real)(int32_t)n;
+}
+
+static inline size_t whole(hys_real x)
+{
+    return (size_t)(int32_t)x;
+}
+
+/* The input at a position. */
+static inline hys_real denormalise(const hys_model *model, hys_real x)
+{
+    return x >= model->top ? model->max : model->min + (x - ONE) * model->step;
+}
+
+static inline hys_real level(const hys_model *model, size_t k)
+{
+    return denormalise(model, number(k));
+}
+
+/* A position as its grid cell and the part of it, 0 <= part <= 1. */
+typedef struct {
+    size_t cell;
+    hys_real part;
+} split;
+
+/* On a grid line it is the even one of the two cells, and the last cell at the end of the plane: the Everett function is
+ * continuous, but its digits are not those of either. */
+static inline split split_of(const hys_model *model, hys_real x)
+{
+    split at;
+    at.cell = whole(x);
+    at.part = x - number(at.cell);
+    if (at.part == ZERO && ((at.cell & 1u) != 0u || at.cell == model->levels)) {
+        at.cell -= 1u;
+        at.part = ONE;
+    }
+    return at;
+}
+
+/* Place of C[p][q]. */
+static inline size_t table_index(size_t p, size_t q)
+{
+    return p * (p + 1u) / 2u + q;
+}
+
+/* The operators' own sum, from that of weights times states in [0, 1]: states of KP and relay run from -1 to 1. */
+static inline hys_real own_sum(const hys_model *model, hys_real sum)
+{
+    return model->kind == MKP ? sum : sum + sum - model->total;
+}
+
+static inline int is_rising(const hys_state *state)
+{
+    return (state->top & 1u) == (START & 1u);
+}
+
+static inline int usable_state(const hys_state *state)
+{
+    if (state == NULL) {
+        return HYS_NULL;
+    }
+    return state->model == NULL || state->turns == NULL ? HYS_STATE_MISMATCH : HYS_OK;
+}
+
+#endif

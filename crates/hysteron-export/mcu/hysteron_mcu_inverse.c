@@ -1,0 +1,288 @@
+/* The inverse step; whoever only runs models forward leaves this file out. */
+#include "hysteron_mcu_internal.h"
+
+#define HALF ((hys_real)0.5)
+
+/* What an output on the way has to do: come to `value`, where the slack makes `limit` enough, or, `beyond`, exceed it. */
+typedef struct {
+    hys_real value, limit;
+    int beyond;
+} goal;
+
+static int met_rising(goal to, hys_real output)
+{
+    return to.beyond ? output > to.limit : output >= to.limit;
+}
+
+static int met_falling(goal to, hys_real output)
+{
+    return to.beyond ? output < to.limit : output <= to.limit;
+}
+
+/* The goal for a way up to `value`, of an output that is measured from where the branch began. */
+static goal upward(hys_real value, int beyond, hys_real slack)
+{
+    goal to;
+    to.value = value;
+    to.limit = beyond ? value : value - slack;
+    to.beyond = beyond;
+    return to;
+}
+
+static int within(hys_real a, hys_real b, hys_real distance)
+{
+    return a - b <= distance && b - a <= distance;
+}
+
+/* How far along a linear piece of length `length` a rise of `rise` is reached. */
+static hys_real along(hys_real rise, hys_real slope, hys_real length)
+{
+    if (rise <= ZERO) {
+        return ZERO;
+    }
+    return slope * length > rise ? rise / slope : length;
+}
+
+/* The part of a branch that a goal is met on, once the turning points before it are passed. */
+typedef struct {
+    hys_turn began;
+    hys_real start, end;
+} branch;
+
+/* Of the nested extremes of one kind (0: maxima, 1: minima), the innermost whose output meets the goal; the end of the
+ * plane counts as met. */
+static branch find(const hys_state *state, size_t kind, goal to)
+{
+    const hys_turn *turns = state->turns + (START - 1u);
+    size_t last = state->top - START + 1u; /* of the turns; after it comes the present position */
+    size_t low = 1u, high = (last - kind) / 2u + 1u;
+    size_t end;
+    branch found;
+    while (low < high) { /* at most log2(2K + 1) + 1 iterations */
+        size_t middle = low + (high - low) / 2u;
+        hys_real output = turns[2u * middle + kind].y;
+        if (kind == 0u ? met_rising(to, output) : met_falling(to, output)) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    end = 2u * (low - 1u) + kind;
+    if (end < last) {
+        found.began = turns[end + 1u];
+    } else {
+        found.began.x = state->x;
+        found.began.y = state->y;
+    }
+    found.start = end + 1u < last ? turns[end + 2u].x : state->x;
+    found.end = turns[end].x;
+    return found;
+}
+
+/* e(p, min) on the grid line p: along column q of the table, v the part of the minimum. */
+static hys_real on_row(const hys_model *model, size_t p, split min)
+{
+    const hys_real *row = model->table + table_index(p, min.cell);
+    return p > min.cell ? row[0] + min.part * (row[1] - row[0]) : ZERO;
+}
+
+/* The first x from `from` up at which e(x, min) meets the goal. */
+static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goal to)
+{
+    split min = split_of(model, min_x);
+    /* Grid lines beyond `from`: first one that meets the goal, the crossing is in the cell before it. */
+    size_t low = split_of(model, from).cell + 1u, high = model->levels + 1u, p;
+    const hys_real *near, *below;
+    hys_real knot = ZERO, slope = ZERO, u;
+    int off_diagonal;
+    while (low < high) { /* at most log2(K) + 1 iterations */
+        size_t middle = low + (high - low) / 2u;
+        if (met_rising(to, on_row(model, middle, min))) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    if (low > model->levels) {
+        return model->top;
+    }
+    p = low - 1u;
+    near = model->table + table_index(p, min.cell);
+    below = near + (p + 1u);
+    off_diagonal = p > min.cell;
+    /* The two pieces, u <= v and u >= v, meet where the diagonal of the cell is crossed. */
+    if (off_diagonal) {
+        knot = near[0] + min.part * (below[1] - near[0]);
+    }
+    if (met_rising(to, knot)) {
+        /* On the diagonal cell this piece is zero and never holds the crossing. */
+        if (off_diagonal) {
+            slope = below[1] - near[1];
+        }
+        u = along(to.value - on_row(model, p, min), slope, min.part);
+    } else {
+        u = min.part + along(to.value - knot, below[0] - near[0], ONE - min.part);
+    }
+    return number(p) + u;
+}
+
+/* e(max, q) on the grid line q: between rows p and p + 1 of the table, u the part of the maximum. */
+static hys_real on_column(const hys_model *model, split max, size_t q)
+{
+    const hys_real *near = model->table + table_index(max.cell, q);
+    return near[0] + max.part * (near[max.cell + 1u] - near[0]);
+}
+
+/* The first x from `from` down at which e(max, x) meets the goal. */
+static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, goal to)
+{
+    split max = split_of(model, max_x);
+    size_t last = split_of(model, from).cell;
+    size_t low = 0u, high = last + 1u, q;
+    const hys_real *near, *below;
+    hys_real knot = ZERO, slope = ZERO, v;
+    int off_diagonal;
+    /* Columns from `last` down to 0: the first whose grid line meets the goal. */
+    while (low < high) { /* at most log2(K) + 1 iterations */
+        size_t middle = low + (high - low) / 2u;
+        if (met_rising(to, on_column(model, max, last - middle))) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    if (low > last) {
+        return ZERO;
+    }
+    q = last - low;
+    near = model->table + table_index(max.cell, q);
+    below = near + (max.cell + 1u);
+    off_diagonal = max.cell > q;
+    if (off_diagonal) {
+        knot = near[0] + max.part * (below[1] - near[0]);
+    }
+    if (met_rising(to, knot)) {
+        /* From v = 1, where the cell is entered, back to the diagonal. */
+        if (off_diagonal) {
+            slope = near[0] - near[1];
+        }
+        v = max.part + along(knot - to.value, slope, ONE - max.part);
+    } else {
+        v = along(on_column(model, max, q) - to.value, below[0] - below[1], max.part);
+    }
+    return number(q) + v;
+}
+
+/* The first input on the way up at which the sum comes to `value` or goes `beyond` it. */
+static hys_real rising_to(const hys_state *state, hys_real value, int beyond)
+{
+    const hys_model *model = state->model;
+    branch on = find(state, 0u, upward(value, beyond, model->slack));
+    hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->slack));
+    x = limited(x, on.start, on.end);
+    if (model->kind == RELAY) {
+        size_t up = whole(x);
+        up += number(up) < x && up < model->levels ? 1u : 0u;
+        return smaller(larger(level(model, up), state->input + model->nudge), model->max);
+    }
+    return denormalise(model, x);
+}
+
+/* The first input on the way down. */
+static hys_real falling_to(const hys_state *state, hys_real value, int beyond)
+{
+    const hys_model *model = state->model;
+    goal to;
+    branch on;
+    hys_real x;
+    to.value = value;
+    to.limit = beyond ? value : value + model->slack;
+    to.beyond = beyond;
+    on = find(state, 1u, to);
+    /* What the output lost since the branch began rises. */
+    x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->slack));
+    x = limited(x, on.end, on.start);
+    if (model->kind == RELAY) {
+        /* Off at the level itself: one above the last level left on. */
+        size_t down = whole(x);
+        down = down < model->levels ? down + 1u : model->levels;
+        return larger(smaller(level(model, down), state->input - model->nudge), model->bottom);
+    }
+    return denormalise(model, x);
+}
+
+/* The sum at which a target that turns to `up` stands still: where the branch of that direction began or, before it has,
+ * the present one. */
+static hys_real rest_of(const hys_state *state, int up)
+{
+    return is_rising(state) == up ? state->began_y : state->y;
+}
+
+/* The input for a target of the operators' own sum; `heading` and `status` are of that, too. */
+static hys_real solve(const hys_state *state, hys_real target, int heading, hys_real tolerance, int *status)
+{
+    const hys_model *model = state->model;
+    hys_real wanted = target, reach, rest;
+    int back;
+    tolerance = larger(tolerance, ZERO); /* NaN too */
+    if (model->kind != MKP) {
+        wanted = HALF * target + HALF * model->total;
+        tolerance = HALF * tolerance;
+    }
+    reach = larger(tolerance, model->slack);
+    if (wanted > model->total + reach) {
+        *status = HYS_HIGH;
+        return model->max;
+    }
+    if (wanted < -reach) {
+        *status = HYS_LOW;
+        return model->bottom;
+    }
+    *status = HYS_REACHED;
+    wanted = limited(wanted, ZERO, model->total);
+    if (heading != HYS_HOLD) {
+        rest = rest_of(state, heading == HYS_RISING);
+        if (within(wanted, rest, reach)) {
+            return heading == HYS_RISING ? rising_to(state, rest + tolerance, 1)
+                                         : falling_to(state, rest - tolerance, 1);
+        }
+    }
+    back = (wanted > state->y) != is_rising(state);
+    if (within(wanted, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
+        /* Beyond the plane only a relay could tell the nearest end from where it stands: on the way back it switches. */
+        return model->kind == RELAY ? state->input : limited(state->input, model->bottom, model->max);
+    }
+    return wanted > state->y ? rising_to(state, wanted, 0) : falling_to(state, wanted, 0);
+}
+
+int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real tolerance, hys_real *input, int *status)
+{
+    int found;
+    hys_real to, output;
+    int code = usable_state(state);
+    if (code != HYS_OK) {
+        return code;
+    }
+    if (input == NULL || status == NULL) {
+        return HYS_NULL;
+    }
+    if (heading != HYS_HOLD && heading != HYS_RISING && heading != HYS_FALLING) {
+        return HYS_VALUE;
+    }
+    if (!state->model->inverse) {
+        return HYS_NEGATIVE_WEIGHTS;
+    }
+    target -= state->model->offset;
+    if (!is_finite(target)) {
+        return HYS_INPUT_NOT_FINITE;
+    }
+    if (state->model->falls) {
+        target = -target;
+        heading = -heading;
+    }
+    to = solve(state, target, heading, tolerance, &found);
+    (void)hys_step(state, to, &output);
+    *input = to;
+    *status = state->model->falls ? -found : found;
+    return HYS_OK;
+}

@@ -1,0 +1,71 @@
+//! Programs that tests start, and what happens where one is missing. The tests of the C interface share this file.
+#![allow(clippy::unwrap_used, dead_code)]
+
+use std::path::Path;
+use std::process::Command;
+
+/// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
+pub fn has(tool: &str) -> bool {
+    starts(tool) || skip(&format!("there is no `{tool}`"))
+}
+
+/// The same for what is welcome and not needed.
+pub fn happens_to_have(what: &str, there: bool) -> bool {
+    if !there {
+        eprintln!("skipped: {what} is not there");
+    }
+    there
+}
+
+pub fn starts(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output();
+    found.is_ok_and(|done| done.status.success())
+}
+
+/// What is missing is skipped, or fails where nothing may be.
+pub fn skip(why: &str) -> bool {
+    assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
+    eprintln!("skipped: {why}");
+    false
+}
+
+pub fn run(command: &mut Command) {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "{command:?}: {}\n{text}",
+        output.status
+    );
+}
+
+/// Whether a program for this machine can be made with these flags.
+pub fn links(cc: &str, flags: &[&str]) -> bool {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("a.c");
+    std::fs::write(
+        &source,
+        "#include <stdio.h>\nint main(void) { return puts(\"\") < 0; }\n",
+    )
+    .unwrap();
+    let done = Command::new(cc)
+        .args(flags)
+        .arg(&source)
+        .arg("-o")
+        .arg(folder.path().join("a"))
+        .output();
+    done.is_ok_and(|done| done.status.success())
+}
+
+/// A section of the README, and the C program in it.
+pub fn readme(title: &str) -> (String, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
+    let readme = std::fs::read_to_string(path).unwrap();
+    let between = |text: &str, start: &str, end: &str| {
+        let after = text.split_once(start).unwrap().1;
+        after.split(end).next().unwrap().to_owned()
+    };
+    let section = between(&readme, &format!("\n## {title}\n"), "\n## ");
+    let program = between(&section, "```c\n", "```");
+    (section, program)
+}
