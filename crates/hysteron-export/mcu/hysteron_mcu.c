@@ -107,9 +107,12 @@ static int merged(hys_state *state)
  * Where the branch ended, the extreme there is wiped out with the opposite one after it. */
 static void leave(hys_state *state, int rising, hys_real x)
 {
+    const hys_turn *turns = state->turns;
     split began;
     if (rising ? x >= state->x : x <= state->x) {
-        state->top -= 2u;
+        do { /* together with those of `travel` at most 2K + 3 iterations */
+            state->top -= 2u;
+        } while (state->top >= START && (rising ? x >= turns[state->top - 1u].x : x <= turns[state->top - 1u].x));
         if (state->top < START) {
             /* Below everything: all operators are off, as at the start, and the next way is up. */
             state->top = START;
@@ -129,7 +132,7 @@ static void leave(hys_state *state, int rising, hys_real x)
     state->end = state->turns[state->top - 1u].x;
 }
 
-/* Moves to a position in [0, K]. At most 2K + 3 iterations: the input turns, at most 2K corners are wiped out,
+/* Moves to a position in [0, K]. At most 2K + 3 iterations, those of `leave` included: the input turns, at most 2K corners are wiped out,
  * and it turns once more at the bottom of the plane. */
 static void travel(hys_state *state, hys_real x)
 {
