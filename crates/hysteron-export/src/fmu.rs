@@ -20,7 +20,7 @@ pub struct FmuOptions {
     pub inverse: bool,
     /// The standard that it follows.
     pub fmi: Fmi,
-    /// The block's name, a C identifier; `sf_MKP` or `sf_Inverse_MKP` without one.
+    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without one.
     pub name: Option<String>,
 }
 
