@@ -20,7 +20,7 @@ pub struct FmuOptions {
     pub inverse: bool,
     /// The standard that it follows.
     pub fmi: Fmi,
-    /// The block's name, a C identifier; `sf_MKP` or `sf_Inverse_MKP` without one.
+    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without one.
     pub name: Option<String>,
 }
 
@@ -145,8 +145,21 @@ fn token(description: &str, model: &str) -> String {
     format!("{{{}}}", parts.join("-"))
 }
 
+/// As many letters as MATLAB takes of a name; file systems take four times that.
+const LONGEST: usize = 63;
+
 /// A name that may stand in C, as the standards ask: files inside the FMU have it.
 fn identifier(name: &str) -> Result<&str> {
+    if name.len() > LONGEST {
+        let text = format!(
+            "--name: {} letters are too many for a block, {LONGEST} will do",
+            name.len()
+        );
+        return Err(Error::Export(text));
+    }
+    if crate::is_device(name) {
+        return Err(Error::Export(format!("--name {name}: {}", crate::DEVICE)));
+    }
     let mut letters = name.chars();
     let first = letters
         .next()

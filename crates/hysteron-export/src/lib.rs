@@ -25,3 +25,15 @@ fn check(model: &Model) -> Result<()> {
     }
     Ok(())
 }
+
+/// Why [`is_device`] refuses.
+const DEVICE: &str = "it is a device of Windows, which has no file of that name";
+
+/// Whether Windows takes a file of that name, whatever its ending, for a device: exported files go there too.
+fn is_device(name: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    let port = |rest: &str| matches!(rest.as_bytes(), [b'1'..=b'9']);
+    ["con", "prn", "aux", "nul"].contains(&lower.as_str())
+        || lower.strip_prefix("com").is_some_and(port)
+        || lower.strip_prefix("lpt").is_some_and(port)
+}

@@ -254,7 +254,8 @@ fn what_is_refused_leaves_nothing() {
     refused(&model(), &plain, "block.zip", "let it end with .fmu");
     refused(&model(), &plain, "block", "let it end with .fmu");
     refused(&model(), &plain, "no/such/block.fmu", "block.fmu");
-    for name in ["", "1st", "a b", "é", "../x", "a.b"] {
+    let long = "a".repeat(64);
+    for name in ["", "1st", "a b", "é", "../x", "a.b", "CON", &long] {
         let options = FmuOptions {
             name: Some(name.into()),
             ..plain.clone()

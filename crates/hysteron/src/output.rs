@@ -25,7 +25,7 @@ pub fn discard_unfinished() {
 
 /// A file that is written beside its place and takes its name when it is whole; dropped before, it leaves nothing.
 ///
-/// A link is followed; what is no regular file, such as a pipe or `/dev/null`, is written to as it is.
+/// A link is followed, and refused where it leads to no file; what is no regular file, such as a pipe or `/dev/null`, is written to as it is.
 pub struct AtomicFile {
     path: PathBuf,
     to: Place,
@@ -58,6 +58,11 @@ impl AtomicFile {
                 return Ok((path.to_owned(), Place::There(file)));
             }
             Ok(_) => path.canonicalize()?,
+            Err(_) if path.is_symlink() => {
+                return Err(std::io::Error::other(
+                    "this is a link that leads to no file",
+                ));
+            }
             Err(_) => path.to_owned(),
         };
         let before = std::fs::metadata(&path).map(|there| there.permissions());
@@ -72,13 +77,18 @@ impl AtomicFile {
         if let Ok(permissions) = before {
             builder.permissions(permissions);
         }
-        let beside = builder
-            .prefix(".hysteron-")
-            .tempfile_in(folder)
-            .map_err(|error| {
-                // Without the name of the file beside, which says nothing to anyone.
-                std::io::Error::from(error.kind())
-            })?;
+        let beside =
+            builder
+                .prefix(".hysteron-")
+                .tempfile_in(folder)
+                .map_err(|error| match error.kind() {
+                    std::io::ErrorKind::NotFound => {
+                        let text = format!("there is no folder {} to write to", folder.display());
+                        std::io::Error::new(error.kind(), text)
+                    }
+                    // Without the name of the file beside, which says nothing to anyone.
+                    kind => kind.into(),
+                })?;
         unfinished().push(beside.path().to_owned());
         Ok((path, Place::Beside(beside)))
     }
@@ -222,5 +232,34 @@ impl TableWriter {
                 Err(error) => Err(written(error.into_error())),
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_folder_that_is_missing_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing");
+        let error = AtomicFile::write_all(&missing.join("a"), b"a").unwrap_err();
+        let expected = format!("there is no folder {}", missing.display());
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_nothing_stays_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, target) = (folder.path().join("link"), folder.path().join("target"));
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        assert!(AtomicFile::write_all(&link, b"a").is_err());
+        assert!(link.is_symlink());
+        std::fs::write(&target, b"b").unwrap();
+        AtomicFile::write_all(&link, b"a").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&target).unwrap(), b"a");
     }
 }

@@ -27,13 +27,22 @@ const HEAD: &str = "hysteron-fmu 1";
 pub(crate) fn read(folder: &Path) -> Result<Block> {
     let path = folder.join(FILE);
     let place = path.display();
-    let bytes = std::fs::read(&path).map_err(|error| Problem(format!("{place}: {error}")))?;
+    let bytes = content(&path).map_err(|error| Problem(format!("{place}: {error}")))?;
     parse(&bytes).map_err(|fault| {
         let Fault { line, problem } = fault;
         Problem(format!(
             "{place}, line {line}: {problem}: export the model again"
         ))
     })
+}
+
+/// Of a file alone: a pipe or a device in its place would be read for ever.
+fn content(path: &Path) -> std::io::Result<Vec<u8>> {
+    let there = std::fs::metadata(path)?;
+    if !there.is_file() {
+        return Err(std::io::Error::other("this is no file"));
+    }
+    std::fs::read(path)
 }
 
 #[derive(Debug)]
@@ -107,6 +116,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     };
     let head = lines.next()?;
     if head != HEAD {
+        let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
     let checksum = check_end(text)?;
@@ -283,6 +293,21 @@ mod tests {
         let mut lines = LINES;
         (lines[4], lines[6]) = ("plane 20.0 80.0 46340", "weights 1073720970");
         assert!(parse(closed(&lines).as_bytes()).unwrap_err().line >= 11);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_in_its_place_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/dev/null", folder.path().join(FILE)).unwrap();
+        let found = read(folder.path());
+        assert!(found.unwrap_err().0.contains("this is no file"));
+    }
+
+    #[test]
+    fn a_message_does_not_repeat_a_file() {
+        let text = "x".repeat(1_000_000);
+        assert!(parse(text.as_bytes()).unwrap_err().problem.len() < 100);
     }
 
     #[test]

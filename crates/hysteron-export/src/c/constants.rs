@@ -67,11 +67,10 @@ impl<T: Number> Constants<T> {
         let weights = weights.collect::<Result<Vec<T>>>()?;
         let offset = convert("an offset", model.offset())?;
         let levels = plane.levels();
-        let plane = Plane::new(min, max, levels)
-            .map_err(|_| unfit("the levels, too close to be told apart or out of range,"))?;
+        let plane = Plane::new(min, max, levels).map_err(|_| unfit("the range of the levels"))?;
         let table = vec![T::ZERO; table_len(levels)];
         let core = hysteron_core::Model::new(plane, model.operator(), &weights, table)
-            .map_err(|_| unfit("the weights, whose sum is too large,"))?;
+            .map_err(|_| unfit("the sum of the weights"))?;
         let slack = core.inverse().ok().map(|inverse| inverse.slack());
         // Outputs of KP and relays reach twice as far, and sums of small weights have small rounding.
         let (off, on) = core.output_range();

@@ -51,8 +51,10 @@ fn fault(name: &str) -> Option<&'static str> {
         Some("it has more than 31 letters")
     } else if lower.starts_with("hys_") || lower.starts_with("hysteron_mcu") {
         Some("hys_ and hysteron_mcu are names of the algorithm")
-    } else if is_taken(name) {
-        Some("it is a word of C or C++ or the name of a library function")
+    } else if is_taken(name) || is_of_headers(name) {
+        Some("it is a word of C or C++ or a name of its library")
+    } else if crate::is_device(name) {
+        Some(crate::DEVICE)
     } else {
         None
     }
@@ -64,6 +66,16 @@ fn is_taken(name: &str) -> bool {
     TAKEN
         .split_whitespace()
         .any(|word| word == name || word == sister)
+}
+
+/// Types and macros of the headers that `hysteron_mcu.h` includes, and what C99 reserves for more of them (7.26.8).
+fn is_of_headers(name: &str) -> bool {
+    let begins = |starts: &[&str]| starts.iter().any(|start| name.starts_with(start));
+    let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));
+    ["NULL", "DECIMAL_DIG"].contains(&name)
+        || ends(&["_t", "_MAX", "_MIN"])
+        || begins(&["FLT_", "DBL_", "LDBL_"])
+        || begins(&["INT", "UINT"]) && ends(&["_C"])
 }
 
 /// A name made of a file's: what is no letter becomes `_`.
@@ -103,6 +115,8 @@ mod tests {
             ("_x.json", "model__x"),
             (".json", "model__json"),
             ("..", "model_"),
+            ("aux.json", "model_aux"),
+            ("NULL.json", "model_NULL"),
         ];
         for (file, name) in cases {
             assert_eq!(choose(None, Path::new(file)).unwrap(), name, "{file}");
@@ -131,6 +145,14 @@ mod tests {
             "a;",
             "../x",
             "hysteron_mcu",
+            "NULL",
+            "int32_t",
+            "INT8_MAX",
+            "UINT64_C",
+            "DBL_EPSILON",
+            "SIZE_MAX",
+            "con",
+            "LPT1",
             &long,
         ];
         for name in bad {
