@@ -658,7 +658,7 @@ int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity,
 
 /**
  * Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
- * "temperature [degC]". As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
+ * `"temperature [degC]"`. As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
  * the whole takes with that zero, and `text` may be null with size 0.
  */
 int32_t hysteron_model_quantity(uint64_t model,

@@ -127,7 +127,7 @@ pub unsafe extern "C" fn hysteron_model_weights(
 }
 
 /// Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
-/// "temperature [degC]". As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
+/// `"temperature [degC]"`. As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
 /// the whole takes with that zero, and `text` may be null with size 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_quantity(
