@@ -2,8 +2,8 @@
 
 use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
 use hysteron::{
-    Advice, Candidates, Columns, FirstOrder, FitOptions, FitSummary, Model, Preparation,
-    RateDependence, Recording, Sign, Solver, Step,
+    Advice, Columns, FirstOrder, FitOptions, FitSummary, Model, Open, Preparation, RateDependence,
+    Recording, Sign, Solver, Step,
 };
 use serde_json::json;
 
@@ -50,16 +50,16 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 }
 
 fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
-    let (levels, fixed_levels) = match args.levels {
-        args::Levels::Auto => (FitOptions::default().levels, None),
-        args::Levels::Fixed(levels) => (levels, Some(levels)),
+    let (levels, open_levels) = match args.levels {
+        args::Levels::Auto => (FitOptions::default().levels, true),
+        args::Levels::Fixed(levels) => (levels, false),
     };
-    let (smooth, fixed_smooth) = match args.smooth {
-        Step::Auto => (0.0, None),
-        Step::Off => (0.0, Some(0.0)),
-        Step::Value(smooth) => (smooth, Some(smooth)),
+    let (smooth, open_smooth) = match args.smooth {
+        Step::Auto => (0.0, true),
+        Step::Off => (0.0, false),
+        Step::Value(smooth) => (smooth, false),
     };
-    let mut options = FitOptions {
+    let options = FitOptions {
         operator: args.operator.into(),
         levels,
         range: args.range,
@@ -76,34 +76,20 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         smooth,
         start: args.start.into(),
         load_degree: args.load_degree,
-        bootstrap: 0,
+        bootstrap: args.bootstrap.unwrap_or_default(),
     };
     let bar = progress::stages();
     let watch = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let mut validation = None;
-    if fixed_levels.is_none() || fixed_smooth.is_none() {
-        if args.thermal.is_some() {
-            return Err(
-                "--thermal does not go with `auto`: choose --levels and --smooth yourself".into(),
-            );
-        }
-        let candidates = Candidates::new(fixed_levels, fixed_smooth);
-        let (chosen, found) = hysteron::cross_validate(recordings, &options, &candidates, &watch)?;
-        options = chosen;
-        validation = Some(found);
-    }
-    let usual = FitOptions::usual_bootstrap(options.levels);
-    options.bootstrap = args.bootstrap.unwrap_or(usual);
-    let mut model = match args.thermal {
-        None => hysteron::fit_experiment(recordings, &options, &watch)?,
-        Some(args::Thermal::FirstOrder) => hysteron::fit_thermal(recordings, &options, &watch)?,
+    let open = Open {
+        levels: open_levels,
+        smooth: open_smooth,
+        bootstrap: args.bootstrap.is_none(),
     };
-    if let Some(fit) = &mut model.fit {
-        fit.validation = validation;
-    }
+    let thermal = args.thermal.is_some();
+    let model = hysteron::identify(recordings, &options, open, thermal, &watch)?;
     bar.finish_and_clear();
     Ok(model)
 }

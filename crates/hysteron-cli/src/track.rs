@@ -29,6 +29,7 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     let bar = progress::stages();
     let comparison = track(&scenario, &|done, all| {
         progress::stage(&bar, "runs", done as f64 / all as f64);
+        Ok(())
     });
     bar.finish_and_clear();
     let comparison = comparison?;

@@ -147,7 +147,8 @@ impl fmt::Display for Error {
                 )
             }
             Error::Adaptation { option } => {
-                write!(f, "the estimator's option `{option}` is out of its range")
+                let range = crate::adapt::range_of(option);
+                write!(f, "the estimator's option `{option}` must be {range}")
             }
             Error::StateMismatch => write!(f, "the state belongs to another model"),
             Error::Operator { i, j } => {

@@ -96,6 +96,11 @@ fn options_out_of_range_are_refused_by_name() {
             "{options:?}"
         );
     }
+    let text = Error::Adaptation { option: "gain" }.to_string();
+    assert_eq!(
+        text,
+        "the estimator's option `gain` must be above 0 and below 2"
+    );
     // Codes are for ever.
     assert_eq!(Error::Adaptation { option: "gain" }.code(), 11);
 }

@@ -20,7 +20,7 @@ fn main() -> hysteron::Result<()> {
     for name in SCENARIOS {
         let scenario = Scenario::load(name)?;
         eprintln!("{name} …");
-        let comparison = track(&scenario, &|_, _| {})?;
+        let comparison = track(&scenario, &|_, _| Ok(()))?;
         println!("\n## `{name}`: {}\n", scenario.title);
         table(&scenario, &comparison);
     }
@@ -29,7 +29,7 @@ fn main() -> hysteron::Result<()> {
         let mut scenario = Scenario::load(name)?;
         scenario.shared.tuning = Tuning::Step;
         eprintln!("{name}, tuned by a step test …");
-        let comparison = track(&scenario, &|_, _| {})?;
+        let comparison = track(&scenario, &|_, _| Ok(()))?;
         println!("\n### `{name}`, PID tuned by a step test\n");
         table(&scenario, &comparison);
     }

@@ -98,6 +98,18 @@ impl Adaptive {
         })
     }
 
+    /// [`Adaptive::step`] through samples, as many as the shorter series has.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for the first number that is not finite; nothing is changed then.
+    pub fn run(&mut self, input: &[f64], measured: &[f64]) -> Result<Vec<Learning<f64>>> {
+        let pairs = || input.iter().zip(measured);
+        if let Some(index) = pairs().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
+            return Err(hysteron_core::Error::InputNotFinite { index }.into());
+        }
+        pairs().map(|(x, y)| self.step(*x, *y)).collect()
+    }
+
     /// Moves to `input` and tells the output expected there, without learning.
     ///
     /// # Errors

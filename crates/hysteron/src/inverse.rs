@@ -103,6 +103,40 @@ impl Inverse<'_> {
         self.through(state, targets, how.policies(targets))
     }
 
+    /// As [`Inverse::series`], told at each target where it goes next; it rests where that is `None` or `headings` is shorter.
+    /// Reversals of the target up to `band` are not followed.
+    ///
+    /// # Errors
+    /// As [`Inverse::series`].
+    ///
+    /// ```
+    /// use hysteron::{Invert, Model, Operator, Plane, Sign, headings};
+    /// let plane = Plane::new(20.0, 80.0, 3)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+    /// let (inverse, wanted) = (model.inverse()?, [0.0, 5.0, 5.0, 3.0]);
+    /// let told = inverse.headed(&mut model.start(), &wanted, &headings(&wanted, 0.0), 0.0)?;
+    /// let found = inverse.series(&mut model.start(), &wanted, Invert::Anticipate { band: 0.0, rows: 4 })?;
+    /// assert_eq!(told, found);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    pub fn headed(
+        &self,
+        state: &mut State,
+        targets: &[f64],
+        headings: &[Option<Direction>],
+        band: f64,
+    ) -> Result<Vec<Solution<f64>>> {
+        let told = headings.iter().copied().chain(std::iter::repeat(None));
+        let policies = told.map(|heading| match heading {
+            Some(heading) => Policy::Anticipate {
+                heading,
+                tolerance: band,
+            },
+            None => Policy::Hold { tolerance: band },
+        });
+        self.through(state, targets, policies)
+    }
+
     /// As [`Inverse::series`], with a policy for each target.
     ///
     /// # Errors

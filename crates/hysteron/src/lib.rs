@@ -29,6 +29,7 @@ mod model_file;
 mod monotone;
 mod output;
 pub mod plant;
+mod predict;
 mod prepare;
 mod recording;
 pub mod rig;
@@ -53,8 +54,9 @@ pub use hysteron_core::{
     Output, Policy, Region, Solution, Status, operator_index,
 };
 pub use identify::{
-    Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Score, Solver,
-    Start, Validation, Watch, cross_validate, excitation, fit, fit_experiment, left_out, plane_of,
+    Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Open, Score,
+    Solver, Start, Validation, Watch, cross_validate, excitation, fit, fit_experiment, identify,
+    left_out, plane_of,
 };
 pub use inspect::{
     ColumnSummary, ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series,
@@ -66,6 +68,7 @@ pub use metrics::Errors;
 pub use model::{Model, Sign, State};
 pub use monotone::{AGAINST_INPUT, way_against_input};
 pub use output::{AtomicFile, TableWriter, discard_unfinished};
+pub use predict::Surroundings;
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
     Spikes, Step, noise, prepare, rate_dependence,
@@ -74,7 +77,7 @@ pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
 pub use thermal::{FirstOrder, ThermalState, fit_thermal};
-pub use turning::{Headings, NOISE, Turning, headings};
+pub use turning::{Headings, NOISE, Turning, branches, headings, remembered};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;

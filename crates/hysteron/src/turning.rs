@@ -73,6 +73,57 @@ impl Turning {
     }
 }
 
+/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `band`; the
+/// turning point belongs to the branch before it.
+///
+/// ```
+/// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
+/// ```
+#[must_use]
+pub fn branches(series: &[f64], band: f64) -> Vec<usize> {
+    let mut turning = Turning::new(band);
+    let turns = series.iter().filter_map(|&x| turning.push(x));
+    // The start counts as a turn, and ends no branch.
+    let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
+    let mut ended = turns.into_iter().peekable();
+    let mut branch = 0;
+    let of_sample = |n: usize| {
+        let here = branch;
+        if ended.next_if(|turn| *turn == n).is_some() {
+            branch += 1;
+        }
+        here
+    };
+    (0..series.len()).map(of_sample).collect()
+}
+
+/// The samples of a series that a hysteresis operator still remembers at its end, ascending: from its largest or its smallest, whichever comes
+/// first, the extremes that none after them reach, and the last sample. These alone leave every operator where the whole series leaves
+/// it, from all off or all on (return-point memory: Mayergoyz 2003, section 1.2).
+///
+/// ```
+/// assert_eq!(hysteron::remembered(&[0.0, 5.0, 2.0, 4.0, 1.0, 3.0, 2.5]), [0, 1, 4, 5, 6]);
+/// ```
+#[must_use]
+pub fn remembered(series: &[f64]) -> Vec<usize> {
+    let extreme = |from: usize, high: bool| {
+        let rest = series.iter().enumerate().skip(from);
+        let better = |a: f64, b: f64| if high { a >= b } else { a <= b };
+        rest.fold(None, |best: Option<(usize, f64)>, (n, &x)| match best {
+            Some((_, b)) if !better(x, b) => best,
+            _ => Some((n, x)),
+        })
+        .map(|(n, _)| n)
+    };
+    let mut high = extreme(0, true) < extreme(0, false);
+    let mut found: Vec<usize> = Vec::new();
+    while let Some(n) = extreme(found.last().map_or(0, |last| last + 1), high) {
+        found.push(n);
+        high = !high;
+    }
+    found
+}
+
 /// For each sample of a series, the direction that the series takes next: up to an extreme and at it,
 /// that of the branch before it, and beyond it that of the branch after it.
 ///
@@ -189,6 +240,32 @@ mod tests {
         for (value, expected) in values.iter().zip(expected) {
             assert!((value - expected).abs() <= 0.1, "{values:?}");
         }
+    }
+
+    #[test]
+    fn what_is_remembered_leaves_every_operator_where_it_was() -> crate::Result<()> {
+        let plane = crate::Plane::new(1.0, 9.0, 9)?;
+        let (operator, sign) = (crate::Operator::Mkp, crate::Sign::Positive);
+        let model = crate::Model::new(operator, plane, vec![1.0; 45], 0.0, sign)?;
+        let mut n = 1_u64;
+        for length in 1..200 {
+            let mut series = Vec::new();
+            for _ in 0..length {
+                n = n.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                series.push((n >> 40) as f64 * 11.0 / f64::from(1 << 24));
+            }
+            let kept: Vec<f64> = remembered(&series).iter().map(|n| series[*n]).collect();
+            for start in [model.start(), model.saturated()] {
+                let (mut whole, mut short) = (start.clone(), start);
+                model.run(&mut whole, &series, &mut vec![0.0; length])?;
+                model.run(&mut short, &kept, &mut vec![0.0; kept.len()])?;
+                for (i, j) in (1..=9).flat_map(|j| (1..=j).map(move |i| (i, j))) {
+                    assert_eq!(whole.gamma(i, j)?, short.gamma(i, j)?, "{series:?}");
+                }
+            }
+        }
+        assert!(remembered(&[]).is_empty());
+        Ok(())
     }
 
     #[test]

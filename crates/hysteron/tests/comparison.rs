@@ -15,7 +15,7 @@ fn compare(base: &str, reference: &str, disturbance: &str) {
     let kinds = r#"controllers = ["pid", "inverse-pid", "adaptive-pid"]"#;
     let found = track(
         &scenario(&[base, kinds, reference, disturbance]),
-        &|_, _| (),
+        &|_, _| Ok(()),
     )
     .unwrap();
     let last = found.windows.len() - 1;
@@ -50,7 +50,7 @@ ramp_s = 60
 rest_s = 60
 "#;
     let kinds = r#"controllers = ["inverse-pid", "inverse-pid-anticipate"]"#;
-    let found = track(&scenario(&[SPRING, kinds, rests]), &|_, _| ()).unwrap();
+    let found = track(&scenario(&[SPRING, kinds, rests]), &|_, _| Ok(())).unwrap();
     for (w, window) in found.windows.iter().enumerate() {
         let [hold, anticipate] = [0, 1].map(|k| found.scores[k][0][w]);
         println!(

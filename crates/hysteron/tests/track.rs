@@ -187,7 +187,7 @@ fn a_refusal_names_the_field() {
 fn a_scenario_put_together_by_hand_is_checked_too() {
     let mut one = scenario(&[SPRING, SPRING_SINE]);
     one.seeds = 0;
-    let refused = track(&one, &|_, _| ());
+    let refused = track(&one, &|_, _| Ok(()));
     assert!(matches!(refused, Err(Error::Scenario { .. })));
 }
 
@@ -261,7 +261,7 @@ fn both_rules_give_gains_on_both_plants() {
                 "relay" => hysteron::track::Tuning::Relay,
                 _ => hysteron::track::Tuning::Step,
             };
-            let found = track(&one, &|_, _| ()).unwrap();
+            let found = track(&one, &|_, _| Ok(())).unwrap();
             let gains = found.gains.unwrap();
             println!("{rule}: {gains:?}, inside {:?}", found.inner_gains);
             for gains in [Some(gains), found.inner_gains].into_iter().flatten() {
@@ -292,7 +292,7 @@ fn a_plant_that_does_not_answer_is_refused() {
             let shared =
                 format!("loop = {{ filter_s = 0.1, tolerance = 0.1, tuning = \"{rule}\" }}");
             let more = format!("{plant}\n{shared}\ncontrollers = [\"pid\"]");
-            let refused = track(&scenario(&[base, &more, sine]), &|_, _| ()).unwrap_err();
+            let refused = track(&scenario(&[base, &more, sine]), &|_, _| Ok(())).unwrap_err();
             assert!(matches!(refused, Error::Scenario { .. }), "{refused}");
             assert!(
                 refused.to_string().contains("no PID can be tuned"),
@@ -306,7 +306,7 @@ fn a_plant_that_does_not_answer_is_refused() {
 fn the_same_seeds_give_the_same_scores() {
     let more = "duration_s = 20\nseeds = 2\ncontrollers = [\"pid\", \"adaptive-pid\"]";
     let one = scenario(&[RELAYS, more, RELAYS_SINE]);
-    let scores = || format!("{:?}", track(&one, &|_, _| ()).unwrap().scores);
+    let scores = || format!("{:?}", track(&one, &|_, _| Ok(())).unwrap().scores);
     let found = scores();
     assert_eq!(found, scores());
     assert!(!found.is_empty());
@@ -317,7 +317,7 @@ fn twice_the_samples_track_alike() {
     let rmse = |interval: &str| {
         let more =
             format!("duration_s = 1000\nseeds = 2\ncontrollers = [\"inverse-pid\"]\n{interval}");
-        let found = track(&scenario(&[SPRING, &more, SPRING_SINE]), &|_, _| ()).unwrap();
+        let found = track(&scenario(&[SPRING, &more, SPRING_SINE]), &|_, _| Ok(())).unwrap();
         found.medians()[1].score.rmse
     };
     let (coarse, fine) = (rmse("interval_s = 0.2"), rmse("interval_s = 0.1"));

@@ -38,6 +38,29 @@ pub enum Outcome {
     RolledBack,
 }
 
+impl Outcome {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Learned,
+        Self::Waiting,
+        Self::AtRest,
+        Self::Frozen,
+        Self::RolledBack,
+    ];
+
+    /// Its name in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Learned => "learned",
+            Self::Waiting => "waiting",
+            Self::AtRest => "at-rest",
+            Self::Frozen => "frozen",
+            Self::RolledBack => "rolled-back",
+        }
+    }
+}
+
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     pub(super) fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
     where

@@ -20,4 +20,5 @@ mod vector;
 pub use estimator::Estimator;
 pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_parts};
+pub(crate) use options::range_of;
 pub use options::{Adaptation, Method};

@@ -148,3 +148,19 @@ impl<T: Real> Adaptation<T> {
         error - error.limited(-self.dead_zone, self.dead_zone)
     }
 }
+
+/// The range of an option, in words.
+pub(crate) fn range_of(option: &str) -> &'static str {
+    match option {
+        "gain" => "above 0 and below 2",
+        "span" => "from 1/8 to 8",
+        "forgetting" => "above 0 and up to 1",
+        "noise" | "spread" => "above 0, and its square a number too",
+        "correlation" => "a finite number from 0 on, and 0 where shares are adapted",
+        "leakage" => "from 0 to 1",
+        "trial" => "1 or more",
+        "method" => "gradient or least squares where shares are adapted",
+        "shares" => "finite numbers from 0 on, at least one",
+        _ => "a finite number from 0 on",
+    }
+}

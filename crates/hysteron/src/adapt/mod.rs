@@ -7,8 +7,7 @@ pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
 use crate::{
-    Adaptation, Adaptive, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result,
-    Start,
+    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -96,19 +95,9 @@ impl Adapted {
         recording.write_csv_with(path, &added, |n| {
             let predicted = self.output_model[n];
             let error = recording.output[n] - predicted;
-            let outcome = word(self.outcomes[n]).to_owned();
+            let outcome = self.outcomes[n].name().to_owned();
             [predicted.to_string(), error.to_string(), outcome]
         })
-    }
-}
-
-fn word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Learned => "learned",
-        Outcome::Waiting => "waiting",
-        Outcome::AtRest => "at-rest",
-        Outcome::Frozen => "frozen",
-        Outcome::RolledBack => "rolled-back",
     }
 }
 
@@ -134,10 +123,7 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
     recording.check()?;
     refuse_unusable(model)?;
     let adaptation = options.adaptation(model, recording)?;
-    let mut adaptive = match options.learner {
-        Learner::Drift => DriftParts::of(model, options.load)?.adaptive(adaptation)?,
-        _ => Adaptive::new(model, adaptation)?,
-    };
+    let mut adaptive = options.estimator(model, adaptation)?;
     let offline = adaptive.offline().clone();
     let (from_on, fixed) = fixed(&offline, recording, options.start)?;
     if from_on {

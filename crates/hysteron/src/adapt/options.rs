@@ -1,7 +1,8 @@
 //! How a model is adapted to a recording, and what follows from both where nothing is said.
 
+use super::DriftParts;
 use crate::recording::range;
-use crate::{Adaptation, Error, Method, Model, Recording, Result, Start, noise};
+use crate::{Adaptation, Adaptive, Error, Method, Model, Recording, Result, Start, noise};
 use serde::Serialize;
 
 /// Gain of the gradient methods.
@@ -95,11 +96,53 @@ impl AdaptOptions {
     /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of range is refused
     /// when an estimator is made.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
-        self.refuse_unused(model)?;
-        let rough = noise(&recording.output);
-        let (off, on) = model.output_range();
         let (low, high) = range(&recording.output);
-        let span = (on - off).abs().max(high - low);
+        self.resolved(model, noise(&recording.output), high - low)
+    }
+
+    /// The estimator's options for `model` before anything was measured: `Y` is the model's range, and the output is taken to
+    /// have no noise.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::adaptation`].
+    pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
+        self.resolved(model, 0.0, 0.0)
+    }
+
+    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown start is off.
+    ///
+    /// ```
+    /// use hysteron::{AdaptOptions, Model, Operator, Plane, Sign};
+    /// let plane = Plane::new(20.0, 80.0, 5)?;
+    /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 15], 0.0, Sign::Positive)?;
+    /// let mut adaptive = AdaptOptions::default().adaptive(&model)?;
+    /// let learning = adaptive.step(80.0, 16.0)?;
+    /// assert_eq!(learning.error, 1.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_parts`].
+    pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
+        let mut adaptive = self.estimator(model, self.before(model)?)?;
+        if self.start == Start::On {
+            adaptive.saturate()?;
+        }
+        Ok(adaptive)
+    }
+
+    /// An estimator of weights or shares, as the learner asks for.
+    pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
+        match self.learner {
+            Learner::Drift => DriftParts::of(model, self.load)?.adaptive(adaptation),
+            _ => Adaptive::new(model, adaptation),
+        }
+    }
+
+    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Adaptation<f64>> {
+        self.refuse_unused(model)?;
+        let (off, on) = model.output_range();
+        let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
         let shares = usize::from(self.learner == Learner::Drift);
         // An error of zero would be certainty.

@@ -51,6 +51,7 @@ mod pid;
 mod run;
 mod scheme;
 mod trace;
+mod tuning;
 mod watch;
 
 pub use compensator::Compensator;
@@ -60,3 +61,5 @@ pub use pid::{Gains, Pid};
 pub use run::{Course, run};
 pub use scheme::{InnerLoop, Rest, Scheme};
 pub use trace::{LoopStatus, Snapshot, Trace};
+pub use tuning::RelayTest;
+pub(crate) use tuning::steady;

@@ -42,15 +42,7 @@ pub fn run(
         plant.advance(controller.interval_s());
 
         let time = n as f64 * controller.interval_s();
-        trace.time.push(time);
-        trace.reference.push(output);
-        trace.output.push(truth.output);
-        trace.measured.push(reading.output);
-        trace.input.push(truth.input.unwrap_or(action.command));
-        trace.command.push(action.command);
-        trace.drive.push(action.drive);
-        trace.prediction.push(action.prediction);
-        trace.status.push(action.status);
+        trace.push(time, output, (reading, truth), &action);
         let adapting = controller.compensator().and_then(|c| c.adapting());
         if let (Some(adaptive), true) = (adapting, n % every == 0 || n + 1 == count) {
             trace.snapshots.push(Snapshot {

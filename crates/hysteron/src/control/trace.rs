@@ -1,5 +1,7 @@
 //! What a run of a control loop leaves behind.
 
+use super::{Action, Reading};
+
 /// What the loop had to say of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopStatus {
@@ -47,4 +49,25 @@ pub struct Trace {
     pub status: Vec<LoopStatus>,
     /// The weights over time, of a controller that adapts.
     pub snapshots: Vec<Snapshot>,
+}
+
+impl Trace {
+    /// Adds a sample: what was wanted, what was read and, of a simulated plant, what was true, and what the controller did.
+    pub fn push(
+        &mut self,
+        time: f64,
+        reference: f64,
+        (reading, truth): (Reading, Reading),
+        action: &Action,
+    ) {
+        self.time.push(time);
+        self.reference.push(reference);
+        self.output.push(truth.output);
+        self.measured.push(reading.output);
+        self.input.push(truth.input.unwrap_or(action.command));
+        self.command.push(action.command);
+        self.drive.push(action.drive);
+        self.prediction.push(action.prediction);
+        self.status.push(action.status);
+    }
 }

@@ -5,8 +5,8 @@ use super::FitOptions;
 use super::regressor::MOST_RECORDINGS;
 use crate::load::bernstein;
 use crate::recording::range;
-use crate::turning::NOISE;
-use crate::{Error, Plane, Recording, Result, Turning};
+use crate::turning::{NOISE, branches};
+use crate::{Error, Plane, Recording, Result};
 use std::ops::Range;
 
 pub(super) struct Experiment {
@@ -92,26 +92,13 @@ impl Experiment {
         Ok(experiment)
     }
 
-    /// A branch ends where the input turns by more than noise. The turning point belongs to the branch before it.
+    /// A branch ends where the input turns by more than noise.
     fn find_branches(&mut self) {
         let (low, high) = range(&self.input);
-        let mut branch = 0;
         for range in &self.recordings {
-            let mut turning = Turning::new(NOISE * (high - low));
-            let turns = self.input[range.clone()].iter();
-            let turns: Vec<usize> = turns
-                .filter_map(|&x| turning.push(x))
-                .map(|(n, _)| n)
-                .filter(|n| *n > 0)
-                .collect();
-            let mut next = turns.into_iter().peekable();
-            for n in 0..range.len() {
-                self.branch.push(branch);
-                if next.next_if(|turn| *turn == n).is_some() {
-                    branch += 1;
-                }
-            }
-            branch += 1;
+            let before = self.branches();
+            let own = branches(&self.input[range.clone()], NOISE * (high - low));
+            self.branch.extend(own.iter().map(|branch| before + branch));
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod bootstrap;
 mod cholesky;
+mod chosen;
 mod confidence;
 mod excitation;
 mod experiment;
@@ -19,6 +20,7 @@ mod solve;
 mod sparse;
 mod validate;
 
+pub use chosen::{Open, identify};
 pub use confidence::{Confidence, INTERVAL};
 pub(crate) use excitation::Unresolved;
 pub use excitation::{Excitation, excitation};

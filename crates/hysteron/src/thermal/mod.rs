@@ -147,7 +147,7 @@ impl Model {
 
 pub(crate) fn needs_time() -> Error {
     Error::Thermal(
-        "the model has a thermal body, whose temperature depends on time: name the column of time, as --time of the command does".into(),
+        "the model has a thermal body, whose temperature depends on time: that is needed too (--time)".into(),
     )
 }
 

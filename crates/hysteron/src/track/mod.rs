@@ -16,7 +16,7 @@ mod tune;
 
 pub use kind::Kind;
 pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuning};
-pub use plant::{Event, PlantOptions};
+pub use plant::{Event, PlantOptions, course};
 pub use reference::Reference;
 pub use scenario::Scenario;
 pub use score::{ReversalLag, Score, Window, reversal_lags};
@@ -48,7 +48,10 @@ pub struct Comparison {
     pub inner_gains: Option<Gains>,
 }
 
-/// Runs every controller of the scenario with every seed. `done` is told of each finished run: how many of how many.
+/// Told of each finished run, how many of how many; an error it returns ends the work.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> Result<()> + Sync);
+
+/// Runs every controller of the scenario with every seed. `done` is told of each finished run, and once before the first.
 ///
 /// # Errors
 /// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
@@ -75,38 +78,24 @@ pub struct Comparison {
 /// period_s = 2
 /// "#;
 /// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
-/// let comparison = track(&scenario, &|done, all| eprintln!("{done} of {all}"))?;
+/// let comparison = track(&scenario, &|done, all| { eprintln!("{done} of {all}"); Ok(()) })?;
 /// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
 /// assert!(inverse_pid < pid);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
-pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Comparison> {
-    scenario.check()?;
-    let mut scheme = base(scenario)?;
-    if scenario.plant.heats() {
-        scheme.inner = Some(tune::inner(scenario, &scheme)?);
-    }
-    let gains = match scenario.controllers.iter().any(|kind| kind.has_pid()) {
-        true => Some(tune::outer(scenario, &scheme)?),
-        false => None,
-    };
+pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
+    let total = scenario.controllers.len() * scenario.seeds as usize;
+    done(0, total)?;
+    let (scheme, gains) = tune(scenario)?;
     let reference = scenario.references();
     let headings = headings(&reference, scenario.shared.tolerance);
-    let events: Vec<_> = scenario
-        .disturbance
-        .iter()
-        .flat_map(|event| {
-            let at = (event.at_s / scenario.interval_s).ceil() as usize;
-            event.disturbances().into_iter().map(move |what| (at, what))
-        })
-        .collect();
+    let events = plant::course(&scenario.disturbance, scenario.interval_s);
     let course = Course {
         reference: &reference,
         headings: &headings,
         events: &events,
     };
     let windows = score::windows(scenario);
-    let total = scenario.controllers.len() * scenario.seeds as usize;
     let finished = std::sync::atomic::AtomicUsize::new(0);
     type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
     let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
@@ -121,7 +110,7 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
                 let score = |window| Score::of(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
                 let count = finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                done(count + 1, total);
+                done(count + 1, total)?;
                 Ok(((seed == 1).then_some(trace), scores))
             });
             let runs = runs.collect::<Result<Vec<_>>>()?;
@@ -144,6 +133,23 @@ pub fn track(scenario: &Scenario, done: &(dyn Fn(usize, usize) + Sync)) -> Resul
         gains,
         inner_gains: scheme.inner.map(|inner| inner.gains),
     })
+}
+
+/// What all controllers of a scenario share, and the gains of their PID, where one of them has any.
+///
+/// # Errors
+/// As [`track`].
+pub fn tune(scenario: &Scenario) -> Result<(Scheme, Option<Gains>)> {
+    scenario.check()?;
+    let mut scheme = base(scenario)?;
+    if scenario.plant.heats() {
+        scheme.inner = Some(tune::inner(scenario, &scheme)?);
+    }
+    let gains = match scenario.controllers.iter().any(|kind| kind.has_pid()) {
+        true => Some(tune::outer(scenario, &scheme)?),
+        false => None,
+    };
+    Ok((scheme, gains))
 }
 
 /// What all controllers of a scenario share, without gains.

@@ -35,6 +35,18 @@ pub struct Event {
     pub lost: Option<bool>,
 }
 
+/// What happens before which sample, in order, as [`Course`](crate::control::Course) has it.
+#[must_use]
+pub fn course(events: &[Event], interval_s: f64) -> Vec<(usize, Disturbance)> {
+    let of = |event: &Event| {
+        let at = (event.at_s / interval_s).ceil() as usize;
+        event.disturbances().into_iter().map(move |what| (at, what))
+    };
+    let mut events: Vec<_> = events.iter().flat_map(of).collect();
+    events.sort_by_key(|(at, _)| *at);
+    events
+}
+
 impl PlantOptions {
     /// The plant with the noise of `seed`.
     ///
@@ -103,7 +115,8 @@ impl PlantOptions {
 
 impl Event {
     /// What happens, in the plant's words.
-    pub(super) fn disturbances(&self) -> Vec<Disturbance> {
+    #[must_use]
+    pub fn disturbances(&self) -> Vec<Disturbance> {
         let numbers = [
             self.load_n.map(Disturbance::Load),
             self.room_degc.map(Disturbance::Room),

@@ -92,7 +92,7 @@ pub struct Known {
 impl Known {
     fn of(parts: &[&str]) -> Self {
         let scenario = scenario(&[parts, &["controllers = [\"pid\"]"]].concat());
-        let found = track(&scenario, &|_, _| ()).unwrap();
+        let found = track(&scenario, &|_, _| Ok(())).unwrap();
         Self {
             model: found.model,
             gains: found.gains.unwrap(),

@@ -1,12 +1,12 @@
 //! Step tests, and SIMC (Skogestad 2003).
 //!
 //! For the loop around the temperature the drive steps to its limit, and the temperature is taken as a delayed integrator, of slope
-//! and delay. For the feedback of the output the command steps by a little on the rising branch at the middle of the reference, and the
-//! output is taken as a first-order lag with a delay, from the times at which it has gone 28.3 % and 63.2 % of its way.
+//! and delay. For the feedback of the output the command steps by a little on the rising branch at the middle of the reference
+//! ([`Gains::from_step`]).
 
 use super::{TESTS, middle, no_answer};
 use crate::Result;
-use crate::control::{Controller, Gains, InnerLoop, Scheme};
+use crate::control::{Controller, Gains, InnerLoop, Scheme, steady};
 use crate::track::Scenario;
 
 /// Samples of a test before and after the step.
@@ -15,8 +15,6 @@ const SAMPLES: usize = 200;
 const LEVEL: usize = 50;
 /// Size of the outer step in levels of the plane.
 const LEVELS: f64 = 2.0;
-/// What tells an answer of the output from its noise, in standard deviations of the mean test.
-const ANSWER: f64 = 3.0;
 /// Samples within which the output has to come to the middle of the reference.
 const PATIENCE: usize = 100_000;
 
@@ -72,33 +70,8 @@ pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
     })?;
     let output: Vec<f64> = mean.iter().map(|(_, output)| *output).collect();
     let begin = LEVEL + SAMPLES;
-    let (before, noise) = steady(&output[begin - LEVEL..begin]);
-    let (after, _) = steady(&output[output.len() - LEVEL..]);
-    if (after - before).abs() < ANSWER * noise {
-        return Err(no_answer("output", SAMPLES, scenario));
-    }
-    let gain = (after - before) / step;
-    let reached = |share: f64| {
-        let there = |y: &f64| (y - before) / (after - before) >= share;
-        let first = output[begin..].iter().position(there)?.max(1);
-        let (y, z) = (output[begin + first - 1], output[begin + first]);
-        let part = (before + share * (after - before) - y) / (z - y);
-        Some((first as f64 - 1.0 + part.clamp(0.0, 1.0)) * scenario.interval_s)
-    };
-    let (Some(early), Some(late)) = (reached(0.283), reached(0.632)) else {
-        return Err(no_answer("output", SAMPLES, scenario));
-    };
-    let lag = 1.5 * (late - early);
-    let delay = (late - lag).max(0.5 * scenario.interval_s);
-    if !(gain.is_finite() && gain != 0.0 && lag > 0.0) {
-        return Err(no_answer("output", SAMPLES, scenario));
-    }
-    // SIMC with τ_c = θ.
-    Ok(Gains {
-        gain: lag / (gain * 2.0 * delay),
-        integral_s: lag.min(8.0 * delay),
-        derivative_s: 0.0,
-    })
+    Gains::from_step(&output, begin, step, scenario.interval_s)
+        .ok_or_else(|| no_answer("output", SAMPLES, scenario))
 }
 
 /// Mean of filtered input and output over the tests, from where `next` says that the test begins. `next(command, n, output)` gives
@@ -142,12 +115,4 @@ fn average(
     }
     let each = 1.0 / TESTS as f64;
     Ok(sums.iter().map(|(x, y)| (x * each, y * each)).collect())
-}
-
-/// Mean and standard deviation of a stretch.
-fn steady(samples: &[f64]) -> (f64, f64) {
-    let count = samples.len() as f64;
-    let mean = samples.iter().sum::<f64>() / count;
-    let square = samples.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
-    (mean, (square / count).sqrt())
 }

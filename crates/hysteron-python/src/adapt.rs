@@ -1,0 +1,120 @@
+//! `adapt`.
+
+use crate::adaptive::{adapt_options, outcomes};
+use crate::error::Raise;
+use crate::model::Model;
+use crate::recording::recording_of;
+use crate::said::told;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// What came of an adaptation to a recording.
+#[pyclass(frozen, get_all, module = "hysteron")]
+pub(crate) struct Adapted {
+    /// The model with the last weights; `model.fit` tells of them over the whole recording.
+    model: Model,
+    /// Arrays of shape (n,): 'input', 'output', 'output_model' (predicted before the sample was learned from), 'error'
+    /// (measured less predicted) and 'outcome' (as in `Learning`).
+    table: Py<PyDict>,
+    /// Errors of the model that learned ('adapting', before it learned from the samples compared) beside those of the
+    /// model left as it was ('fixed'): 'whole', 'thirds' (a list), 'again' (the last weights over the whole recording);
+    /// 'counts' of the outcomes; 'drift' of weights and offset, before and after.
+    comparison: Py<PyAny>,
+}
+
+#[pymethods]
+impl Adapted {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let whole = self.comparison.bind(py).get_item("whole")?;
+        let rmse = |of| whole.get_item(of)?.get_item("rmse")?.extract::<f64>();
+        Ok(format!(
+            "<Adapted: RMSE {:.4} adapting, {:.4} fixed>",
+            rmse("adapting")?,
+            rmse("fixed")?
+        ))
+    }
+}
+
+/// Let a model learn from a recording: each sample is predicted, then learned from.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// recording : Recording or array_like, shape (n,)
+///     In the model's units; of arrays, the input.
+/// output : array_like, shape (n,), optional
+///     Where `recording` is the input.
+/// time : array_like, shape (n,), optional
+///     Seconds. Only looked at for whether it goes back.
+/// method : {'drift', 'least-squares', 'gradient', 'increments'}
+///     What follows the error, and how; see `Adaptive`. 'drift' errs least on measured recordings.
+/// start : {'off', 'on', 'unknown'}
+///     Where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less.
+/// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, load : optional
+///     As for `Adaptive`; what is left out follows from model and recording. The noise is that of the output,
+///     and at least 2 % of its range for weights, 5 % for shares; the dead zone is twice the output's noise.
+///
+/// Returns
+/// -------
+/// Adapted
+///     With 'model', 'table' and 'comparison'.
+///
+/// Raises
+/// ------
+/// RecordingError
+///     For lengths that differ, samples that are not finite and time that goes back.
+/// FitError, CoreError
+///     As for `Adaptive`.
+///
+/// Examples
+/// --------
+/// >>> model = hysteron.Model(np.full(15, 1.0), (20, 80))
+/// >>> temperature = 50 - 40 * np.cos(0.05 * np.arange(1000))
+/// >>> measured = hysteron.Model(np.full(15, 1.5), (20, 80)).simulate(temperature)
+/// >>> adapted = hysteron.adapt(model, temperature, measured)
+/// >>> last = adapted.comparison['thirds'][-1]
+/// >>> last['adapting']['rmse'] < 0.05 * last['fixed']['rmse']
+/// True
+#[pyfunction]
+#[pyo3(
+    signature = (model, recording, output=None, *, time=None, method="drift", start="off", **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None)"
+)]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn adapt<'py>(
+    py: Python<'py>,
+    model: &Model,
+    recording: &Bound<'py, PyAny>,
+    output: Option<&Bound<'py, PyAny>>,
+    time: Option<&Bound<'py, PyAny>>,
+    method: &str,
+    start: &str,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Adapted> {
+    let options = adapt_options(method, start, options)?;
+    let recording = recording_of(recording, output, time, None)?.inner;
+    let model = &model.inner;
+    let adapted = py
+        .detach(|| hysteron::adapt(model, &recording, &options))
+        .raise()?;
+    let errors = recording.output.iter().zip(&adapted.output_model);
+    let errors = PyArray1::from_iter(py, errors.map(|(measured, model)| measured - model));
+    let table = PyDict::new(py);
+    table.set_item("input", PyArray1::from_vec(py, recording.input.clone()))?;
+    table.set_item("output", PyArray1::from_vec(py, recording.output.clone()))?;
+    table.set_item("error", errors)?;
+    table.set_item("outcome", outcomes(py, adapted.outcomes.iter().copied())?)?;
+    let comparison = PyDict::new(py);
+    comparison.set_item("whole", told(py, &adapted.whole)?)?;
+    comparison.set_item("thirds", told(py, &adapted.thirds)?)?;
+    comparison.set_item("again", told(py, &adapted.again)?)?;
+    comparison.set_item("counts", told(py, &adapted.counts)?)?;
+    comparison.set_item("drift", told(py, &adapted.drift)?)?;
+    table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
+    Ok(Adapted {
+        model: adapted.model.into(),
+        table: table.unbind(),
+        comparison: comparison.into_any().unbind(),
+    })
+}

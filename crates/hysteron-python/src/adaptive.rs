@@ -1,0 +1,490 @@
+//! `Adaptive`.
+
+use crate::array::samples;
+use crate::error::{Raise, finite};
+use crate::fit::start_of;
+use crate::inverse::number;
+use crate::model::Model;
+use crate::plane::on_plane;
+use crate::word::{learner, policy};
+use hysteron::{AdaptOptions, Clipped, Outcome};
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What a sample taught an `Adaptive`.
+#[pyclass(frozen, get_all, module = "hysteron")]
+pub(crate) struct Learning {
+    /// Output that was expected before anything was learned from the sample.
+    output: f64,
+    /// Measured less expected.
+    error: f64,
+    /// What was done: 'learned', 'waiting' (error within the dead zone, or an increment not finished),
+    /// 'at-rest' (the input did not move), 'frozen' or 'rolled-back' (the weights went back to the last good ones).
+    outcome: &'static str,
+    /// -1 or 1 where the input lay below or above the plane, else 0.
+    clipped: i8,
+}
+
+impl From<hysteron::Learning<f64>> for Learning {
+    fn from(learning: hysteron::Learning<f64>) -> Self {
+        Self {
+            output: learning.output,
+            error: learning.error,
+            outcome: learning.outcome.name(),
+            clipped: side(learning.clipped),
+        }
+    }
+}
+
+#[pymethods]
+impl Learning {
+    fn __repr__(&self) -> String {
+        let Self {
+            output,
+            error,
+            outcome,
+            clipped,
+        } = self;
+        format!("Learning(output={output}, error={error}, outcome='{outcome}', clipped={clipped})")
+    }
+}
+
+/// A model that learns while it runs: its weights and offset follow the plant.
+///
+/// It holds the state of the model, which follows the measured input, and one of the inverse, which follows
+/// the inputs that `solve` gave. Several threads may share one: each call is done before the next begins.
+/// The estimator's memory cannot be pickled; what it has learned can, as `model()`.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The off-line model. It stays as it is.
+/// method : {'gradient', 'increments', 'least-squares', 'drift'}
+///     All weights by the normalised gradient, by that on increments, or by recursive least squares; or
+///     by least squares the shares of a few ways in which weights change under load and drift.
+/// start : {'off', 'on'}
+///     Where the operators stand.
+/// gain : float, optional
+///     Gradient methods: share of a sample's error that is taken away, above 0 and below 2. By default 0.3.
+/// span : float, optional
+///     'increments': levels between two updates, from 1/8 to 8. By default 1.
+/// forgetting : float, optional
+///     Least squares: what a sample counts after the next, above 0 and up to 1. By default 0.999, and 0.9999 with 'drift'.
+/// noise : float, optional
+///     Least squares: standard deviation of a reading's error, that of the model included, in the output's
+///     unit, above 0. By default 2 % of the model's range, 5 % with 'drift'.
+/// spread : float, optional
+///     Least squares: standard deviation by which a weight (or a share) may differ from its off-line value, above 0.
+///     By default such that the sum of the weights may deviate by 30 % of the model's range; 0.5 for shares.
+/// correlation : float, optional
+///     'least-squares': levels over which deviations go together, from 0 on. By default 1.
+/// offset_share : float, optional
+///     How freely the offset moves, beside one weight or share, from 0 on.
+/// dead_zone : float, optional
+///     Errors up to this are noise, in the output's unit, from 0 on. By default 0.
+/// leakage : float, optional
+///     Share by which the weights return to the off-line ones with each update, from 0 to 1. By default 0.
+/// movement : float, optional
+///     Levels that the input has to move before a sample is learned from, from 0 on. By default 0.05.
+/// trial : int, optional
+///     Samples after which the weights are judged against the last good ones, 1 or more. By default 256.
+/// load : float, optional
+///     'drift' of a model that depends on a load: where the shares start. By default the middle of its range.
+///
+/// Raises
+/// ------
+/// CoreError
+///     For an option out of range and for negative weights.
+/// FitError
+///     For an option that the method does not use, a model with a thermal body, one that depends on a load (with
+///     another method than 'drift'), and one with too many levels for the memory of the method.
+///
+/// Examples
+/// --------
+/// >>> model = hysteron.Model(np.full(15, 1.0), (20, 80))
+/// >>> plant = hysteron.Model(np.full(15, 1.5), (20, 80)).start()
+/// >>> adaptive = hysteron.Adaptive(model, method='least-squares', noise=0.01)
+/// >>> for n in range(1000):
+/// ...     temperature = 50 - 40 * np.cos(0.05 * n)
+/// ...     learning = adaptive.step(temperature, plant.step(temperature))
+/// >>> abs(learning.error) < 0.01
+/// True
+/// >>> round(adaptive.model().output_range[1], 1)
+/// 22.5
+#[pyclass(frozen, module = "hysteron")]
+pub(crate) struct Adaptive {
+    inner: Mutex<Pair>,
+    levels: usize,
+}
+
+#[derive(Clone)]
+struct Pair {
+    adaptive: hysteron::Adaptive,
+    /// Where the inverse stands.
+    wanted: hysteron::State,
+}
+
+impl From<hysteron::Adaptive> for Adaptive {
+    fn from(adaptive: hysteron::Adaptive) -> Self {
+        let levels = adaptive.offline().plane().levels();
+        let wanted = adaptive.state().clone();
+        let inner = Mutex::new(Pair { adaptive, wanted });
+        Self { inner, levels }
+    }
+}
+
+impl Adaptive {
+    fn lock(&self) -> MutexGuard<'_, Pair> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The façade's, as it is now.
+    pub(crate) fn now(&self) -> hysteron::Adaptive {
+        self.lock().adaptive.clone()
+    }
+}
+
+#[pymethods]
+impl Adaptive {
+    #[new]
+    #[pyo3(
+        signature = (model, *, method="gradient", start="off", **options),
+        text_signature = "(model, *, method='gradient', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None)"
+    )]
+    fn new(
+        py: Python<'_>,
+        model: &Model,
+        method: &str,
+        start: &str,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        if start == "unknown" {
+            return Err(PyValueError::new_err(
+                "`start` is 'unknown': one of 'off', 'on' is needed",
+            ));
+        }
+        let options = adapt_options(method, start, options)?;
+        let model = &model.inner;
+        Ok(py.detach(|| options.adaptive(model)).raise()?.into())
+    }
+
+    /// Move to `input`, tell the output expected there, and learn from the one `measured`.
+    ///
+    /// Parameters
+    /// ----------
+    /// input, measured : float
+    ///
+    /// Returns
+    /// -------
+    /// Learning
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For numbers that are NaN or infinite; nothing is changed then.
+    fn step(&self, input: f64, measured: f64) -> PyResult<Learning> {
+        finite("input", &[input])?;
+        finite("measured", &[measured])?;
+        Ok(self.lock().adaptive.step(input, measured).raise()?.into())
+    }
+
+    /// Predict each sample, then learn from it.
+    ///
+    /// Parameters
+    /// ----------
+    /// input, measured : array_like, shape (n,)
+    ///
+    /// Returns
+    /// -------
+    /// dict of ndarray, shape (n,)
+    ///     'output', 'error', 'outcome' and 'clipped', as in `Learning`.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For samples that are NaN or infinite; nothing is changed then.
+    /// ValueError
+    ///     For two lengths.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        input: &Bound<'py, PyAny>,
+        measured: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (input, measured) = (samples(input, "input")?, samples(measured, "measured")?);
+        let (input, measured) = (input.as_slice()?, measured.as_slice()?);
+        if input.len() != measured.len() {
+            let (n, m) = (input.len(), measured.len());
+            let text = format!("`measured` has {m} samples, `input` {n}");
+            return Err(PyValueError::new_err(text));
+        }
+        finite("input", input)?;
+        finite("measured", measured)?;
+        let learned = py
+            .detach(|| self.lock().adaptive.run(input, measured))
+            .raise()?;
+        let table = PyDict::new(py);
+        table.set_item(
+            "output",
+            PyArray1::from_iter(py, learned.iter().map(|l| l.output)),
+        )?;
+        table.set_item(
+            "error",
+            PyArray1::from_iter(py, learned.iter().map(|l| l.error)),
+        )?;
+        table.set_item("outcome", outcomes(py, learned.iter().map(|l| l.outcome))?)?;
+        let clipped = learned.iter().map(|l| side(l.clipped));
+        table.set_item("clipped", PyArray1::from_iter(py, clipped))?;
+        Ok(table)
+    }
+
+    /// Move to `input` and tell the output expected there, without learning.
+    ///
+    /// Parameters
+    /// ----------
+    /// input : float
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For an input that is NaN or infinite; nothing is changed then.
+    fn predict(&self, input: f64) -> PyResult<f64> {
+        let output = self.lock().adaptive.predict(input);
+        output.raise_of("input", &[input])
+    }
+
+    /// The input that gives `target`, by the weights as they are now. The inverse moves there from where it stood.
+    ///
+    /// Parameters
+    /// ----------
+    /// target : float
+    /// heading : {None, 'rising', 'falling'}
+    ///     Where the target goes next: the dead band is crossed at once. With None the input rests with the target.
+    /// band : float
+    ///     How far a target may go back and still count as resting.
+    ///
+    /// Returns
+    /// -------
+    /// input : float
+    /// status : int
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a target that is NaN or infinite; nothing is changed then.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.solve(4.0)
+    /// (0.5, 0)
+    #[pyo3(signature = (target, *, heading=None, band=0.0))]
+    fn solve(&self, target: f64, heading: Option<&str>, band: f64) -> PyResult<(f64, i8)> {
+        let policy = policy(heading, band)?;
+        let mut pair = self.lock();
+        let Pair { adaptive, wanted } = &mut *pair;
+        let solution = adaptive.solve(wanted, target, policy);
+        let solution = solution.raise_of("target", &[target])?;
+        Ok((solution.input, number(solution.status)))
+    }
+
+    /// Let the inverse set out from where the measured input is.
+    ///
+    /// Turning points that were asked for by weights long changed stay in its memory until they are wiped out;
+    /// a loop may call this wherever its target turns.
+    fn align(&self) {
+        let mut pair = self.lock();
+        pair.wanted = pair.adaptive.state().clone();
+    }
+
+    /// The output expected where the input is now.
+    #[getter]
+    fn output(&self) -> f64 {
+        self.lock().adaptive.output()
+    }
+
+    /// The weights as they are now, shape (K, K), in the output's unit, NaN below the diagonal.
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let weights = self.lock().adaptive.weights();
+        on_plane(py, self.levels, &weights)
+    }
+
+    /// The output with every operator off, as it is now.
+    #[getter]
+    fn offset(&self) -> f64 {
+        self.lock().adaptive.offset()
+    }
+
+    /// The model that this began with; of one that depends on a load, the one at the load that was named.
+    #[getter]
+    fn offline(&self) -> Model {
+        self.lock().adaptive.offline().clone().into()
+    }
+
+    /// The turning points of the measured input, as those of `State`.
+    #[getter]
+    fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        // An array may be made by Python's allocator, which may run anything: not with the lock held.
+        let points: Vec<f64> = self.lock().adaptive.state().turning_points().collect();
+        PyArray1::from_vec(py, points)
+    }
+
+    /// The last input, as it was given.
+    #[getter]
+    fn input(&self) -> f64 {
+        self.lock().adaptive.state().input()
+    }
+
+    /// The model as it is now.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    fn model(&self) -> PyResult<Model> {
+        Ok(self.lock().adaptive.model().raise()?.into())
+    }
+
+    /// Every operator off, or on, also those of the inverse; the weights stay.
+    ///
+    /// Parameters
+    /// ----------
+    /// on : bool
+    #[pyo3(signature = (*, on=false))]
+    fn reset(&self, on: bool) -> PyResult<()> {
+        let mut pair = self.lock();
+        if on {
+            pair.adaptive.saturate().raise()?;
+        } else {
+            pair.adaptive.reset().raise()?;
+        }
+        pair.wanted = pair.adaptive.state().clone();
+        Ok(())
+    }
+
+    /// While frozen, `step` predicts and nothing is learned.
+    ///
+    /// Parameters
+    /// ----------
+    /// frozen : bool
+    #[pyo3(signature = (frozen=true))]
+    fn freeze(&self, frozen: bool) {
+        self.lock().adaptive.freeze(frozen);
+    }
+
+    /// Take the present weights and offset as the last good ones.
+    fn keep(&self) {
+        self.lock().adaptive.keep();
+    }
+
+    /// Go back to the last good weights and offset: those last kept, or that stood a trial since.
+    fn roll_back(&self) -> PyResult<()> {
+        self.lock().adaptive.roll_back().raise()
+    }
+
+    /// One of its own that has learned the same.
+    fn copy(&self) -> Self {
+        let inner = Mutex::new(self.lock().clone());
+        Self {
+            inner,
+            levels: self.levels,
+        }
+    }
+
+    fn __copy__(&self) -> Self {
+        self.copy()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy()
+    }
+
+    fn __repr__(&self) -> String {
+        let pair = self.lock();
+        let (input, output) = (pair.adaptive.state().input(), pair.adaptive.output());
+        format!(
+            "<Adaptive, {} levels, at {input}: {output} expected>",
+            self.levels
+        )
+    }
+}
+
+/// The options of `Adaptive` and `adapt`.
+pub(crate) fn adapt_options(
+    method: &str,
+    start: &str,
+    given: Option<&Bound<'_, PyDict>>,
+) -> PyResult<AdaptOptions> {
+    let mut options = AdaptOptions {
+        learner: learner(method)?,
+        start: start_of(start)?,
+        ..AdaptOptions::default()
+    };
+    for (name, value) in given.into_iter().flatten() {
+        let name: String = name.extract()?;
+        if name == "trial" {
+            let trial: Option<i64> = value.extract()?;
+            let number = |trial| {
+                u32::try_from(trial).map_err(|_| {
+                    PyValueError::new_err(format!(
+                        "`trial` is {trial}: it is from 1 to {}",
+                        u32::MAX
+                    ))
+                })
+            };
+            options.trial = trial.map(number).transpose()?;
+            continue;
+        }
+        let slots = [
+            ("gain", &mut options.gain),
+            ("span", &mut options.span),
+            ("forgetting", &mut options.forgetting),
+            ("noise", &mut options.noise),
+            ("spread", &mut options.spread),
+            ("correlation", &mut options.correlation),
+            ("offset_share", &mut options.offset_share),
+            ("dead_zone", &mut options.dead_zone),
+            ("leakage", &mut options.leakage),
+            ("movement", &mut options.movement),
+            ("load", &mut options.load),
+        ];
+        let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
+            return Err(PyTypeError::new_err(format!(
+                "there is no argument `{name}`"
+            )));
+        };
+        let number = value.extract();
+        *slot = number.map_err(|_| {
+            PyTypeError::new_err(format!("`{name}`: a number is needed, not {value}"))
+        })?;
+    }
+    Ok(options)
+}
+
+/// Outcomes as an array of their names.
+pub(crate) fn outcomes<'py>(
+    py: Python<'py>,
+    outcomes: impl Iterator<Item = Outcome>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let place = |outcome| Outcome::ALL.iter().position(|o| *o == outcome).unwrap_or(0);
+    let places: Vec<usize> = outcomes.map(place).collect();
+    let names = Outcome::ALL.map(Outcome::name);
+    let names = py.import("numpy")?.call_method1("array", (names,))?;
+    names.get_item(PyArray1::from_vec(py, places))
+}
+
+fn side(clipped: Option<Clipped>) -> i8 {
+    match clipped {
+        None => 0,
+        Some(Clipped::Low) => -1,
+        Some(Clipped::High) => 1,
+    }
+}

@@ -1,0 +1,394 @@
+//! `control.Controller`.
+
+use crate::adaptive::Adaptive;
+use crate::array::samples;
+use crate::error::{Raise, finite};
+use crate::model::Model;
+use crate::pid::Pid;
+use crate::plant::SimulatedPlant;
+use crate::said::options;
+use crate::trace::Trace;
+use crate::word::{choice, direction};
+use hysteron::control::{
+    self, Compensator, Course, Gains, InnerLoop, Reading, Rest, Scheme, Target,
+};
+use hysteron::track::{Event, course};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What a `Controller` does with a sample.
+#[pyclass(frozen, get_all, module = "hysteron.control")]
+pub(crate) struct Action {
+    /// The input asked for.
+    command: f64,
+    /// The drive to write to the device.
+    drive: f64,
+    /// The output that the model expected before it learned; NaN without a model.
+    prediction: f64,
+    /// The output as filtered; NaN where there is nothing new to be believed.
+    output: f64,
+    /// The input as filtered; NaN where there is nothing new to be believed, None where it is not known.
+    input: Option<f64>,
+    /// Whether the drive or the command stood at a limit.
+    saturated: bool,
+    /// Whether the target lay out of the model's reach; the nearest end was aimed at.
+    out_of_reach: bool,
+    /// Whether a reading was missing, or stuck.
+    sensor_fault: bool,
+    /// Whether the model learned from the sample.
+    adapted: bool,
+}
+
+impl From<control::Action> for Action {
+    fn from(action: control::Action) -> Self {
+        Self {
+            command: action.command,
+            drive: action.drive,
+            prediction: action.prediction,
+            output: action.filtered.output,
+            input: action.filtered.input,
+            saturated: action.status.saturated,
+            out_of_reach: action.status.out_of_reach,
+            sensor_fault: action.status.sensor_fault,
+            adapted: action.status.adapted,
+        }
+    }
+}
+
+#[pymethods]
+impl Action {
+    fn __repr__(&self) -> String {
+        let Self {
+            command,
+            drive,
+            prediction,
+            ..
+        } = self;
+        format!("<Action: command {command}, drive {drive}, prediction {prediction}>")
+    }
+}
+
+/// One controller for all schemes: the inverse of a model as feedforward, a PID, both, and a loop around the input inside.
+///
+/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and nothing is learned.
+/// Without news from the input's sensor the loop inside holds the drive for `stuck_s` and then goes to the lowest one.
+/// A controller in motion cannot be pickled.
+///
+/// Parameters
+/// ----------
+/// interval_s : float
+///     Time between samples, s.
+/// commands : tuple of float
+///     Lowest and highest input that may be commanded.
+/// model : Model or Adaptive, optional
+///     For feedforward through its inverse. Of an `Adaptive` a copy goes on learning here.
+/// pid : Pid, optional
+///     Feedback of the output, added to the feedforward: a PID with these gains, at rest.
+/// rest : {'hold', 'anticipate'}
+///     What the inverse does where the target rests.
+/// tolerance : float
+///     Reversals of the target up to this size are not followed by the inverse, in the output's unit, from 0 on.
+/// bias : float
+///     Without a model the command sets out from here.
+/// drives : tuple of float, optional
+///     Lowest and highest drive. By default those of the commands.
+/// inner : Pid, optional
+///     Gains of the loop inside, which brings the input (a temperature) to the one commanded. Without, the
+///     command is the drive.
+/// square_root : bool
+///     The drive is the root of what the loop inside gives: a current, whose heat goes with its square.
+/// filter_s : float
+///     Time constant of the filter on both readings, s, from 0 on.
+/// stuck_s : float, optional
+///     Time without news after which a sensor is taken as broken, s, above 0. None where a sensor has no noise to
+///     tell a broken one from one at rest.
+///
+/// Raises
+/// ------
+/// ControlError
+///     Names the argument that no loop can run with.
+/// CoreError
+///     For a model that has no inverse.
+///
+/// Examples
+/// --------
+/// Inverse and PID on a simulated actuator, from a model identified on it:
+///
+/// >>> model = hysteron.Model(np.full(15, 5.0), (10, 150), offset=0)
+/// >>> plant = hysteron.PreisachPlant()
+/// >>> pid = hysteron.control.Pid(0.2, integral_s=0.05)
+/// >>> controller = hysteron.control.Controller(0.01, plant.drives, model=model, pid=pid, filter_s=0.01)
+/// >>> for target in np.linspace(10, 40, 400):
+/// ...     action = controller.step(target, *plant.read())
+/// ...     plant.write(action.drive)
+/// ...     plant.advance(0.01)
+/// >>> abs(plant.truth()[0] - 40) < 2
+/// True
+#[pyclass(frozen, module = "hysteron.control")]
+pub(crate) struct Controller {
+    inner: Mutex<control::Controller>,
+    tolerance: f64,
+}
+
+impl Controller {
+    fn lock(&self) -> MutexGuard<'_, control::Controller> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Controller {
+    #[new]
+    #[pyo3(signature = (
+        interval_s, commands, *, model=None, pid=None, rest="hold", tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=false,
+        filter_s=0.0, stuck_s=None
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        interval_s: f64,
+        commands: (f64, f64),
+        model: Option<&Bound<'_, PyAny>>,
+        pid: Option<&Pid>,
+        rest: &str,
+        tolerance: f64,
+        bias: f64,
+        drives: Option<(f64, f64)>,
+        inner: Option<&Pid>,
+        square_root: bool,
+        filter_s: f64,
+        stuck_s: Option<f64>,
+    ) -> PyResult<Self> {
+        let gains = |pid: &Pid| -> Gains { pid.gains };
+        let scheme = Scheme {
+            interval_s,
+            compensator: model.map(compensator).transpose()?,
+            rest: choice(
+                "rest",
+                rest,
+                &[("hold", Rest::Hold), ("anticipate", Rest::Anticipate)],
+            )?,
+            tolerance,
+            pid: pid.map(gains),
+            bias,
+            commands,
+            drives: drives.unwrap_or(commands),
+            inner: inner.map(|pid| InnerLoop {
+                gains: gains(pid),
+                square_root,
+            }),
+            filter_s,
+            stuck_s,
+        };
+        let inner = Mutex::new(control::Controller::new(scheme).raise()?);
+        Ok(Self { inner, tolerance })
+    }
+
+    /// One sample: from what is wanted and what was read to what is to be written.
+    ///
+    /// Parameters
+    /// ----------
+    /// target : float
+    ///     The output wanted now.
+    /// output : float
+    ///     The output as measured; NaN where the sensor gave nothing.
+    /// input : float, optional
+    ///     The input of the hysteresis as measured; NaN where the sensor gave nothing, None where the drive itself is the input.
+    /// heading : {None, 'rising', 'falling'}
+    ///     Where the target goes next, for 'anticipate'; see `headings`.
+    ///
+    /// Returns
+    /// -------
+    /// Action
+    ///     Its drive is finite and within its limits whatever the readings are.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a target that is NaN or infinite; nothing is changed then.
+    #[pyo3(signature = (target, output, input=None, *, heading=None))]
+    fn step(
+        &self,
+        target: f64,
+        output: f64,
+        input: Option<f64>,
+        heading: Option<&str>,
+    ) -> PyResult<Action> {
+        let heading = heading.map(direction).transpose()?;
+        let target_ = Target {
+            output: target,
+            heading,
+        };
+        let action = self.lock().step(target_, Reading { output, input });
+        Ok(action.raise_of("target", &[target])?.into())
+    }
+
+    /// One sample that brings the input to `command`, whatever the output is: for recordings, relay and step tests.
+    ///
+    /// Parameters
+    /// ----------
+    /// command : float
+    /// output, input
+    ///     As for `step`.
+    ///
+    /// Returns
+    /// -------
+    /// Action
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a command that is NaN or infinite; nothing is changed then.
+    #[pyo3(signature = (command, output, input=None))]
+    fn step_command(&self, command: f64, output: f64, input: Option<f64>) -> PyResult<Action> {
+        let action = self.lock().step_command(command, Reading { output, input });
+        Ok(action.raise_of("command", &[command])?.into())
+    }
+
+    /// Time between samples, s.
+    #[getter]
+    fn interval_s(&self) -> f64 {
+        self.lock().interval_s()
+    }
+
+    /// What the model in the loop has learned: a copy as it is now; None where none learns.
+    #[getter]
+    fn adaptive(&self) -> Option<Adaptive> {
+        let controller = self.lock();
+        let adaptive = controller.compensator()?.adapting()?;
+        Some(adaptive.clone().into())
+    }
+
+    /// Follow a reference on a device, one sample for each of its values.
+    ///
+    /// A simulated plant is told how long to go on. On anything else this is the loop `read`, `step`, `write`: whoever writes
+    /// the device keeps the time between samples, in `read`. Where the device raises, that is raised, and the drive stays as
+    /// it was written last.
+    ///
+    /// Parameters
+    /// ----------
+    /// device : SpringPlant, PreisachPlant or object
+    ///     An object has ``read()``, which returns the output or a pair of output and input (NaN or None for a lost reading
+    ///     of the output), and ``write(drive)``; a simulation may have ``advance(dt_s)`` too.
+    /// reference : array_like, shape (n,)
+    ///     In the output's unit. Where it goes next is taken from it, for 'anticipate'.
+    /// events : sequence of dict
+    ///     What happens to a simulated plant: 'at_s', and what `SimulatedPlant.disturb` knows.
+    ///
+    /// Returns
+    /// -------
+    /// Trace
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a reference that is NaN or infinite.
+    /// RigError
+    ///     For an event that the plant does not know.
+    ///
+    /// Examples
+    /// --------
+    /// >>> class Stage:
+    /// ...     mm = 0.0
+    /// ...     def read(self):
+    /// ...         return self.mm
+    /// ...     def write(self, volts):
+    /// ...         self.mm += 0.1 * (0.5 * volts - self.mm)
+    /// >>> pid = hysteron.control.Pid(2.0, integral_s=0.1)
+    /// >>> trace = hysteron.control.Controller(0.01, (0, 10), pid=pid).run(Stage(), np.full(500, 3.0))
+    /// >>> bool(abs(trace.output[-1] - 3.0) < 1e-3)
+    /// True
+    #[pyo3(signature = (device, reference, *, events=None))]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        device: &Bound<'py, PyAny>,
+        reference: &Bound<'py, PyAny>,
+        events: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Trace> {
+        let reference = samples(reference, "reference")?;
+        let reference = reference.as_slice()?;
+        finite("reference", reference)?;
+        let events: Vec<Event> = match events {
+            Some(events) => options(
+                "events",
+                Some(
+                    &events
+                        .try_iter()?
+                        .collect::<PyResult<Vec<_>>>()?
+                        .into_pyobject(py)?,
+                ),
+            )?,
+            None => Vec::new(),
+        };
+        if let Some(event) = events.iter().find(|event| event.at_s < 0.0) {
+            let text = format!(
+                "`events`: 'at_s' is {}: a time from 0 on is needed",
+                event.at_s
+            );
+            return Err(PyValueError::new_err(text));
+        }
+        let headings = hysteron::headings(reference, self.tolerance);
+        if let Ok(plant) = device.cast::<SimulatedPlant>() {
+            let plant = plant.get();
+            let events = course(&events, self.interval_s());
+            let course = Course {
+                reference,
+                headings: &headings,
+                events: &events,
+            };
+            let done = py.detach(|| control::run(plant.lock().as_mut(), &mut self.lock(), &course));
+            return Ok(done.raise()?.into());
+        }
+        if !events.is_empty() {
+            return Err(PyValueError::new_err(
+                "`events` happen to simulated plants only",
+            ));
+        }
+        let (dt_s, advance) = (self.interval_s(), device.getattr_opt("advance")?);
+        let mut trace = control::Trace::default();
+        for (n, (&output, &heading)) in reference.iter().zip(&headings).enumerate() {
+            py.check_signals()?;
+            let reading = reading(&device.call_method0("read")?)?;
+            let action = self
+                .lock()
+                .step(Target { output, heading }, reading)
+                .raise()?;
+            device.call_method1("write", (action.drive,))?;
+            if let Some(advance) = &advance {
+                advance.call1((dt_s,))?;
+            }
+            trace.push(n as f64 * dt_s, output, (reading, reading), &action);
+        }
+        Ok(trace.into())
+    }
+}
+
+/// What a device's `read` returned.
+fn reading(read: &Bound<'_, PyAny>) -> PyResult<Reading> {
+    let (output, input): (Option<f64>, Option<f64>) = match read.extract() {
+        Ok(both) => both,
+        Err(_) => {
+            let output = read.extract::<Option<f64>>().map_err(|_| {
+                PyTypeError::new_err(format!("`device.read()` gave {read}: the output is needed, or a pair of output and input"))
+            })?;
+            (output, None)
+        }
+    };
+    Ok(Reading {
+        output: output.unwrap_or(f64::NAN),
+        input,
+    })
+}
+
+fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {
+    if let Ok(adaptive) = model.cast::<Adaptive>() {
+        return Ok(Compensator::adaptive(adaptive.get().now()));
+    }
+    let model = model.cast::<Model>().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "`model` is {model}: a Model or an Adaptive is needed"
+        ))
+    })?;
+    Compensator::fixed(hysteron::Model::clone(&model.get().inner)).raise()
+}

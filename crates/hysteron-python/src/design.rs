@@ -1,0 +1,168 @@
+//! `design` and `Design`.
+
+use crate::error::Raise;
+use crate::judge::classes;
+use crate::recording::inputs_of;
+use hysteron::{DesignOptions, Plane, Rates};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// A profile of the input, and what is known once it has been recorded. Made by `design`.
+#[pyclass(frozen, module = "hysteron")]
+pub(crate) struct Design {
+    inner: hysteron::Design,
+}
+
+#[pymethods]
+impl Design {
+    /// Time of each sample in seconds, shape (n,); empty where nothing is left to measure.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.time)
+    }
+
+    /// Input at each sample, shape (n,); it starts at the bottom of the plane, with every operator off.
+    #[getter]
+    fn input<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.input)
+    }
+
+    /// The branches in order: input at the start, input at the end, and how many corners of the plane none before it shows.
+    #[getter]
+    fn legs(&self) -> Vec<(f64, f64, usize)> {
+        let legs = self.inner.legs.iter();
+        legs.map(|leg| (leg.from, leg.to, leg.new_corners))
+            .collect()
+    }
+
+    /// What recordings and profile say together, shape (K, K), as `excitation` has it.
+    #[getter]
+    fn excitation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        classes(py, self.inner.plane.levels(), &self.inner.excitation)
+    }
+
+    /// What the recordings alone say, shape (K, K); None without recordings.
+    #[getter]
+    fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let levels = self.inner.plane.levels();
+        let recorded = self.inner.recorded.as_ref();
+        recorded.map(|found| classes(py, levels, found)).transpose()
+    }
+
+    /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is determined.
+    #[getter]
+    fn corners(&self) -> usize {
+        self.inner.corners
+    }
+
+    /// Duration in seconds.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.inner.duration_s()
+    }
+
+    /// Duration in seconds without a budget.
+    #[getter]
+    fn full_duration(&self) -> f64 {
+        self.inner.full_duration_s
+    }
+
+    /// Write the profile as CSV with the columns ``time [s]`` and ``input``.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path-like
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    fn to_csv(&self, path: PathBuf) -> PyResult<()> {
+        self.inner.write_csv(&path).raise()
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.time.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (samples, legs) = (self.inner.time.len(), self.inner.legs.len());
+        format!(
+            "<Design, {legs} branches, {samples} samples, {} s>",
+            self.duration()
+        )
+    }
+}
+
+/// The shortest input profile that determines every operator of a plane, or what recordings lack of that.
+///
+/// Parameters
+/// ----------
+/// range : tuple of float
+///     Lowest and highest level of the plane, in the input's unit; the profile starts one level below the lowest.
+/// levels : int
+/// heating_rate, cooling_rate : float
+///     How fast the input can rise and fall, in its unit per second.
+/// budget : float, optional
+///     Longest duration, s: as many rings as fit, evenly spread. By default all that it takes.
+/// recorded : array_like of shape (n,), Recording, or list of these, optional
+///     Inputs that exist: what they determine is left out.
+/// step : float, optional
+///     Longest time between samples, s; by default ten samples a level.
+/// operator : {'mkp', 'kp', 'relay'}
+///
+/// Returns
+/// -------
+/// Design
+///
+/// Raises
+/// ------
+/// DesignError
+///     For rates, a budget or a step that cannot be, or recordings outside the plane.
+/// CoreError
+///     For a plane that cannot be.
+///
+/// Examples
+/// --------
+/// >>> profile = hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5)
+/// >>> profile
+/// <Design, 20 branches, 5101 samples, 805.2631578947369 s>
+/// >>> bool(np.nanmin(profile.excitation) == 3)  # every operator is determined
+/// True
+/// >>> len(hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
+/// 0
+#[pyfunction]
+#[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp"))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn design(
+    py: Python<'_>,
+    range: (f64, f64),
+    levels: usize,
+    heating_rate: f64,
+    cooling_rate: f64,
+    budget: Option<f64>,
+    recorded: Option<&Bound<'_, PyAny>>,
+    step: Option<f64>,
+    operator: &str,
+) -> PyResult<Design> {
+    let rates = Rates {
+        heating: heating_rate,
+        cooling: cooling_rate,
+    };
+    let options = DesignOptions {
+        operator: crate::word::operator(operator)?,
+        budget_s: budget,
+        step_s: step,
+        ..DesignOptions::new(Plane::new(range.0, range.1, levels).raise()?, rates)
+    };
+    let recorded = match recorded {
+        Some(recorded) => inputs_of(recorded, "recorded")?,
+        None => Vec::new(),
+    };
+    let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
+    let inner = py.detach(|| {
+        let design = hysteron::design(&options, &inputs);
+        design.raise_of("recorded", recorded.first().map_or(&[], Vec::as_slice))
+    })?;
+    Ok(Design { inner })
+}

@@ -1,0 +1,165 @@
+//! `Inverse`.
+
+use crate::array::samples;
+use crate::error::Raise;
+use crate::model::Model;
+use crate::state::State;
+use crate::word::{choice, direction, policy, width};
+use hysteron::{Invert, Status};
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The exact inverse of a model: the input that gives a wanted output. Made by `Model.inverse`.
+///
+/// Examples
+/// --------
+/// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+/// >>> inputs, status = model.inverse().run([4.0, 6.0, 5.0, 9.0])
+/// >>> model.simulate(inputs)
+/// array([4., 6., 5., 7.])
+/// >>> status
+/// array([0, 0, 0, 1], dtype=int8)
+#[pyclass(frozen, module = "hysteron")]
+pub(crate) struct Inverse {
+    model: Model,
+}
+
+impl Inverse {
+    pub(crate) fn new(model: Model) -> PyResult<Self> {
+        model.inner.inverse().raise()?;
+        Ok(Self { model })
+    }
+}
+
+pub(crate) fn number(status: Status) -> i8 {
+    match status {
+        Status::Ok => 0,
+        Status::Low => -1,
+        Status::High => 1,
+    }
+}
+
+#[pymethods]
+impl Inverse {
+    /// The model that this is the inverse of.
+    #[getter]
+    fn model(&self) -> Model {
+        self.model.clone()
+    }
+
+    /// The inputs for a series of targets.
+    ///
+    /// Parameters
+    /// ----------
+    /// target : array_like, shape (n,)
+    ///     In the output's unit.
+    /// policy : {'hold', 'anticipate'}
+    ///     What the input does while the target stands still: it rests, or crosses the dead band to where
+    ///     the output starts to move the way that the target goes next.
+    /// band : float, optional
+    ///     Reversals of the target up to this size are noise and not followed, in the output's unit.
+    ///     By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
+    /// state : State, optional
+    ///     Where to go on from; it is moved. By default every operator off.
+    /// heading : sequence of {None, 'rising', 'falling'}, shape (n,), optional
+    ///     Where the target goes next at each sample, told beforehand, in place of `policy`.
+    ///
+    /// Returns
+    /// -------
+    /// input : ndarray, shape (n,)
+    ///     In the input's unit.
+    /// status : ndarray of int8, shape (n,)
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a target that is NaN or infinite, or a state of another model.
+    #[pyo3(signature = (target, *, policy="hold", band=None, state=None, heading=None))]
+    #[allow(clippy::type_complexity)]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        target: &Bound<'py, PyAny>,
+        policy: &str,
+        band: Option<f64>,
+        state: Option<&State>,
+        heading: Option<Vec<Option<String>>>,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i8>>)> {
+        let target = samples(target, "target")?;
+        let target = target.as_slice()?;
+        let model = &self.model.inner;
+        let anticipate = choice("policy", policy, &[("hold", false), ("anticipate", true)])?;
+        let band = match band {
+            None if anticipate => model.noise_band(),
+            None => 0.0,
+            Some(band) => width(band)?,
+        };
+        let told = |word: &Option<String>| word.as_deref().map(direction).transpose();
+        let headings = heading.map(|words| words.iter().map(told).collect::<PyResult<Vec<_>>>());
+        let headings = headings.transpose()?;
+        if let Some(headings) = headings.as_ref().filter(|h| h.len() != target.len()) {
+            let (n, m) = (target.len(), headings.len());
+            let text = format!("`heading` has {m} entries, `target` {n}");
+            return Err(PyValueError::new_err(text));
+        }
+        let how = if anticipate {
+            let rows = target.len();
+            Invert::Anticipate { band, rows }
+        } else {
+            Invert::Hold { band }
+        };
+        let solutions = py.detach(|| {
+            let inverse = model.inverse().raise()?;
+            let through = |state: &mut hysteron::State| match &headings {
+                Some(headings) => inverse.headed(state, target, headings, band),
+                None => inverse.series(state, target, how),
+            };
+            let done = match state {
+                Some(state) => through(&mut state.lock()),
+                None => through(&mut model.start()),
+            };
+            done.raise_of("target", target)
+        })?;
+        let input = PyArray1::from_iter(py, solutions.iter().map(|solution| solution.input));
+        let status = PyArray1::from_iter(py, solutions.iter().map(|s| number(s.status)));
+        Ok((input, status))
+    }
+
+    /// The input for one target; moves `state` there.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State
+    /// target : float
+    /// heading : {None, 'rising', 'falling'}
+    ///     Where the target goes next: the dead band is crossed at once. With None the input rests with the target.
+    /// band : float
+    ///     How far a target may go back and still count as resting.
+    ///
+    /// Returns
+    /// -------
+    /// input : float
+    /// status : int
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a target that is NaN or infinite, or a state of another model; the state is then as it was.
+    #[pyo3(signature = (state, target, *, heading=None, band=0.0))]
+    fn step(
+        &self,
+        state: &State,
+        target: f64,
+        heading: Option<&str>,
+        band: f64,
+    ) -> PyResult<(f64, i8)> {
+        let policy = policy(heading, band)?;
+        let inverse = self.model.inner.inverse().raise()?;
+        let solution = inverse.step(&mut state.lock(), target, policy);
+        let solution = solution.raise_of("target", &[target])?;
+        Ok((solution.input, number(solution.status)))
+    }
+}

@@ -1,0 +1,150 @@
+//! What is known of a model: `Model.confidence`, `Model.band`, `Model.evaluate`; and `excitation`.
+
+use crate::error::Raise;
+use crate::plane::on_plane;
+use crate::recording::{Recording, inputs_of};
+use crate::said::told;
+use hysteron::{Excitation, InverseRun, Model, Plane, Start};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+pub(crate) fn confidence<'py>(
+    py: Python<'py>,
+    model: &Model,
+) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let Some(found) = model.fit.as_ref().and_then(|fit| fit.confidence.as_ref()) else {
+        return Ok(None);
+    };
+    let plane = model.plane();
+    let dict = PyDict::new(py);
+    let levels = (1..=plane.levels()).map(|k| plane.level(k));
+    dict.set_item("levels", PyArray1::from_iter(py, levels))?;
+    let errors = on_plane(py, plane.levels(), &found.standard_error)?;
+    dict.set_item("standard_error", errors)?;
+    dict.set_item("offset_error", found.offset_error)?;
+    let classes = classes(py, plane.levels(), &found.excitation)?;
+    dict.set_item("excitation", classes)?;
+    dict.set_item("rank", found.rank)?;
+    dict.set_item("unknowns", found.unknowns)?;
+    dict.set_item("condition", found.condition)?;
+    dict.set_item("noise", found.noise)?;
+    dict.set_item("branches", found.branches)?;
+    dict.set_item("replicates", found.replicates)?;
+    Ok(Some(dict))
+}
+
+/// Classes on the plane as their numbers in [`Excitation::ALL`].
+pub(crate) fn classes<'py>(
+    py: Python<'py>,
+    levels: usize,
+    classes: &[Excitation],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let number = |class: &Excitation| {
+        let place = Excitation::ALL.iter().position(|other| other == class);
+        place.unwrap_or_default() as f64
+    };
+    on_plane(py, levels, &classes.iter().map(number).collect::<Vec<_>>())
+}
+
+/// What inputs say about each operator of a plane, whatever the output was.
+///
+/// Parameters
+/// ----------
+/// input : array_like of shape (n,), Recording, or list of these
+///     Each sets out with every operator off.
+/// range : tuple of float
+///     Lowest and highest level of the plane, in the input's unit.
+/// levels : int
+/// operator : {'mkp', 'kp', 'relay'}
+///
+/// Returns
+/// -------
+/// ndarray, shape (K, K)
+///     ``[i-1, j-1]``, NaN below the diagonal: 0 for an operator that never moves, 1 for one that moves on one branch only,
+///     2 for one that moves more often but never so that it can be told from others, 3 for one whose weight follows from the output.
+///
+/// Raises
+/// ------
+/// CoreError
+///     For a sample that is NaN or infinite, or a plane that cannot be.
+///
+/// Examples
+/// --------
+/// >>> hysteron.excitation([0, 1, 2], (1, 2), 2)
+/// array([[ 3.,  1.],
+///        [nan,  1.]])
+/// >>> hysteron.excitation([0, 1, 2, 1], (1, 2), 2)
+/// array([[ 3.,  3.],
+///        [nan,  3.]])
+#[pyfunction]
+#[pyo3(signature = (input, range, levels, *, operator="mkp"))]
+pub(crate) fn excitation<'py>(
+    py: Python<'py>,
+    input: &Bound<'py, PyAny>,
+    range: (f64, f64),
+    levels: usize,
+    operator: &str,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let inputs = inputs_of(input, "input")?;
+    let plane = Plane::new(range.0, range.1, levels).raise()?;
+    let operator = crate::word::operator(operator)?;
+    let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    let found = py.detach(|| {
+        let found = hysteron::excitation(&slices, plane, operator);
+        found.raise_of("input", inputs.first().map_or(&[], Vec::as_slice))
+    })?;
+    classes(py, levels, &found)
+}
+
+pub(crate) fn evaluate<'py>(
+    py: Python<'py>,
+    model: &Model,
+    recording: &Recording,
+    start: Start,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found = py.detach(|| hysteron::evaluate_from(model, &recording.inner, start).raise())?;
+    let dict = PyDict::new(py);
+    dict.set_item("forward", told(py, &found.forward)?)?;
+    dict.set_item("clipped", found.clipped)?;
+    let band = match &found.band {
+        None => None,
+        Some(band) => {
+            let ends = |sign: f64| {
+                let pairs = found.output_model.iter().zip(&band.half_width);
+                PyArray1::from_iter(py, pairs.map(|(y, half)| y + sign * half))
+            };
+            let dict = PyDict::new(py);
+            dict.set_item("coverage_percent", band.coverage_percent)?;
+            dict.set_item("lower", ends(-1.0))?;
+            dict.set_item("upper", ends(1.0))?;
+            Some(dict)
+        }
+    };
+    dict.set_item("band", band)?;
+    let (inverse, refused) = match &found.inverse {
+        Err(reason) => (None, Some(crate::error::in_python(reason))),
+        Ok(inverse) => {
+            let dict = PyDict::new(py);
+            let moving = inverse.moving.iter().copied();
+            dict.set_item("moving", PyArray1::from_iter(py, moving))?;
+            dict.set_item("hold", run(py, &inverse.hold)?)?;
+            dict.set_item("anticipate", run(py, &inverse.anticipate)?)?;
+            (Some(dict), None)
+        }
+    };
+    dict.set_item("inverse", inverse)?;
+    dict.set_item("inverse_refused", refused)?;
+    dict.set_item("output_model", PyArray1::from_vec(py, found.output_model))?;
+    Ok(dict)
+}
+
+fn run<'py>(py: Python<'py>, run: &InverseRun) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("all", told(py, &run.all)?)?;
+    dict.set_item("moving", told(py, &run.moving)?)?;
+    dict.set_item("dead_band", told(py, &run.dead_band)?)?;
+    dict.set_item("out_of_reach", run.out_of_reach)?;
+    dict.set_item("input_model", PyArray1::from_slice(py, &run.input_model))?;
+    Ok(dict)
+}

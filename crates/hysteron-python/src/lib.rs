@@ -1,0 +1,63 @@
+//! The Python package `hysteron`: types and errors converted, no logic.
+
+mod adapt;
+mod adaptive;
+mod array;
+mod controller;
+mod design;
+mod error;
+mod export;
+mod fit;
+mod inverse;
+mod judge;
+mod model;
+mod pid;
+mod plane;
+mod plant;
+mod prepare;
+mod recording;
+mod said;
+mod state;
+mod trace;
+mod track;
+mod turning;
+mod watched;
+mod word;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _hysteron {
+    #[pymodule_export]
+    use crate::adapt::{Adapted, adapt};
+    #[pymodule_export]
+    use crate::adaptive::{Adaptive, Learning};
+    #[pymodule_export]
+    use crate::controller::{Action, Controller};
+    #[pymodule_export]
+    use crate::design::{Design, design};
+    #[pymodule_export]
+    use crate::fit::{fit, left_out};
+    #[pymodule_export]
+    use crate::inverse::Inverse;
+    #[pymodule_export]
+    use crate::judge::excitation;
+    #[pymodule_export]
+    use crate::model::Model;
+    #[pymodule_export]
+    use crate::pid::{Pid, RelayTest};
+    #[pymodule_export]
+    use crate::plant::{PreisachPlant, SimulatedPlant, SpringPlant};
+    #[pymodule_export]
+    use crate::prepare::prepare;
+    #[pymodule_export]
+    use crate::recording::{Recording, read};
+    #[pymodule_export]
+    use crate::state::State;
+    #[pymodule_export]
+    use crate::trace::Trace;
+    #[pymodule_export]
+    use crate::track::{Comparison, headings, scenarios, track, tune};
+    #[pymodule_export]
+    use crate::turning::{branches, remembered};
+}

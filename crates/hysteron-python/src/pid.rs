@@ -1,0 +1,344 @@
+//! `control.Pid` and `control.RelayTest`.
+
+use crate::array::samples;
+use crate::error::Raise;
+use hysteron::control::{self, Gains};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// Refuses what can be no time between samples.
+fn interval(name: &str, seconds: f64) -> PyResult<f64> {
+    match seconds > 0.0 && seconds.is_finite() {
+        true => Ok(seconds),
+        false => Err(PyValueError::new_err(format!(
+            "`{name}` is {seconds}: a time above 0 is needed, in seconds"
+        ))),
+    }
+}
+
+fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
+    let (low, high) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    match low < high {
+        true => Ok((low, high)),
+        false => Err(PyValueError::new_err(format!(
+            "`limits` are {low} and {high}: the lower one comes first"
+        ))),
+    }
+}
+
+/// A PID controller for samples, ``u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)``.
+///
+/// It stays within limits: while the output stands at one, the integral does not grow in that direction. The derivative
+/// is filtered with an eighth of its time.
+///
+/// Parameters
+/// ----------
+/// gain : float
+///     In units of what is written for each unit of the error.
+/// integral_s, derivative_s : float
+///     Integral and derivative time, s, from 0 on; 0 for none.
+///
+/// Raises
+/// ------
+/// ControlError
+///     For a gain that is not finite and times below zero.
+///
+/// Examples
+/// --------
+/// >>> pid = hysteron.control.Pid(2.0, integral_s=1.0)
+/// >>> pid.step(1.0, 0.1)
+/// 2.2
+/// >>> pid.step(100.0, 0.1, limits=(0, 10))
+/// 10.0
+#[pyclass(frozen, module = "hysteron.control")]
+pub(crate) struct Pid {
+    pub(crate) gains: Gains,
+    inner: Mutex<control::Pid>,
+}
+
+impl Pid {
+    pub(crate) fn of(gains: Gains) -> Self {
+        let inner = Mutex::new(control::Pid::new(gains));
+        Self { gains, inner }
+    }
+
+    fn with<T>(&self, work: impl FnOnce(&mut control::Pid) -> T) -> T {
+        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[pymethods]
+impl Pid {
+    #[new]
+    #[pyo3(signature = (gain, *, integral_s=0.0, derivative_s=0.0))]
+    fn new(gain: f64, integral_s: f64, derivative_s: f64) -> PyResult<Self> {
+        let gains = Gains {
+            gain,
+            integral_s,
+            derivative_s,
+        };
+        gains.check().raise()?;
+        Ok(Self::of(gains))
+    }
+
+    /// Gains by Tyreus & Luyben 1992, as `RelayTest.gains` gives.
+    ///
+    /// Parameters
+    /// ----------
+    /// ultimate_gain : float
+    /// period_s : float
+    ///
+    /// Returns
+    /// -------
+    /// Pid
+    #[staticmethod]
+    fn from_oscillation(ultimate_gain: f64, period_s: f64) -> PyResult<Self> {
+        let gains = Gains::from_oscillation(ultimate_gain, period_s);
+        gains.check().raise()?;
+        Ok(Self::of(gains))
+    }
+
+    /// Gains by SIMC (Skogestad 2003) from a step test on one branch.
+    ///
+    /// Parameters
+    /// ----------
+    /// output : array_like, shape (n,)
+    ///     What was measured.
+    /// begin : int
+    ///     The sample from which on the command is larger by `step`; before, it rests.
+    /// step : float
+    /// interval_s : float
+    ///     Time between samples.
+    ///
+    /// Returns
+    /// -------
+    /// Pid
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Where the output does not answer by more than its noise.
+    ///
+    /// Examples
+    /// --------
+    /// >>> late = np.maximum(0.1 * (np.arange(400) - 55), 0)  # a lag of 2 s, 0.5 s late
+    /// >>> pid = hysteron.control.Pid.from_step(3 * (1 - np.exp(-late / 2)), 50, 1.0, 0.1)
+    /// >>> round(pid.gain, 1)
+    /// 0.7
+    #[staticmethod]
+    fn from_step(
+        output: &Bound<'_, PyAny>,
+        begin: usize,
+        step: f64,
+        interval_s: f64,
+    ) -> PyResult<Self> {
+        let output = samples(output, "output")?;
+        let interval_s = interval("interval_s", interval_s)?;
+        let gains = Gains::from_step(output.as_slice()?, begin, step, interval_s);
+        let gains = gains.ok_or_else(|| {
+            PyValueError::new_err("`output` does not answer the step by more than its noise, so that no PID can be tuned")
+        })?;
+        gains.check().raise()?;
+        Ok(Self::of(gains))
+    }
+
+    /// The proportional gain.
+    #[getter]
+    fn gain(&self) -> f64 {
+        self.gains.gain
+    }
+
+    /// The integral time, s; 0 for none.
+    #[getter]
+    fn integral_s(&self) -> f64 {
+        self.gains.integral_s
+    }
+
+    /// The derivative time, s; 0 for none.
+    #[getter]
+    fn derivative_s(&self) -> f64 {
+        self.gains.derivative_s
+    }
+
+    /// The output for `error`, `dt` seconds after the last.
+    ///
+    /// Parameters
+    /// ----------
+    /// error : float
+    ///     Wanted less measured.
+    /// dt : float
+    ///     s, above 0.
+    /// bias : float
+    ///     Added to the three terms: a feedforward.
+    /// limits : tuple of float, optional
+    ///     Lowest and highest output. By default none.
+    /// held : tuple of bool
+    ///     Whether the actuator behind stands at its lower and its upper limit.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     Within the limits whatever the numbers are.
+    #[pyo3(signature = (error, dt, *, bias=0.0, limits=None, held=(false, false)),
+        text_signature = "($self, error, dt, *, bias=0.0, limits=None, held=(False, False))")]
+    fn step(
+        &self,
+        error: f64,
+        dt: f64,
+        bias: f64,
+        limits: Option<(f64, f64)>,
+        held: (bool, bool),
+    ) -> PyResult<f64> {
+        let (dt, limits) = (interval("dt", dt)?, ordered(limits)?);
+        Ok(self.with(|pid| pid.step(error, dt, bias, limits, held)))
+    }
+
+    /// The output without a reading: what the terms came to stays, and the derivative starts again.
+    ///
+    /// Parameters
+    /// ----------
+    /// bias, limits
+    ///     As for `step`.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    #[pyo3(signature = (*, bias=0.0, limits=None))]
+    fn hold(&self, bias: f64, limits: Option<(f64, f64)>) -> PyResult<f64> {
+        let limits = ordered(limits)?;
+        Ok(self.with(|pid| pid.hold(bias, limits)))
+    }
+
+    /// At rest again, with nothing integrated.
+    fn reset(&self) {
+        self.with(|pid| *pid = control::Pid::new(self.gains));
+    }
+
+    fn __repr__(&self) -> String {
+        let Gains {
+            gain,
+            integral_s,
+            derivative_s,
+        } = self.gains;
+        format!("Pid({gain}, integral_s={integral_s}, derivative_s={derivative_s})")
+    }
+}
+
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+///
+/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the hysteresis,
+/// which a step test on one branch does not see.
+///
+/// Parameters
+/// ----------
+/// commands : tuple of float
+///     The relay's two commands, the lower one first.
+/// middle : float
+///     Output at which it switches.
+/// band : float
+///     How far beyond, from 0 on: larger than the noise.
+///
+/// Raises
+/// ------
+/// ControlError
+///
+/// Examples
+/// --------
+/// >>> plant = hysteron.PreisachPlant()
+/// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+/// >>> while not test.done:
+/// ...     plant.write(test.command)
+/// ...     plant.advance(0.01)
+/// ...     test.push(plant.read()[0])
+/// >>> pid = test.gains(0.01)
+/// >>> pid.gain > 0 and pid.integral_s > 0
+/// True
+#[pyclass(frozen, module = "hysteron.control")]
+pub(crate) struct RelayTest {
+    inner: Mutex<control::RelayTest>,
+}
+
+impl RelayTest {
+    fn with<T>(&self, work: impl FnOnce(&mut control::RelayTest) -> T) -> T {
+        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[pymethods]
+impl RelayTest {
+    #[new]
+    #[pyo3(signature = (commands, middle, *, band=0.0))]
+    fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
+        let inner = Mutex::new(control::RelayTest::new(commands, middle, band).raise()?);
+        Ok(Self { inner })
+    }
+
+    /// The command for the sample that comes.
+    #[getter]
+    fn command(&self) -> f64 {
+        self.with(|test| test.command())
+    }
+
+    /// Whether there were periods enough.
+    #[getter]
+    fn done(&self) -> bool {
+        self.with(|test| test.is_done())
+    }
+
+    /// Lowest and highest output so far, None before the first.
+    #[getter]
+    fn outputs(&self) -> Option<(f64, f64)> {
+        self.with(|test| test.outputs())
+    }
+
+    /// Take the output that followed the command.
+    ///
+    /// Parameters
+    /// ----------
+    /// output : float
+    ///     NaN for a lost reading.
+    fn push(&self, output: f64) {
+        self.with(|test| test.push(output));
+    }
+
+    /// Ultimate gain and period, once the test is done.
+    ///
+    /// Parameters
+    /// ----------
+    /// interval_s : float
+    ///     Time between samples.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of float, or None
+    fn oscillation(&self, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
+        let interval_s = interval("interval_s", interval_s)?;
+        let found = self.with(|test| test.oscillation());
+        Ok(found.map(|(gain, period)| (gain, period * interval_s)))
+    }
+
+    /// A PID with the gains that follow, by Tyreus & Luyben 1992.
+    ///
+    /// Parameters
+    /// ----------
+    /// interval_s : float
+    ///     Time between samples.
+    ///
+    /// Returns
+    /// -------
+    /// Pid
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Before the test is done.
+    fn gains(&self, interval_s: f64) -> PyResult<Pid> {
+        match self.oscillation(interval_s)? {
+            Some((gain, period_s)) => Pid::from_oscillation(gain, period_s),
+            None => Err(PyValueError::new_err(
+                "the test is not done: go on until `done`",
+            )),
+        }
+    }
+}

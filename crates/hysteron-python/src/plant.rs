@@ -1,0 +1,244 @@
+//! Simulated plants.
+
+use crate::error::Raise;
+use crate::said::options;
+use hysteron::plant::{self, PreisachPlantOptions, SpringPlantOptions};
+use hysteron::track::{Event, PlantOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
+
+/// A simulated device: `SpringPlant` or `PreisachPlant`.
+///
+/// Once a sample: `read`, `write`, `advance`. Several threads may share one. It cannot be pickled: one made with the same options and
+/// seed does the same.
+#[pyclass(frozen, subclass, module = "hysteron")]
+pub(crate) struct SimulatedPlant {
+    inner: Mutex<Boxed>,
+    options: PlantOptions,
+}
+
+impl SimulatedPlant {
+    /// The plant, which nobody else has.
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Boxed> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl SimulatedPlant {
+    /// Always True: nothing was measured.
+    #[getter]
+    fn simulated(&self) -> bool {
+        true
+    }
+
+    /// Lowest and highest drive.
+    #[getter]
+    fn drives(&self) -> (f64, f64) {
+        self.options.drives()
+    }
+
+    /// Drive, input of the hysteresis and output, with their units.
+    #[getter]
+    fn quantities(&self) -> [String; 3] {
+        self.options
+            .quantities()
+            .map(|quantity| quantity.to_column())
+    }
+
+    /// Read the sensors.
+    ///
+    /// Returns
+    /// -------
+    /// output : float
+    ///     NaN where the sensor gave nothing.
+    /// input : float or None
+    ///     The input of the hysteresis; None where no sensor measures it.
+    fn read(&self) -> (f64, Option<f64>) {
+        let reading = self.lock().read();
+        (reading.output, reading.input)
+    }
+
+    /// Set the drive, held within its limits until the next call.
+    ///
+    /// Parameters
+    /// ----------
+    /// drive : float
+    fn write(&self, drive: f64) {
+        self.lock().write(drive);
+    }
+
+    /// Let time pass.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s : float
+    ///     s; nothing happens for a time that cannot pass.
+    fn advance(&self, py: Python<'_>, dt_s: f64) {
+        py.detach(|| self.lock().advance(dt_s));
+    }
+
+    /// The true output and input, without sensors.
+    ///
+    /// Returns
+    /// -------
+    /// output, input : float
+    fn truth(&self) -> (f64, Option<f64>) {
+        let truth = self.lock().truth();
+        (truth.output, truth.input)
+    }
+
+    /// Change what acts on the plant.
+    ///
+    /// Parameters
+    /// ----------
+    /// load_n : float, optional
+    ///     Load, N.
+    /// room_degc : float, optional
+    ///     Room temperature, °C.
+    /// predeformation_mm : float, optional
+    ///     Pre-deformation, mm.
+    /// stuck, lost : bool, optional
+    ///     Whether the output's sensor stands still, or reads nothing.
+    ///
+    /// Raises
+    /// ------
+    /// RigError
+    ///     For values outside the plant's physics, and for what the plant does not know.
+    #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
+    fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+        let given = match what {
+            Some(what) => what.copy()?,
+            None => PyDict::new(py),
+        };
+        given.set_item("at_s", 0.0)?;
+        let event: Event = options("a disturbance", Some(given.as_any()))?;
+        let mut plant = self.lock();
+        event
+            .disturbances()
+            .into_iter()
+            .try_for_each(|what| plant.disturb(what))
+            .raise()
+    }
+}
+
+/// A simulated NiTi spring, heated by a current and read through a thermocouple and an LVDT: the rig of the chapter.
+///
+/// Drive: current, A. Input of the hysteresis: temperature, °C. Output: displacement, mm.
+///
+/// Parameters
+/// ----------
+/// load_n : float
+///     Load, N, from 0 to 11.
+/// room_degc : float
+///     Room temperature, °C, from -50 to 200.
+/// predeformation_mm : float
+///     From 0 to 20.
+/// limit_a : float
+///     Largest current, A, from 0.1 to 3.
+/// fatigue : dict, optional
+///     Drift with the thermal cycles: 'shift_k' (-20 to 20), 'irrecoverable_mm' (0 to 10), 'cycles' (0.1 to 1e6). By default none.
+/// thermocouple, lvdt : dict, optional
+///     The sensors: 'lag_s', 'accuracy' (three standard deviations), 'resolution', 'range' (a pair), 'dropout' (0 to 1); what is
+///     left out is perfect. By default those of the chapter.
+/// seed : int
+///     Of the sensors' noise.
+///
+/// Raises
+/// ------
+/// RigError
+///     Names the first number that does not fit.
+/// TypeError, ValueError
+///     For options that there are none of, and values that are no numbers.
+///
+/// Examples
+/// --------
+/// >>> plant = hysteron.SpringPlant(load_n=6, seed=3)
+/// >>> plant.write(2.0)
+/// >>> plant.advance(30.0)
+/// >>> lifted, temperature = plant.truth()
+/// >>> plant.disturb(load_n=10.0)
+/// >>> plant.truth()[0] < lifted - 1
+/// True
+#[pyclass(frozen, extends = SimulatedPlant, module = "hysteron")]
+pub(crate) struct SpringPlant;
+
+#[pymethods]
+impl SpringPlant {
+    #[new]
+    #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, room_degc=22.0, predeformation_mm=0.0, limit_a=2.0, fatigue=None, thermocouple=..., lvdt=..., seed=1)")]
+    fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
+        let options: SpringPlantOptions =
+            self::options("SpringPlant", options.map(|o| o.as_any()))?;
+        let plant: Boxed = Box::new(plant::SpringPlant::new(&options).raise()?);
+        let (inner, options) = (Mutex::new(plant), PlantOptions::Spring(options));
+        Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "<SpringPlant, simulated: current [A] → temperature [degC] → displacement [mm]>"
+    }
+}
+
+/// A simulated piezo-like actuator behind an amplifier, made of relays that no model here has on its plane.
+///
+/// Drive: voltage, V. Input of the hysteresis: the amplifier's voltage, V. Output: displacement, µm.
+///
+/// Parameters
+/// ----------
+/// load_n : float
+///     Load, N, from 0 to 12.
+/// lag_s : float
+///     Time constant of the amplifier, s, from 0 to 5.
+/// limit_v : float
+///     Highest drive, V, from 1 to 150.
+/// levels : int
+///     Centres of relays, and half-widths for each, from 4 to 1000.
+/// drift : dict, optional
+///     Drift with time: 'threshold_v' (-20 to 20), 'gain' (-0.5 to 0.5), 'time_s' (10 to 1e7). By default none.
+/// measure_input : bool
+///     Whether the amplifier's voltage is measured.
+/// output_sensor, input_sensor : dict, optional
+///     As those of `SpringPlant`.
+/// seed : int
+///     Of the sensors' noise.
+///
+/// Raises
+/// ------
+/// RigError
+///     Names the first number that does not fit.
+/// TypeError, ValueError
+///     For options that there are none of, and values that are no numbers.
+///
+/// Examples
+/// --------
+/// >>> plant = hysteron.PreisachPlant()
+/// >>> reached = []
+/// >>> for drive in (0, 75, 150, 75):
+/// ...     plant.write(drive)
+/// ...     plant.advance(1.0)
+/// ...     reached.append(plant.truth()[0])
+/// >>> reached[3] > reached[1] + 10
+/// True
+#[pyclass(frozen, extends = SimulatedPlant, module = "hysteron")]
+pub(crate) struct PreisachPlant;
+
+#[pymethods]
+impl PreisachPlant {
+    #[new]
+    #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, lag_s=0.02, limit_v=150.0, levels=240, drift=..., measure_input=False, output_sensor=..., input_sensor=..., seed=1)")]
+    fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
+        let options: PreisachPlantOptions =
+            self::options("PreisachPlant", options.map(|o| o.as_any()))?;
+        let plant: Boxed = Box::new(plant::PreisachPlant::new(&options).raise()?);
+        let (inner, options) = (Mutex::new(plant), PlantOptions::Preisach(options));
+        Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "<PreisachPlant, simulated: voltage [V] → displacement [um]>"
+    }
+}

@@ -1,0 +1,422 @@
+//! `Recording` and `read`.
+
+use crate::array::samples;
+use crate::error::Raise;
+use crate::said::{told, warn};
+use hysteron::{Columns, Origin, Plane, Quantity, Repair};
+use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple, PyType};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// An input and the output it caused, sample by sample.
+///
+/// Parameters
+/// ----------
+/// input, output : array_like, shape (n,)
+/// time : array_like, shape (n,), optional
+///     Seconds, not decreasing.
+/// load : array_like, shape (n,), optional
+///     The load or stress.
+/// input_name, output_name, load_name : str
+///     What they are, with their unit in brackets: ``'temperature [degC]'``.
+/// simulated : bool
+///     Whether the samples come from a simulation; everything made from them says so.
+///
+/// Raises
+/// ------
+/// RecordingError
+///     For series of different lengths, no samples, one that is NaN or infinite, or time that goes back.
+///
+/// Examples
+/// --------
+/// >>> recording = hysteron.Recording([20, 80, 50], [0, 14, 11], input_name='temperature [degC]')
+/// >>> recording
+/// <Recording, 3 samples: temperature [degC] → output>
+/// >>> recording.output
+/// array([ 0., 14., 11.])
+#[pyclass(frozen, module = "hysteron", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Recording {
+    pub(crate) inner: Arc<hysteron::Recording>,
+}
+
+impl From<hysteron::Recording> for Recording {
+    fn from(recording: hysteron::Recording) -> Self {
+        Self {
+            inner: Arc::new(recording),
+        }
+    }
+}
+
+/// An array, or `None` where there is no series.
+type Series<'py> = Option<Bound<'py, PyArray1<f64>>>;
+
+#[pymethods]
+impl Recording {
+    #[new]
+    #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        input: &Bound<'_, PyAny>,
+        output: &Bound<'_, PyAny>,
+        time: Option<&Bound<'_, PyAny>>,
+        load: Option<&Bound<'_, PyAny>>,
+        input_name: &str,
+        output_name: &str,
+        load_name: &str,
+        simulated: bool,
+    ) -> PyResult<Self> {
+        let recording = hysteron::Recording {
+            time: optional(time, "time")?,
+            input: series(input, "input")?,
+            output: series(output, "output")?,
+            input_quantity: Quantity::from_column(input_name),
+            output_quantity: Quantity::from_column(output_name),
+            load: optional(load, "load")?,
+            load_quantity: Quantity::from_column(load_name),
+            origin: match simulated {
+                true => Origin::Simulated,
+                false => Origin::Measured,
+            },
+            source: None,
+        };
+        recording.check().raise()?;
+        Ok(recording.into())
+    }
+
+    /// A recording from columns of a pandas frame, or of anything else that is indexed by their names.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : pandas.DataFrame
+    /// input, output : str
+    ///     The columns, with their unit in brackets.
+    /// time : str, optional
+    ///     The column of time in seconds.
+    /// load : str, optional
+    ///     The column of the load or stress.
+    ///
+    /// Returns
+    /// -------
+    /// Recording
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     For a column that is not there.
+    /// RecordingError
+    ///     As `Recording`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> frame = {'T [degC]': [20, 80], 'lift': [0, 14]}
+    /// >>> hysteron.Recording.from_frame(frame, input='T [degC]', output='lift')
+    /// <Recording, 2 samples: T [degC] → lift>
+    #[classmethod]
+    #[pyo3(signature = (frame, *, input, output, time=None, load=None))]
+    fn from_frame<'py>(
+        _class: &Bound<'_, PyType>,
+        frame: &Bound<'py, PyAny>,
+        input: &Bound<'py, PyAny>,
+        output: &Bound<'py, PyAny>,
+        time: Option<&Bound<'py, PyAny>>,
+        load: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let column = |name: &Bound<'py, PyAny>| frame.get_item(name);
+        let load_name = load.map(|name| name.to_string());
+        Self::new(
+            &column(input)?,
+            &column(output)?,
+            time.map(column).transpose()?.as_ref(),
+            load.map(column).transpose()?.as_ref(),
+            &input.to_string(),
+            &output.to_string(),
+            load_name.as_deref().unwrap_or("load"),
+            false,
+        )
+    }
+
+    /// The input samples, shape (n,): a copy.
+    #[getter]
+    fn input<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.input)
+    }
+
+    /// The output samples, shape (n,): a copy.
+    #[getter]
+    fn output<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.output)
+    }
+
+    /// Time in seconds, shape (n,), or None: a copy.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Series<'py> {
+        let time = self.inner.time.as_ref();
+        time.map(|time| PyArray1::from_slice(py, time))
+    }
+
+    /// The load, shape (n,), or None: a copy.
+    #[getter]
+    fn load<'py>(&self, py: Python<'py>) -> Series<'py> {
+        let load = self.inner.load.as_ref();
+        load.map(|load| PyArray1::from_slice(py, load))
+    }
+
+    /// What the input is, with its unit.
+    #[getter]
+    fn input_name(&self) -> String {
+        self.inner.input_quantity.to_column()
+    }
+
+    /// What the output is, with its unit.
+    #[getter]
+    fn output_name(&self) -> String {
+        self.inner.output_quantity.to_column()
+    }
+
+    /// What the load is, with its unit.
+    #[getter]
+    fn load_name(&self) -> String {
+        self.inner.load_quantity.to_column()
+    }
+
+    /// Whether it comes from a simulated plant.
+    #[getter]
+    fn simulated(&self) -> bool {
+        self.inner.origin == Origin::Simulated
+    }
+
+    /// The file that it was read from, or None.
+    #[getter]
+    fn path(&self) -> Option<PathBuf> {
+        self.inner.source.as_ref().map(|source| source.path.clone())
+    }
+
+    /// Write a CSV file with a header row, whole or not at all.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path-like
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    fn to_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.inner.write_csv(&path).raise())
+    }
+
+    /// Ranges, reversals, sampling and gaps, and how many operators the input moves.
+    ///
+    /// Parameters
+    /// ----------
+    /// levels : int
+    ///     Of the plane that operators are counted on.
+    /// range : tuple of float, optional
+    ///     Its lowest and highest level; by default those that a fit takes.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///
+    /// Examples
+    /// --------
+    /// >>> summary = hysteron.Recording([20, 80, 50], [0, 14, 11]).summary(levels=5)
+    /// >>> summary['samples'], summary['operators'], summary['excited']
+    /// (3, 15, 15)
+    #[pyo3(signature = (*, levels=20, range=None))]
+    fn summary<'py>(
+        &self,
+        py: Python<'py>,
+        levels: usize,
+        range: Option<(f64, f64)>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let plane = match range {
+            Some((min, max)) => Plane::new(min, max, levels).raise()?,
+            None => hysteron::plane_of(&self.inner, levels).raise()?,
+        };
+        let summary = py.detach(|| hysteron::inspect_recording(&self.inner, plane).raise())?;
+        told(py, &summary)
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.len()
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.inner == other.inner
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, this) = (slf.py(), slf.get());
+        let named = PyDict::new(py);
+        named.set_item("time", this.time(py))?;
+        named.set_item("load", this.load(py))?;
+        named.set_item("input_name", this.input_name())?;
+        named.set_item("output_name", this.output_name())?;
+        named.set_item("load_name", this.load_name())?;
+        named.set_item("simulated", this.simulated())?;
+        let series = (this.input(py), this.output(py));
+        let partial = py.import("functools")?.getattr("partial")?;
+        let make = partial.call((slf.get_type(),), Some(&named))?;
+        (make, series).into_pyobject(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let simulated = if self.simulated() { ", simulated" } else { "" };
+        let (input, output) = (self.input_name(), self.output_name());
+        let samples = self.inner.len();
+        format!("<Recording, {samples} samples{simulated}: {input} → {output}>")
+    }
+}
+
+/// Read a recording from a CSV, Parquet or MATLAB file.
+///
+/// Warns (`HysteronWarning`) of rows that were mended and of gaps in time.
+///
+/// Parameters
+/// ----------
+/// path : str or path-like
+/// input, output : str
+///     The columns; in a MATLAB file the variables, ``'M:2'`` being the second column of the matrix ``M``.
+/// time : str, optional
+///     The column of time in seconds.
+/// load : str, optional
+///     The column of the load or stress.
+/// input_name, output_name, load_name : str, optional
+///     What they are, with their unit in brackets; by default what the file says.
+/// repair : bool
+///     Drop rows without a number, sort times that go back, merge repeated ones. By default they are refused.
+///
+/// Returns
+/// -------
+/// Recording
+///
+/// Raises
+/// ------
+/// FileError
+/// RecordingError
+///     With line and column.
+///
+/// Examples
+/// --------
+/// >>> import os, tempfile
+/// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
+/// >>> _ = open(path, 'w').write('T [degC];lift\n20,5;0\n80;14\n')
+/// >>> hysteron.read(path, input='T [degC]', output='lift').input
+/// array([20.5, 80. ])
+#[pyfunction]
+#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    input: &str,
+    output: &str,
+    time: Option<&str>,
+    load: Option<&str>,
+    input_name: Option<&str>,
+    output_name: Option<&str>,
+    load_name: Option<&str>,
+    repair: bool,
+) -> PyResult<Recording> {
+    let columns = Columns {
+        input,
+        output,
+        time,
+        load,
+    };
+    let repair = match repair {
+        true => Repair::Mend,
+        false => Repair::Refuse,
+    };
+    let (mut recording, notes) =
+        py.detach(|| hysteron::Recording::read(&path, columns, repair).raise())?;
+    for note in notes {
+        warn(py, &format!("{}: {note}", path.display()))?;
+    }
+    let named = [
+        (input_name, &mut recording.input_quantity),
+        (output_name, &mut recording.output_quantity),
+        (load_name, &mut recording.load_quantity),
+    ];
+    for (name, quantity) in named {
+        if let Some(name) = name {
+            *quantity = Quantity::from_column(name);
+        }
+    }
+    Ok(recording.into())
+}
+
+/// A recording, or arrays that make one.
+pub(crate) fn recording_of(
+    value: &Bound<'_, PyAny>,
+    output: Option<&Bound<'_, PyAny>>,
+    time: Option<&Bound<'_, PyAny>>,
+    load: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Recording> {
+    match (value.cast::<Recording>(), output) {
+        (Ok(recording), None) if time.is_none() && load.is_none() => Ok(recording.get().clone()),
+        (Ok(_), _) => Err(PyTypeError::new_err(
+            "a Recording has its own output, time and load: leave these out",
+        )),
+        (Err(_), Some(output)) => {
+            Recording::new(value, output, time, load, "input", "output", "load", false)
+        }
+        (Err(_), None) => Err(PyTypeError::new_err(
+            "a Recording is needed, or an input and its output",
+        )),
+    }
+}
+
+/// One recording, as [`recording_of`], or a list of them.
+pub(crate) fn recordings_of(
+    value: &Bound<'_, PyAny>,
+    output: Option<&Bound<'_, PyAny>>,
+    time: Option<&Bound<'_, PyAny>>,
+    load: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<hysteron::Recording>> {
+    if output.is_none()
+        && let Ok(several) = value.extract::<Vec<Recording>>()
+    {
+        if time.is_some() || load.is_some() {
+            return Err(PyTypeError::new_err(
+                "recordings have their own time and load: leave these out",
+            ));
+        }
+        return Ok(several.iter().map(|r| (*r.inner).clone()).collect());
+    }
+    let recording = recording_of(value, output, time, load)?;
+    Ok(vec![Arc::unwrap_or_clone(recording.inner)])
+}
+
+/// One input, or a list of inputs, each an array or that of a recording.
+pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<Vec<f64>>> {
+    if let Ok(recording) = value.cast::<Recording>() {
+        return Ok(vec![recording.get().inner.input.clone()]);
+    }
+    let listed = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    match value.extract::<Vec<Bound<'_, PyAny>>>() {
+        Ok(several) if listed && several.first().is_none_or(|first| first.len().is_ok()) => several
+            .iter()
+            .map(|one| match one.cast::<Recording>() {
+                Ok(recording) => Ok(recording.get().inner.input.clone()),
+                Err(_) => series(one, argument),
+            })
+            .collect(),
+        _ => Ok(vec![series(value, argument)?]),
+    }
+}
+
+pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
+    Ok(samples(value, argument)?.as_slice()?.to_vec())
+}
+
+pub(crate) fn optional(
+    value: Option<&Bound<'_, PyAny>>,
+    argument: &str,
+) -> PyResult<Option<Vec<f64>>> {
+    value.map(|value| series(value, argument)).transpose()
+}

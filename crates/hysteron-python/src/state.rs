@@ -1,0 +1,154 @@
+//! `State`.
+
+use crate::array::samples;
+use crate::error::Raise;
+use crate::model::{Model, filled};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What a model remembers of its input, made by `Model.start`.
+///
+/// Several threads may share one: each call is done before the next begins.
+///
+/// Examples
+/// --------
+/// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+/// >>> [state.step(x) for x in (0.5, 1.0, 0.5)]
+/// [4.0, 7.0, 5.0]
+/// >>> state.turning_points
+/// array([2. , 1.5])
+#[pyclass(frozen, module = "hysteron")]
+pub(crate) struct State {
+    model: Model,
+    inner: Mutex<hysteron::State>,
+}
+
+impl State {
+    pub(crate) fn new(model: Model, state: hysteron::State) -> Self {
+        let inner = Mutex::new(state);
+        Self { model, inner }
+    }
+
+    /// The state, which nobody else has. Never waited for with the interpreter's lock held by a thread that
+    /// somebody inside waits for: no Python runs inside.
+    pub(crate) fn lock(&self) -> MutexGuard<'_, hysteron::State> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl State {
+    /// The model that this is a state of.
+    #[getter]
+    fn model(&self) -> Model {
+        self.model.clone()
+    }
+
+    /// Move to `input` and give the output.
+    ///
+    /// Parameters
+    /// ----------
+    /// input : float
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For an input that is NaN or infinite; the state is then as it was.
+    fn step(&self, input: f64) -> PyResult<f64> {
+        let step = self.model.inner.step(&mut self.lock(), input);
+        Ok(step.raise_of("input", &[input])?.output)
+    }
+
+    /// Move through `input` and give the outputs.
+    ///
+    /// Parameters
+    /// ----------
+    /// input : array_like, shape (n,)
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (n,)
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a sample that is NaN or infinite; the state is then as it was.
+    pub(crate) fn run<'py>(
+        &self,
+        py: Python<'py>,
+        input: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let input = samples(input, "input")?;
+        let samples = input.as_slice()?;
+        filled(py, samples.len(), |output| {
+            let done = self.model.inner.run(&mut self.lock(), samples, output);
+            done.raise_of("input", samples).map(|_| ())
+        })
+    }
+
+    /// Every operator off, or on.
+    ///
+    /// Parameters
+    /// ----------
+    /// on : bool
+    #[pyo3(signature = (*, on=false))]
+    fn reset(&self, on: bool) {
+        let model = &self.model.inner;
+        *self.lock() = if on { model.saturated() } else { model.start() };
+    }
+
+    /// What `Model.restore` needs to make this state again, bit for bit.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     With 'turning_points' (ndarray) and 'input' (float).
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let saved = PyDict::new(py);
+        saved.set_item("turning_points", self.turning_points(py))?;
+        saved.set_item("input", self.input())?;
+        Ok(saved)
+    }
+
+    /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position last.
+    #[getter]
+    fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        // Not made with the state locked: an array can set off Python's collector, and with it any code.
+        let points: Vec<f64> = self.lock().turning_points().collect();
+        PyArray1::from_vec(py, points)
+    }
+
+    /// The last input, as it was given.
+    #[getter]
+    fn input(&self) -> f64 {
+        self.lock().input()
+    }
+
+    /// A state of its own that has seen the same.
+    fn copy(&self) -> Self {
+        Self::new(self.model.clone(), self.lock().clone())
+    }
+
+    fn __copy__(&self) -> Self {
+        self.copy()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy()
+    }
+
+    fn __repr__(&self) -> String {
+        let state = self.lock();
+        format!(
+            "<State at {}, {} turning points>",
+            state.input(),
+            state.held()
+        )
+    }
+}

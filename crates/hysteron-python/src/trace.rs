@@ -1,0 +1,171 @@
+//! `control.Trace`.
+
+use crate::error::Raise;
+use crate::plane::on_plane;
+use hysteron::control::{self, LoopStatus};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::path::PathBuf;
+
+/// A run of a control loop: arrays of shape (n,), a value for each sample.
+#[pyclass(frozen, module = "hysteron.control", from_py_object)]
+#[derive(Clone)]
+pub(crate) struct Trace {
+    inner: std::sync::Arc<control::Trace>,
+}
+
+impl From<control::Trace> for Trace {
+    fn from(trace: control::Trace) -> Self {
+        let inner = std::sync::Arc::new(trace);
+        Self { inner }
+    }
+}
+
+impl Trace {
+    fn flags<'py>(
+        &self,
+        py: Python<'py>,
+        flag: impl Fn(&LoopStatus) -> bool,
+    ) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_iter(py, self.inner.status.iter().map(flag))
+    }
+}
+
+type Series<'py> = Bound<'py, PyArray1<f64>>;
+
+#[pymethods]
+impl Trace {
+    /// Time, s.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.time)
+    }
+
+    /// What the output should be.
+    #[getter]
+    fn reference<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.reference)
+    }
+
+    /// The output: the true one of a simulated plant, the measured one of a device.
+    #[getter]
+    fn output<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.output)
+    }
+
+    /// The output as its sensor read it; NaN where it gave nothing.
+    #[getter]
+    fn measured<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.measured)
+    }
+
+    /// The input of the hysteresis, true or measured; where neither is known, the one asked for.
+    #[getter]
+    fn input<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.input)
+    }
+
+    /// The input that the controller asked for.
+    #[getter]
+    fn command<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.command)
+    }
+
+    /// The drive that was written to the device.
+    #[getter]
+    fn drive<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.drive)
+    }
+
+    /// The output that the controller's model expected before it learned from the reading; NaN without a model.
+    #[getter]
+    fn prediction<'py>(&self, py: Python<'py>) -> Series<'py> {
+        PyArray1::from_slice(py, &self.inner.prediction)
+    }
+
+    /// Whether the drive or the command stood at a limit.
+    #[getter]
+    fn saturated<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.saturated)
+    }
+
+    /// Whether the reference lay out of the model's reach.
+    #[getter]
+    fn out_of_reach<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.out_of_reach)
+    }
+
+    /// Whether a reading was missing, or stuck.
+    #[getter]
+    fn sensor_fault<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.sensor_fault)
+    }
+
+    /// Whether the model learned from the sample.
+    #[getter]
+    fn adapted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.adapted)
+    }
+
+    /// The weights over time, of a controller that adapts on a simulated plant.
+    ///
+    /// Dictionaries with 'time' (s), 'offset' and 'weights' (shape (K, K), NaN below the diagonal).
+    #[getter]
+    fn snapshots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let list = PyList::empty(py);
+        for snapshot in &self.inner.snapshots {
+            let levels = (2.0 * snapshot.weights.len() as f64).sqrt() as usize;
+            let entry = PyDict::new(py);
+            entry.set_item("time", snapshot.time)?;
+            entry.set_item("offset", snapshot.offset)?;
+            entry.set_item("weights", on_plane(py, levels, &snapshot.weights)?)?;
+            list.append(entry)?;
+        }
+        Ok(list)
+    }
+
+    /// All series, by name, as pandas takes them.
+    ///
+    /// Returns
+    /// -------
+    /// dict of ndarray
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let table = PyDict::new(py);
+        table.set_item("time", self.time(py))?;
+        table.set_item("reference", self.reference(py))?;
+        table.set_item("output", self.output(py))?;
+        table.set_item("measured", self.measured(py))?;
+        table.set_item("input", self.input(py))?;
+        table.set_item("command", self.command(py))?;
+        table.set_item("drive", self.drive(py))?;
+        table.set_item("prediction", self.prediction(py))?;
+        table.set_item("saturated", self.saturated(py))?;
+        table.set_item("out_of_reach", self.out_of_reach(py))?;
+        table.set_item("sensor_fault", self.sensor_fault(py))?;
+        table.set_item("adapted", self.adapted(py))?;
+        Ok(table)
+    }
+
+    /// Write the run as a table, a row for each sample.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path-like
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    fn to_csv(&self, path: PathBuf) -> PyResult<()> {
+        self.inner.write_csv(&path).raise()
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.time.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let last = self.inner.time.last().copied().unwrap_or(0.0);
+        format!("<Trace, {} samples to {last} s>", self.inner.time.len())
+    }
+}

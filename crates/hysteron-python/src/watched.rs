@@ -1,0 +1,93 @@
+//! Long work on a thread of its own, while this one hears Ctrl-C and tells of the progress.
+
+use crate::error::Raise;
+use hysteron::{Error, Watch};
+use pyo3::prelude::*;
+use pyo3::types::PyBool;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// How often signals are looked for and progress is told: nobody sees more.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Does `work` without the interpreter's lock. When a signal or the callback raises, the work ends and that is raised.
+///
+/// `progress` is `None`, `True` for tqdm, or called with what is being done and the share of it, `None` where that is not known.
+///
+/// The watch is called from the threads that work, which never take the interpreter's lock: the thread that was called does all of that.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(Watch<'_>) -> hysteron::Result<T> + Send,
+) -> PyResult<T> {
+    let bar = callback(py, progress)?;
+    let stop = AtomicBool::new(false);
+    let news = Mutex::new(None);
+    let watch = |what: &'static str, share: f64| {
+        *news.lock().unwrap_or_else(PoisonError::into_inner) = Some((what, share));
+        match stop.load(Relaxed) {
+            true => Err(Error::Fit("interrupted".into())),
+            false => Ok(()),
+        }
+    };
+    let tell = || -> PyResult<()> {
+        py.check_signals()?;
+        let news = news.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let (Some(call), Some((what, share))) = (&bar, news) {
+            call.call1((what, (!share.is_nan()).then_some(share)))?;
+        }
+        Ok(())
+    };
+    let (done, finished) = channel::<()>();
+    let (result, raised) = std::thread::scope(|scope| {
+        let worker = scope.spawn(|| {
+            // Dropped in a panic too, which ends the waiting.
+            let done = done;
+            let result = work(&watch);
+            drop(done);
+            result
+        });
+        let mut raised = None;
+        let finished = Mutex::new(finished);
+        let pause = || {
+            let finished = finished.lock().unwrap_or_else(PoisonError::into_inner);
+            finished.recv_timeout(PAUSE)
+        };
+        while py.detach(pause) == Err(RecvTimeoutError::Timeout) {
+            if raised.is_none() {
+                raised = tell().err();
+                stop.store(raised.is_some(), Relaxed);
+            }
+        }
+        (py.detach(|| worker.join()), raised)
+    });
+    let raised = raised.or_else(|| py.check_signals().err());
+    if let (Some(bar), Some(true)) = (&bar, progress.map(|p| p.is_instance_of::<PyBool>())) {
+        bar.call_method0("close")?;
+    }
+    match (raised, result) {
+        (Some(error), _) => Err(error),
+        (None, Ok(result)) => result.raise(),
+        (None, Err(panic)) => resume_unwind(panic),
+    }
+}
+
+fn callback<'py>(
+    py: Python<'py>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    match progress {
+        None => Ok(None),
+        Some(flag) if flag.is_instance_of::<PyBool>() => match flag.extract()? {
+            true => py
+                .import("hysteron.progress")?
+                .call_method0("Bar")
+                .map(Some),
+            false => Ok(None),
+        },
+        Some(call) => Ok(Some(call.clone())),
+    }
+}

@@ -1,0 +1,214 @@
+"""Discrete blocks for python-control (``pip install hysteron[control]``).
+
+A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and simulated there.
+
+python-control calls the functions of a block more than once for a sample, with inputs that are not final yet. So the state
+vector of model and inverse carries the whole memory: ``[count, input, turning points…]``, all zero with every operator
+off, and the functions have no other memory. A model's output follows its input at once: in a closed loop there has to be a
+delay somewhere, as in any other loop of python-control.
+"""
+
+import control
+import numpy as np
+
+from ._hysteron import Adaptive, Model, State
+
+__all__ = ["adaptive_block", "inverse_block", "memory", "model_block"]
+
+_HEADINGS = {1.0: "rising", -1.0: "falling"}
+#: Estimators that an adaptive block remembers, beside the one that it began with.
+_REMEMBERED = 64
+
+
+def memory(model: Model, state: State | None = None) -> np.ndarray:
+    """The state vector of a block for `model`: an initial value for a simulation.
+
+    Parameters
+    ----------
+    model : Model
+    state : State, optional
+        By default every operator off.
+
+    Returns
+    -------
+    ndarray, shape (4 K + 8,)
+
+    Examples
+    --------
+    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> hysteron.blocks.memory(model, model.start(on=True))[:4]
+    array([1., 1., 2., 0.])
+    """
+    vector = np.zeros(4 * model.levels + 8)
+    if state is not None:
+        points = state.turning_points
+        vector[0] = len(points)
+        vector[1] = state.input
+        vector[2 : 2 + len(points)] = points
+    return vector
+
+
+def _state(model: Model, vector: np.ndarray) -> State:
+    count = int(vector[0])
+    if count == 0:
+        return model.start()
+    return model.restore({"turning_points": vector[2 : 2 + count], "input": vector[1]})
+
+
+def _block(model, update, output, dt, kwargs, **usual):
+    names = {**usual, "states": [f"memory[{n}]" for n in range(len(memory(model)))]}
+    return control.NonlinearIOSystem(update, output, dt=dt, **{**names, **kwargs})
+
+
+def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
+    """The model as a block, from its input to its output.
+
+    Parameters
+    ----------
+    model : Model
+    dt : float
+        Time between samples, s.
+    **kwargs
+        To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
+
+    Returns
+    -------
+    control.NonlinearIOSystem
+        Its state is `memory`.
+
+    Examples
+    --------
+    >>> import control
+    >>> block = hysteron.blocks.model_block(hysteron.Model([1.0, 2.0, 4.0], (0, 1)), 0.1)
+    >>> control.input_output_response(block, np.array([0, 0.1, 0.2]), [0.5, 1.0, 0.5]).y
+    array([[4., 7., 5.]])
+    """
+
+    def update(t, x, u, params):
+        state = _state(model, x)
+        state.step(u[0])
+        return memory(model, state)
+
+    def output(t, x, u, params):
+        return np.array([_state(model, x).step(u[0])])
+
+    return _block(model, update, output, dt, kwargs, name="model", inputs=["input"], outputs=["output"])
+
+
+def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float = 0.0, **kwargs) -> control.NonlinearIOSystem:
+    """The exact inverse as a block, from the wanted output to the input.
+
+    Parameters
+    ----------
+    model : Model
+    dt : float
+        Time between samples, s.
+    policy : {'hold', 'anticipate'}
+        With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling, 0 not known.
+    band : float
+        Reversals of the target up to this size are not followed, in the output's unit.
+    **kwargs
+        To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
+
+    Returns
+    -------
+    control.NonlinearIOSystem
+        Its state is `memory`.
+
+    Raises
+    ------
+    CoreError
+        For a model that has no inverse.
+
+    Examples
+    --------
+    >>> import control
+    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> inverse, plant = hysteron.blocks.inverse_block(model, 0.1), hysteron.blocks.model_block(model, 0.1)
+    >>> control.input_output_response(control.series(inverse, plant), np.array([0, 0.1, 0.2]), [4.0, 6.0, 5.0]).y
+    array([[4., 6., 5.]])
+    """
+    if policy not in ("hold", "anticipate"):
+        raise ValueError(f"`policy` is '{policy}': one of 'hold', 'anticipate' is needed")
+    inverse = model.inverse()
+    inputs = ["target"] if policy == "hold" else ["target", "heading"]
+
+    def solve(x, u):
+        state = _state(model, x)
+        return state, inverse.step(state, u[0], heading=_heading(u[1:]), band=band)[0]
+
+    def update(t, x, u, params):
+        return memory(model, solve(x, u)[0])
+
+    def output(t, x, u, params):
+        return np.array([solve(x, u)[1]])
+
+    return _block(model, update, output, dt, kwargs, name="inverse", inputs=inputs, outputs=["input"])
+
+
+def _heading(signal) -> str | None:
+    return _HEADINGS.get(float(np.sign(signal[0]))) if len(signal) else None
+
+
+def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs) -> control.NonlinearIOSystem:
+    """An adaptive compensator as a block: its inverse gives the input for a target, and it learns from what is measured.
+
+    The input for a target comes from the weights that were learned up to the sample before, so that what is measured does
+    not act on it at once. An estimator's memory is no vector: the state is a number that stands for one. The block
+    knows the estimator that it began with (number 0) and the last ones; an older one is refused.
+
+    Parameters
+    ----------
+    adaptive : Adaptive
+        Where it begins. It stays as it is.
+    dt : float
+        Time between samples, s.
+    band : float
+        Reversals of the target up to this size are not followed, in the output's unit.
+    **kwargs
+        To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
+
+    Returns
+    -------
+    control.NonlinearIOSystem
+        From 'target', and 'output' and 'input' as measured on the actuator, to 'command'.
+
+    Examples
+    --------
+    >>> import control
+    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> block = hysteron.blocks.adaptive_block(hysteron.Adaptive(model), 0.1)
+    >>> control.input_output_response(block, np.array([0, 0.1]), [[4.0, 4.0], [4.0, 4.0], [0.5, 0.5]]).y
+    array([[0.5, 0.5]])
+    """
+    known = {0: adaptive.copy()}
+    # What followed an estimator and its inputs: the same number for the same question.
+    followed = {}
+    count = 0
+
+    def at(x):
+        number = int(x[0])
+        if number not in known:
+            raise ValueError(f"the estimator number {number} is not remembered any more: begin again at 0, or go on from the last")
+        return known[number].copy()
+
+    def update(t, x, u, params):
+        nonlocal count
+        question = (int(x[0]), *map(float, u))
+        if question not in followed:
+            estimator = at(x)
+            estimator.solve(u[0], band=band)
+            estimator.step(u[2], u[1])
+            count += 1
+            known[count], followed[question] = estimator, count
+            forgotten = count - _REMEMBERED
+            if forgotten > 0:
+                known.pop(forgotten, None)
+                followed.pop(next(iter(followed)))
+        return np.array([float(followed[question])])
+
+    def output(t, x, u, params):
+        return np.array([at(x).solve(u[0], band=band)[0]])
+
+    usual = {"name": "adaptive", "inputs": ["target", "output", "input"], "outputs": ["command"], "states": ["estimator"]}
+    return control.NonlinearIOSystem(update, output, dt=dt, **{**usual, **kwargs})

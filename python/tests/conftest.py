@@ -1,0 +1,33 @@
+import numpy as np
+import pytest
+
+import hysteron
+
+
+@pytest.fixture(scope="session")
+def truth():
+    """A model with every kind of operator in it."""
+    weights = np.full((12, 12), np.nan)
+    for i in range(12):
+        for j in range(i, 12):
+            weights[i, j] = 0.1 * np.exp(-((j - i - 4) ** 2) / 8)
+    return hysteron.Model(weights, (25, 80), offset=3, input="temperature [degC]", output="lift [mm]")
+
+
+@pytest.fixture(scope="session")
+def swings():
+    """An input that visits the whole plane: swings that shrink."""
+    t = np.linspace(0, 60, 3000)
+    return 50 - 30 * np.cos(t) * np.exp(-t / 60)
+
+
+@pytest.fixture(scope="session")
+def recording(truth, swings):
+    noise = 0.01 * np.random.default_rng(0).normal(size=len(swings))
+    return hysteron.Recording(
+        swings,
+        truth.simulate(swings) + noise,
+        time=0.1 * np.arange(len(swings)),
+        input_name="temperature [degC]",
+        output_name="lift [mm]",
+    )

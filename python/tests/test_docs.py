@@ -1,0 +1,37 @@
+"""The code of the first page, and that of the README, runs word for word in an empty folder."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCS = ROOT / "python" / "docs"
+
+
+def blocks(page):
+    return re.findall(r"^```python\n(.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+
+
+def run(code, folder):
+    env = {**os.environ, "MPLBACKEND": "Agg"}
+    done = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=folder, env=env, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in folder.iterdir()] == ["spring.json"]
+    return done.stdout
+
+
+def test_readme(tmp_path):
+    code = blocks(ROOT / "README.md")
+    assert len(code) == 1
+    assert float(run(code, tmp_path)) < 2
+
+
+def test_start(tmp_path):
+    pytest.importorskip("matplotlib")
+    code = blocks(DOCS / "start.md")
+    assert len(code) >= 5
+    assert run(code, tmp_path).count("%") == 1

@@ -1,0 +1,48 @@
+"""Export to C and to functional mock-up units: what the command writes, from Python."""
+
+import zipfile
+
+import numpy as np
+import pytest
+
+import hysteron
+
+MODEL = hysteron.Model(np.full(15, 0.5), (20, 80), input="temperature [degC]", output="displacement [mm]")
+
+
+@pytest.mark.parametrize("real", ["float", "double"])
+def test_c(tmp_path, real):
+    export = MODEL.export_c(tmp_path, real=real, name="wire")
+    assert export["name"] == "wire" and export["inverse"] is True
+    assert export["flash_bytes"] > 0 and export["ram_bytes"] > 0 and export["step_loop"] == 13
+    assert all(file.exists() for file in export["files"])
+    learns = MODEL.export_c(tmp_path, real=real, name="wire", adaptation=True)
+    assert {file.name for file in learns["files"]} > {"hysteron_mcu_adapt.c", "hysteron_mcu_adapt.h"}
+    assert f"typedef {real} hys_real;" in (tmp_path / "hysteron_mcu.h").read_text()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("inverse", [False, True])
+def test_fmu(tmp_path, fmi, inverse):
+    path = tmp_path / "wire.fmu"
+    said = MODEL.export_fmu(path, inverse=inverse, fmi=fmi)
+    assert said["name"] == ("sf_Inverse_MKP" if inverse else "sf_MKP") and said["bytes"] == path.stat().st_size
+    description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
+    assert f'fmiVersion="{fmi}.0"' in description
+    assert all(f'name="{name}"' in description for name in said["inputs"] + said["outputs"])
+
+
+def test_what_is_refused(tmp_path):
+    with pytest.raises(hysteron.ExportError, match="cannot be the model's name in C"):
+        MODEL.export_c(tmp_path, name="3d")
+    with pytest.raises(ValueError, match="`real` is 'half': one of 'float', 'double'"):
+        MODEL.export_c(tmp_path, real="half")
+    with pytest.raises(hysteron.ExportError, match="end with .fmu"):
+        MODEL.export_fmu(tmp_path / "wire.zip")
+    with pytest.raises(ValueError, match="`fmi` is 1: 2 or 3"):
+        MODEL.export_fmu(tmp_path / "wire.fmu", fmi=1)
+    with pytest.raises(hysteron.CoreError):
+        hysteron.Model([1.0, -1.0, 1.0], (0, 1)).export_fmu(tmp_path / "wire.fmu", inverse=True)
+    assert not list(tmp_path.glob("*.fmu"))
+    with pytest.raises(OSError):
+        MODEL.export_fmu(tmp_path / "nowhere" / "wire.fmu")

@@ -1,0 +1,17 @@
+"""The type stubs say what the module has."""
+
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def test_stubs():
+    pytest.importorskip("mypy")
+    allowed = ROOT / "python/tests/stubtest.txt"  # what scikit-learn adds to every estimator
+    command = [sys.executable, "-m", "mypy.stubtest", "hysteron", "--mypy-config-file", ROOT / "pyproject.toml"]
+    done = subprocess.run([*command, "--allowlist", allowed], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,0 +1,116 @@
+"""`track`: controllers compared on a simulated plant."""
+
+import _thread
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import hysteron
+
+TEXT = """
+title = "A sine on a simulated piezo-like actuator"
+duration_s = 8
+interval_s = 0.01
+settle_s = 2
+seeds = 2
+plant = { kind = "preisach", levels = 60 }
+model = { levels = 10, range = [8, 150], rates = [200, 200] }
+loop = { filter_s = 0.01, tolerance = 0.5 }
+controllers = ["pid", "inverse-pid", "adaptive-pid"]
+reference = [{ kind = "constant", value = 36 }, { kind = "sine", amplitude = 24, period_s = 2 }]
+"""
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    return hysteron.track(TEXT)
+
+
+def test_scores_are_a_table(comparison):
+    scores = comparison.scores
+    assert {len(column) for column in scores.values()} == {3 * 2 * 2}
+    assert scores["controller"][:4] == ["pid"] * 4 and set(scores["seed"]) == {1, 2}
+    trace = comparison.traces["inverse-pid"]
+    window = (trace.time >= scores["from_s"][4]) & (trace.time < scores["to_s"][4])
+    rmse = np.sqrt(np.mean((trace.output - trace.reference)[window] ** 2))
+    assert rmse == pytest.approx(scores["rmse"][4])
+    assert np.isnan(scores["prediction_rmse"][:4]).all(), "a PID predicts nothing"
+
+
+def test_medians_and_ratios(comparison):
+    first = comparison.medians[0]
+    assert (first["controller"], first["window"]) == ("PID", "first half")
+    assert first["rmse"] == pytest.approx(np.median(comparison.scores["rmse"][[0, 2]]))
+    assert first["prediction_rmse"] is None
+    assert comparison.ratios[0]["rmse"] < 1.0
+
+
+def test_what_else_there_is(comparison, tmp_path):
+    assert comparison.simulated is True and "simulated" in repr(comparison)
+    assert comparison.title.startswith("A sine")
+    assert comparison.controllers == list(comparison.traces) == ["pid", "inverse-pid", "adaptive-pid"]
+    assert comparison.model.levels == 10 and comparison.inner_pid is None
+    assert len(comparison.traces["adaptive-pid"].snapshots) > 10
+    comparison.to_csv(tmp_path / "scores.csv")
+    assert len((tmp_path / "scores.csv").read_text().splitlines()) == 13
+    pid, inner = hysteron.control.tune(TEXT)
+    assert inner is None and repr(pid) == repr(comparison.pid)
+
+
+def test_a_file_is_its_text(comparison, tmp_path):
+    (tmp_path / "sine.toml").write_text(TEXT)
+    for path in [tmp_path / "sine.toml", str(tmp_path / "sine.toml")]:
+        found = hysteron.track(path, seeds=1)
+        assert np.array_equal(found.scores["rmse"], comparison.scores["rmse"].reshape(3, 2, 2)[:, 0].ravel())
+
+
+def test_progress_is_told():
+    told = []
+    # It is told every 50 ms: this takes longer.
+    longer = TEXT.replace("levels = 60", "levels = 240")
+    hysteron.track(longer, seeds=30, progress=lambda what, share: told.append((what, share)))
+    assert told and {what for what, _ in told} == {"runs"}
+    assert [share for _, share in told] == sorted(share for _, share in told)
+
+
+def test_what_progress_raises_ends_it():
+    def refuse(what, share):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        hysteron.track(TEXT, seeds=50, progress=refuse)
+
+
+def test_ctrl_c_ends_it():
+    begun = time.monotonic()
+    timer = threading.Timer(0.3, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        # A minute and more, were it not ended.
+        hysteron.track(TEXT.replace("levels = 60", "levels = 240"), seeds=1000)
+    assert time.monotonic() - begun < 30.0
+
+
+def test_built_in_scenarios():
+    assert {"load-step", "sine"} <= set(hysteron.scenarios())
+    assert hysteron.scenarios()["sine"].startswith("# ")
+
+
+@pytest.mark.parametrize(
+    ("scenario", "error", "text"),
+    [
+        ("nowhere", hysteron.ScenarioError, "no such built-in scenario: load-step"),
+        (TEXT.replace("0.01", "-1"), hysteron.ScenarioError, "interval_s"),
+        (TEXT + "colour = 3\n", hysteron.ScenarioError, "colour"),
+        (3, TypeError, "`scenario` is 3: a name, a path or a text"),
+    ],
+)
+def test_what_is_refused(scenario, error, text):
+    for call in [hysteron.track, hysteron.control.tune]:
+        with pytest.raises(error) as raised:
+            call(scenario)
+        assert text in str(raised.value)
+    with pytest.raises(hysteron.ScenarioError):
+        hysteron.track(TEXT, seeds=0)

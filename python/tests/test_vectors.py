@@ -1,0 +1,91 @@
+"""Every vector in `vectors/`, with the tolerance that it names."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hysteron
+
+FOLDER = Path(__file__).parents[2] / "vectors"
+HEADINGS = {0: None, 1: "rising", -1: "falling"}
+
+
+def vectors(kind):
+    files = sorted(FOLDER.glob(f"{kind}-*.json"))
+    assert files, f"no vectors of the kind {kind} in {FOLDER}"
+    cases = []
+    for file in files:
+        vector = json.loads(file.read_text())
+        assert vector["kind"] == kind and vector["version"] == 1
+        model = hysteron.Model.from_json(json.dumps(vector["model"]))
+        cases += [pytest.param(model, vector["tolerance"], run, id=f"{file.stem}: {run['name']}") for run in vector["runs"]]
+    return cases
+
+
+def near(found, expected, tolerance):
+    found, expected = np.asarray(found), np.asarray(expected)
+    assert found.shape == expected.shape
+    assert np.abs(found - expected).max() <= tolerance
+
+
+def saved_and_restored(model, state):
+    return model.restore(state.save())
+
+
+@pytest.mark.parametrize(("model", "tolerance", "run"), vectors("forward"))
+class TestForward:
+    def test_simulate(self, model, tolerance, run):
+        near(model.simulate(run["input"]), run["output"], tolerance["output"])
+
+    def test_step(self, model, tolerance, run):
+        state = model.start()
+        near([state.step(x) for x in run["input"]], run["output"], tolerance["output"])
+
+    def test_restored_half_way(self, model, tolerance, run):
+        half = len(run["input"]) // 2
+        state = model.start()
+        first = state.run(run["input"][:half])
+        state = saved_and_restored(model, state)
+        near([*first, *state.run(run["input"][half:])], run["output"], tolerance["output"])
+
+
+@pytest.mark.parametrize(("model", "tolerance", "run"), vectors("inverse"))
+class TestInverse:
+    def test_step(self, model, tolerance, run):
+        self.step_through(model, tolerance, run, lambda state: state)
+
+    def test_restored_at_each_sample(self, model, tolerance, run):
+        self.step_through(model, tolerance, run, lambda state: saved_and_restored(model, state))
+
+    def step_through(self, model, tolerance, run, between):
+        inverse, state, found = model.inverse(), model.start(), []
+        for target, heading in zip(run["target"], run["heading"], strict=True):
+            state = between(state)
+            found.append(inverse.step(state, target, heading=HEADINGS[heading], band=run["tolerance"]))
+        self.judge(model, tolerance, run, *zip(*found, strict=True))
+
+    def test_run(self, model, tolerance, run):
+        headings = [HEADINGS[heading] for heading in run["heading"]]
+        inputs, status = model.inverse().run(run["target"], heading=headings, band=run["tolerance"])
+        self.judge(model, tolerance, run, inputs, status)
+
+    def judge(self, model, tolerance, run, inputs, status):
+        near(inputs, run["input"], tolerance["input"])
+        assert list(status) == run["status"]
+        reached = np.array(status) == 0
+        wanted = np.array(run["target"])[reached]
+        near(model.simulate(inputs)[reached], wanted, tolerance["output"] + run["tolerance"])
+
+
+def test_a_run_that_anticipates_is_its_steps():
+    for case in vectors("inverse"):
+        model, _, run = case.values
+        if run["tolerance"]:
+            continue
+        inverse, state = model.inverse(), model.start()
+        headings = hysteron.control.headings(run["target"], 0.01)
+        steps = [inverse.step(state, y, heading=h, band=0.01) for y, h in zip(run["target"], headings, strict=True)]
+        inputs, status = inverse.run(run["target"], policy="anticipate", band=0.01)
+        assert steps == list(zip(inputs, status, strict=True))
