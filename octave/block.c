@@ -31,16 +31,19 @@ static void raise(int32_t status) {
 /* ---- Arguments ---- */
 
 char *text(const mxArray *value, const char *name) {
-    char *found = mxIsChar(value) && mxGetM(value) <= 1 ? mxArrayToString(value) : NULL;
-    if (found == NULL) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be a text in one row", name);
+    /* Not mxArrayToString: what that gives, Octave does not free. A character takes at most 4 bytes. */
+    size_t count = mxGetNumberOfElements(value), room = 4 * count + 1;
+    char *found = mxIsChar(value) && mxGetM(value) <= 1 ? mxCalloc(room, 1) : NULL;
+    if (found == NULL || (count > 0 && mxGetString(value, found, room) != 0) || strlen(found) < count) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be a text in one row, without a zero in it", name);
     }
     return found;
 }
 
 static const mxArray *reals(const mxArray *value, const char *name) {
     mxArray *converted, *given = (mxArray *)value;
-    if (!mxIsNumeric(value) || mxIsComplex(value) || mxIsSparse(value)) {
+    /* Of 64 bits, it is likelier a block than a signal, and a double cannot hold it. */
+    if (!mxIsNumeric(value) || mxIsComplex(value) || mxIsSparse(value) || mxIsUint64(value) || mxIsInt64(value)) {
         mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be an array of real numbers, not %s%s", name,
                           mxIsComplex(value) ? "complex " : mxIsSparse(value) ? "sparse " : "", mxGetClassName(value));
     }

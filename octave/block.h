@@ -33,7 +33,7 @@ double number(const mxArray *value, const char *name);
 /* The options, in pairs of name and value from argument `from` on. `values` has a place for each of the `names`. */
 void options(int nrhs, const mxArray *prhs[], int from, const char *const names[], const mxArray *values[], int count);
 
-/* A text, which Octave and MATLAB free when the call ends. */
+/* A text without a zero in it, which Octave and MATLAB free when the call ends. */
 char *text(const mxArray *value, const char *name);
 
 /* An array of the shape of another. */

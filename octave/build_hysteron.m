@@ -22,6 +22,9 @@ elseif ismac
 else
     system_libraries = {'-lm', '-lpthread', '-ldl'};
 end
+if exist('OCTAVE_VERSION', 'builtin') && isunix && ~ismac
+    system_libraries{end + 1} = '-s'; % without the names for a debugger, which are most of the file
+end
 include = ['-I' fullfile(crate, 'include')];
 back = cd(here);
 returns = onCleanup(@() cd(back));

@@ -46,6 +46,12 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     target = samples(prhs[1], "target");
     count = mxGetNumberOfElements(target);
     anticipate = anticipates(values[POLICY]);
+    if (values[HEADING] != NULL && values[POLICY] != NULL && !anticipate) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`heading` is for the policy 'anticipate', not for 'hold'");
+    }
+    if (anticipate && values[HEADING] == NULL && count == 1 && !mxIsChar(prhs[0])) {
+        mexErrMsgIdAndTxt("hysteron:argument", "one target does not tell where the next one goes: give `heading`, 1 or -1");
+    }
     if (values[BAND] != NULL && (band = number(values[BAND], "band")) < 0.0) {
         mexErrMsgIdAndTxt("hysteron:argument", "`band` is %g: 0 or more is needed", band);
     }

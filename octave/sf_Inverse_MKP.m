@@ -7,7 +7,7 @@
 %   X = SF_INVERSE_MKP(..., NAME, VALUE, ...) with the options
 %       'policy'   'hold' (the default): the input rests while the target rests;
 %                  'anticipate': it crosses the dead band at once, to where the output starts to move the way that
-%                  the target goes next, which is looked up in Y
+%                  the target goes next, which is looked up in Y; of a block that gets one sample, 'heading' says it
 %       'heading'  that way, where it is known better: 1 rises, -1 falls, 0 hold; one number for each target, or one
 %       'band'     reversals of Y up to this size are noise and not followed, in the output's unit; by default 0, with
 %                  'anticipate' 1 % of the model's range

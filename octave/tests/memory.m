@@ -1,0 +1,27 @@
+% What valgrind watches: every way through both functions, with errors on the way, and the functions cleared.
+function memory()
+model = [tempname() '.json'];
+tidy = onCleanup(@() delete(model));
+write_model(model, '[1, 0.5, 1, 0, 0.5, 1]');
+for round = 1:2
+    for name = {'sf_MKP', 'sf_Inverse_MKP'}
+        call = name{1};
+        block = feval(call, 'open', model);
+        feval(call, block, [12 13 11.5]);
+        feval(call, 'restore', block, feval(call, 'save', block));
+        feval(call, 'info', model);
+        wrong = {{block, NaN}, {'/no/such/model.json', 1}, {model, 1, 'load', 2}, {model, 1, 'lode', 2}, {block + 1, 1}};
+        for k = 1:numel(wrong)
+            try
+                feval(call, wrong{k}{:});
+                error('hysteron:test', 'accepted');
+            catch fault
+                assert(~strcmp(fault.identifier, 'hysteron:test'));
+            end
+        end
+    end
+    sf_Inverse_MKP(model, [12 13 11.5], 'policy', 'anticipate', 'band', 0.1);
+    clear sf_MKP sf_Inverse_MKP % one block of each is still open
+end
+printf('memory: done\n');
+end
