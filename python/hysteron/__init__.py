@@ -2,8 +2,10 @@
 
 From a recording of input and output (temperature and displacement, say) to an MKP model
 (modified Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
-Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `hysteron.control`, blocks for
-python-control in `hysteron.blocks`.
+
+Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse` and `Model.start`.
+`design` plans a recording. Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `hysteron.control` and
+`track`, figures in `hysteron.plot`, a regressor in `hysteron.sklearn`, blocks for python-control in `hysteron.blocks`.
 """
 
 from . import control

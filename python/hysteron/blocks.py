@@ -12,6 +12,7 @@ import control
 import numpy as np
 
 from ._hysteron import Adaptive, Model, State
+from .errors import CoreError
 
 __all__ = ["adaptive_block", "inverse_block", "memory", "model_block"]
 
@@ -33,6 +34,11 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
     -------
     ndarray, shape (4 K + 8,)
 
+    Raises
+    ------
+    CoreError
+        For a state of another model.
+
     Examples
     --------
     >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
@@ -41,6 +47,8 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
     """
     vector = np.zeros(4 * model.levels + 8)
     if state is not None:
+        if state.model != model:
+            raise CoreError("`state` belongs to another model")
         points = state.turning_points
         vector[0] = len(points)
         vector[1] = state.input
@@ -49,6 +57,8 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
 
 
 def _state(model: Model, vector: np.ndarray) -> State:
+    if not (vector[0] == np.floor(vector[0]) and 0 <= vector[0] <= len(vector) - 2):
+        raise ValueError(f"`memory[0]` is {vector[0]}: a whole number from 0 to {len(vector) - 2} is needed, see `memory`")
     count = int(vector[0])
     if count == 0:
         return model.start()

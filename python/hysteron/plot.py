@@ -13,6 +13,8 @@ well as in colour, so that they can be told apart in grey. Where a recording com
 >>> ax.figure.savefig("loops.png")
 """
 
+import functools
+import inspect
 import re
 
 import numpy as np
@@ -34,7 +36,27 @@ _STILL = dict(color="0.93", linewidth=0, zorder=0)
 _OUTLINE = dict(color="0.6", linewidth=0.8)
 _SIGNS = {"degC": "°C", "degF": "°F", "deg": "°", "um": "µm", "uC/cm2": "µC/cm²"}
 
+_KINDS = {"recording": _hysteron.Recording, "model": _hysteron.Model}
 
+
+def _figure(draw):
+    """Refuses what is no recording or model, by the name of the argument."""
+    signature = inspect.signature(draw)
+
+    @functools.wraps(draw)
+    def checked(*args, **kwargs):
+        given = signature.bind(*args, **kwargs).arguments
+        for name, kind in _KINDS.items():
+            value = given.get(name)
+            optional = name in given and signature.parameters[name].default is None and value is None
+            if name in given and not optional and not isinstance(value, kind):
+                raise TypeError(f"`{name}` is of type {type(value).__name__}: a hysteron.{kind.__name__} is needed")
+        return draw(*args, **kwargs)
+
+    return checked
+
+
+@_figure
 def loops(recording, model=None, *, start="off", ax=None):
     """Output over input, measured and modelled (Figs. 1 and 11).
 
@@ -61,6 +83,7 @@ def loops(recording, model=None, *, start="off", ax=None):
     return ax
 
 
+@_figure
 def major_loops(model, loads=None, *, ax=None):
     """The loop between the ends of the plane, for a model that depends on a load at several loads (Fig. 2).
 
@@ -95,6 +118,7 @@ def major_loops(model, loads=None, *, ax=None):
     return ax
 
 
+@_figure
 def over_time(recording, model, *, of="output", start="off", axes=None):
     """Measured and modelled series over time, with the discrepancy below (Figs. 10 and 12, or 13 and 14).
 
@@ -144,6 +168,7 @@ def over_time(recording, model, *, of="output", start="off", axes=None):
     return np.array([series, difference])
 
 
+@_figure
 def weights(model, *, kind="marks", ax=None):
     """The weights on the plane: where they are not zero (Fig. 8a), or how large they are (Fig. 8b).
 
@@ -186,6 +211,7 @@ def weights(model, *, kind="marks", ax=None):
     return ax
 
 
+@_figure
 def excitation(model, input, *, ax=None):
     """What an input, or several, say about each operator of a model's plane.
 
@@ -217,6 +243,7 @@ def excitation(model, input, *, ax=None):
     return ax
 
 
+@_figure
 def plane(model, input, *, at=None, start="off", axes=None):
     """Evolution of the plane: the operators' states at a few moments of a history (Figs. 6 and 7).
 
@@ -274,6 +301,7 @@ def plane(model, input, *, at=None, start="off", axes=None):
     return axes
 
 
+@_figure
 def band(recording, model, *, ax=None):
     """The recorded output and the model's 95 % prediction band over time.
 
@@ -308,6 +336,7 @@ def band(recording, model, *, ax=None):
     return ax
 
 
+@_figure
 def dead_band(recording, model, *, start="off", axes=None):
     """The dead band with the largest error of the inverse, close up (Fig. 15).
 

@@ -133,3 +133,15 @@ def test_what_is_refused(model):
         blocks.adaptive_block(hysteron.Adaptive(model), DT).output(0, [999], [3.0, 3.0, 30.0])
     with pytest.raises(hysteron.CoreError, match="`input` is NaN"):
         blocks.model_block(model, DT).output(0, blocks.memory(model), [np.nan])
+
+
+@pytest.mark.parametrize("count", [3.7, 1e9, -3, np.nan])
+def test_a_memory_that_cannot_be_is_refused(count):
+    model = hysteron.Model(np.ones(36), (20, 80))
+    block = blocks.model_block(model, 0.1)
+    vector = blocks.memory(model)
+    vector[0] = count
+    with pytest.raises(ValueError, match=r"memory\[0\]"):
+        control.input_output_response(block, np.array([0, 0.1]), [30.0, 40.0], vector)
+    with pytest.raises(hysteron.CoreError, match="another model"):
+        blocks.memory(model, hysteron.Model(np.ones(210), (0, 1)).start(on=True))

@@ -190,3 +190,13 @@ def test_the_example_runs_and_every_figure_is_documented(tmp_path, monkeypatch):
     for name in plot.__all__:
         text = getattr(plot, name).__doc__
         assert "Parameters\n" in text and "Returns\n" in text, name
+
+
+def test_what_is_no_recording_or_model_is_named(recording):
+    with pytest.raises(TypeError, match="`recording` is of type list: a hysteron.Recording"):
+        plot.loops([1.0, 2.0])
+    with pytest.raises(TypeError, match="`model` is of type NoneType: a hysteron.Model"):
+        plot.weights(None)
+    with pytest.raises(TypeError, match="`model` is of type str"):
+        plot.loops(recording, model="spring.json")
+    assert plot.loops(recording, None) is not None
