@@ -1,5 +1,7 @@
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -206,3 +208,20 @@ def test_left_out(recording):
     assert found["nrmse_percent"] > found["training_nrmse_percent"]
     chosen = hysteron.left_out(recording, levels="auto", smooth=1e-6)["chosen"]
     assert len(chosen) == 5 and all(smooth == 1e-6 for _, smooth in chosen)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_a_forked_process_fits_as_well(tmp_path):
+    # In a process of its own: where it fails it never ends.
+    code = """
+import multiprocessing, numpy as np, hysteron
+u = 50 + 30 * np.sin(np.linspace(0, 20, 200))
+def fit(k):
+    return hysteron.fit(u, 0.5 * u, levels=k, smooth="auto").levels
+fit(5)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    print(pool.map(fit, [4, 5, 6]))
+print(fit(7))
+"""
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "[4, 5, 6]\n7\n", done.stderr

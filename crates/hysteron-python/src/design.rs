@@ -2,6 +2,7 @@
 
 use crate::error::Raise;
 use crate::judge::classes;
+use crate::pool::in_pool;
 use crate::recording::inputs_of;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
@@ -161,7 +162,7 @@ pub(crate) fn design(
     };
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
     let inner = py.detach(|| {
-        let design = hysteron::design(&options, &inputs);
+        let design = in_pool(|| hysteron::design(&options, &inputs));
         design.raise_of("recorded", recorded.first().map_or(&[], Vec::as_slice))
     })?;
     Ok(Design { inner })

@@ -14,6 +14,7 @@ mod model;
 mod pid;
 mod plane;
 mod plant;
+mod pool;
 mod prepare;
 mod recording;
 mod said;

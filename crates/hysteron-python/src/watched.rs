@@ -1,6 +1,7 @@
 //! Long work on a thread of its own, while this one hears Ctrl-C and tells of the progress.
 
 use crate::error::Raise;
+use crate::pool::in_pool;
 use hysteron::{Error, Watch};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -46,7 +47,7 @@ pub(crate) fn watched<T: Send>(
         let worker = scope.spawn(|| {
             // Dropped in a panic too, which ends the waiting.
             let done = done;
-            let result = work(&watch);
+            let result = in_pool(|| work(&watch));
             drop(done);
             result
         });
