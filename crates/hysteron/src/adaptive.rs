@@ -1,6 +1,7 @@
 //! A model that learns while it runs.
 
-use crate::{Error, Model, Policy, Result, Sign, Solution, State};
+use crate::identify::SAMPLES_BETWEEN;
+use crate::{Error, Model, Policy, Result, Sign, Solution, State, Watch};
 use hysteron_core::{
     Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
 };
@@ -101,13 +102,26 @@ impl Adaptive {
     /// [`Adaptive::step`] through samples, as many as the shorter series has.
     ///
     /// # Errors
-    /// [`Error::Core`] for the first number that is not finite; nothing is changed then.
-    pub fn run(&mut self, input: &[f64], measured: &[f64]) -> Result<Vec<Learning<f64>>> {
+    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What `watch` returns; what was learned until
+    /// then stays.
+    pub fn run(
+        &mut self,
+        input: &[f64],
+        measured: &[f64],
+        watch: Watch<'_>,
+    ) -> Result<Vec<Learning<f64>>> {
         let pairs = || input.iter().zip(measured);
         if let Some(index) = pairs().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }
-        pairs().map(|(x, y)| self.step(*x, *y)).collect()
+        let count = input.len().min(measured.len());
+        let step = |(n, (x, y)): (usize, (&f64, &f64))| {
+            if n % SAMPLES_BETWEEN == 0 {
+                watch("adaptation", n as f64 / count as f64)?;
+            }
+            self.step(*x, *y)
+        };
+        pairs().enumerate().map(step).collect()
     }
 
     /// Moves to `input` and tells the output expected there, without learning.

@@ -41,6 +41,7 @@ mod turning;
 
 pub use adapt::{
     AdaptOptions, Adapted, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
+    adapt_watched,
 };
 pub use adaptive::Adaptive;
 pub use advice::{Advice, advice};
@@ -71,7 +72,7 @@ pub use output::{AtomicFile, TableWriter, discard_unfinished};
 pub use predict::Surroundings;
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
-    Spikes, Step, noise, prepare, rate_dependence,
+    Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
 };
 pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};

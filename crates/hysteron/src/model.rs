@@ -235,13 +235,21 @@ impl Model {
         Ok(output)
     }
 
-    /// The operator states `γ_ij` in `[0, 1]`, in the order of the weights, after `history` from every operator off.
+    /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.
     ///
     /// # Errors
-    /// As [`Model::run`].
-    pub fn operator_states(&self, history: &[f64]) -> Result<Vec<f64>> {
-        let mut state = self.start();
-        self.run(&mut state, history, &mut vec![0.0; history.len()])?;
+    /// [`Error::Core`] for a state of a model with fewer levels.
+    ///
+    /// ```
+    /// # use hysteron::{Model, Operator, Plane, Sign};
+    /// # let plane = Plane::new(0.0, 1.0, 2)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0, 2.0, 4.0], 0.0, Sign::Positive)?;
+    /// let mut state = model.start();
+    /// model.run(&mut state, &[0.5, 1.0, 0.5], &mut [0.0; 3])?;
+    /// assert_eq!(model.operator_states(&state)?, [1.0, 1.0, 0.5]); // γ_11, γ_12, γ_22
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    pub fn operator_states(&self, state: &State) -> Result<Vec<f64>> {
         let rows = (1..=self.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
         rows.map(|(i, j)| Ok(state.gamma(i, j)?)).collect()
     }

@@ -7,7 +7,7 @@ pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
 use crate::{
-    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start,
+    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start, Watch,
 };
 use serde::Serialize;
 use serde_json::json;
@@ -120,6 +120,19 @@ impl Adapted {
 /// depends on a load with another learner than [`Learner::Drift`], and for options that are of no use; [`Error::Core`] for
 /// options out of range and negative weights.
 pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+    adapt_watched(model, recording, options, &|_, _| Ok(()))
+}
+
+/// As [`adapt`], telling `watch` how far it is.
+///
+/// # Errors
+/// As [`adapt`], and what `watch` returns.
+pub fn adapt_watched(
+    model: &Model,
+    recording: &Recording,
+    options: &AdaptOptions,
+    watch: Watch<'_>,
+) -> Result<Adapted> {
     recording.check()?;
     refuse_unusable(model)?;
     let adaptation = options.adaptation(model, recording)?;
@@ -129,14 +142,12 @@ pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Re
     if from_on {
         adaptive.saturate()?;
     }
-    let mut output_model = Vec::with_capacity(recording.len());
-    let mut outcomes = Vec::with_capacity(recording.len());
+    let learned = adaptive.run(&recording.input, &recording.output, watch)?;
+    let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
+    let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
     let mut counts = OutcomeCounts::default();
-    for (&input, &measured) in recording.input.iter().zip(&recording.output) {
-        let learning = adaptive.step(input, measured)?;
+    for learning in &learned {
         counts.outside += usize::from(learning.clipped.is_some());
-        output_model.push(learning.output);
-        outcomes.push(learning.outcome);
         match learning.outcome {
             Outcome::Learned => counts.learned += 1,
             Outcome::Waiting => counts.waiting += 1,

@@ -1,7 +1,8 @@
 //! A controller on a simulated plant, sample by sample.
 
 use super::{Controller, Disturbance, SimulatedPlant, Snapshot, Target, Trace};
-use crate::{Direction, Result};
+use crate::identify::SAMPLES_BETWEEN;
+use crate::{Direction, Result, Watch};
 
 /// Snapshots of adapted weights over a run.
 const SNAPSHOTS: usize = 60;
@@ -20,17 +21,22 @@ pub struct Course<'a> {
 /// Runs `controller` on `plant`. The trace holds the plant's true output and input.
 ///
 /// # Errors
-/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite.
+/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite;
+/// what `watch` returns.
 pub fn run(
     plant: &mut dyn SimulatedPlant,
     controller: &mut Controller,
     course: &Course<'_>,
+    watch: Watch<'_>,
 ) -> Result<Trace> {
     let mut trace = Trace::default();
     let mut events = course.events.iter().peekable();
     let count = course.reference.len();
     let every = count.div_ceil(SNAPSHOTS).max(1);
     for (n, &output) in course.reference.iter().enumerate() {
+        if n % SAMPLES_BETWEEN == 0 {
+            watch("control loop", n as f64 / count as f64)?;
+        }
         while let Some((_, event)) = events.next_if(|(at, _)| *at <= n) {
             plant.disturb(*event)?;
         }

@@ -4,7 +4,7 @@
 //! can be estimated where the material itself does not depend on rate, for then a static model fits best when the lag is gone.
 
 use crate::filter::low_pass;
-use crate::{Error, FitOptions, Recording, Result, fit};
+use crate::{Error, FitOptions, Recording, Result, Watch, fit_experiment};
 
 /// Levels of the models that compare lags: enough to tell loops apart, few enough to be fitted forty times.
 const LEVELS: usize = 12;
@@ -55,13 +55,14 @@ pub(super) fn growth(step: f64, tau: f64, cutoff: f64) -> f64 {
 }
 
 /// The lag whose undoing lets a static model fit best: tried on a grid of ratios, then narrowed by golden section (Kiefer 1953).
-pub(super) fn estimate(recording: &Recording, step: f64) -> Result<Estimate> {
+pub(super) fn estimate(recording: &Recording, step: f64, watch: Watch<'_>) -> Result<Estimate> {
+    let watch: Watch<'_> = &|_, _| watch("sensor lag", f64::NAN);
     let error = |tau: f64| -> Result<f64> {
         let mut candidate = recording.clone();
         candidate.input = undo(&recording.input, step, tau)?;
-        rmse(&candidate)
+        rmse(&candidate, watch)
     };
-    let rmse_before = rmse(recording)?;
+    let rmse_before = rmse(recording, watch)?;
     let longest = LONGEST * step * (recording.len() - 1) as f64;
     if longest <= step {
         return Err(Error::Preparation(
@@ -105,12 +106,12 @@ pub(super) fn estimate(recording: &Recording, step: f64) -> Result<Estimate> {
     })
 }
 
-fn rmse(recording: &Recording) -> Result<f64> {
+fn rmse(recording: &Recording, watch: Watch<'_>) -> Result<f64> {
     let options = FitOptions {
         levels: LEVELS,
         ..FitOptions::default()
     };
-    let model = fit(recording, &options)?;
+    let model = fit_experiment(std::slice::from_ref(recording), &options, watch)?;
     model
         .fit
         .map(|fit| fit.rmse)
@@ -145,7 +146,7 @@ mod tests {
         let (step, tau) = (0.25, 3.0);
         let mut recording = two_rates(step);
         recording.input = behind_sensor(&recording.input, step, tau);
-        let found = estimate(&recording, step).unwrap();
+        let found = estimate(&recording, step, &|_, _| Ok(())).unwrap();
         // Grid and golden section end within 1 %; the filter of the derivative and 12 levels cost more.
         assert!((found.tau / tau - 1.0).abs() < 0.15, "{}", found.tau);
         assert!(found.rmse_after < 0.5 * found.rmse_before);
@@ -154,7 +155,7 @@ mod tests {
     #[test]
     fn without_a_lag_none_is_worth_while() {
         let step = 0.25;
-        let found = estimate(&two_rates(step), step).unwrap();
+        let found = estimate(&two_rates(step), step, &|_, _| Ok(())).unwrap();
         assert!(
             found.rmse_after > (1.0 - WORTHWHILE) * found.rmse_before,
             "{} {}",

@@ -22,7 +22,7 @@ pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, S
 
 use crate::filter::low_pass;
 use crate::recording::range;
-use crate::{Error, NOISE, Recording, Result};
+use crate::{Error, NOISE, Recording, Result, Watch};
 
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -130,9 +130,22 @@ pub fn prepare(
     recording: &Recording,
     options: &PrepareOptions,
 ) -> Result<(Recording, Preparation)> {
+    prepare_watched(recording, options, &|_, _| Ok(()))
+}
+
+/// As [`prepare`], with a word to `watch` before each step and each fit.
+///
+/// # Errors
+/// As [`prepare`], and what `watch` returns.
+pub fn prepare_watched(
+    recording: &Recording,
+    options: &PrepareOptions,
+    watch: Watch<'_>,
+) -> Result<(Recording, Preparation)> {
     recording.check()?;
     options.check()?;
     let mut work = recording.clone();
+    watch("spikes", f64::NAN)?;
     let spikes = remove_spikes(&mut work, options.spikes);
     let sigma = [noise(&work.input), noise(&work.output)];
     let noisy = [0, 1].map(|n| {
@@ -144,6 +157,7 @@ pub fn prepare(
         Step::Off => false,
         Step::Value(_) => true,
     };
+    watch("filters", f64::NAN)?;
     let resampled = resample(
         &mut work,
         options.resample,
@@ -155,7 +169,7 @@ pub fn prepare(
     let low_pass = smooth(&mut work, options.low_pass, sigma, noisy, step)?;
     let input_filter = low_pass.as_ref().and_then(|filter| filter.input.as_ref());
     let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
-    let lag = undo_lag(&mut work, options.lag, step)?;
+    let lag = undo_lag(&mut work, options.lag, step, watch)?;
 
     // What is left of the noise on the input.
     let mut left = sigma[0] * input_cutoff.map_or(1.0, smooth::let_through);
@@ -261,7 +275,12 @@ fn smooth(
     }))
 }
 
-fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option<SensorLag>> {
+fn undo_lag(
+    work: &mut Recording,
+    how: Step,
+    step: Option<f64>,
+    watch: Watch<'_>,
+) -> Result<Option<SensorLag>> {
     if how == Step::Off {
         return Ok(None);
     }
@@ -275,7 +294,7 @@ fn undo_lag(work: &mut Recording, how: Step, step: Option<f64>) -> Result<Option
     match how {
         Step::Value(tau) => report.undone = Some(tau),
         _ => {
-            let found = lag::estimate(work, step)?;
+            let found = lag::estimate(work, step, watch)?;
             let gain = 1.0 - found.rmse_after / found.rmse_before;
             report.undone = (gain >= lag::WORTHWHILE).then_some(found.tau);
             report.estimate = Some(found.tau);

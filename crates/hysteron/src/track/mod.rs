@@ -25,6 +25,7 @@ pub use summary::{Median, Ratio};
 use crate::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
 use crate::{Adaptive, Error, Model, Result, headings};
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// Time for which a reading with noise does not stay the same to the last bit, in samples.
 const STUCK_SAMPLES: f64 = 15.0;
@@ -48,10 +49,10 @@ pub struct Comparison {
     pub inner_gains: Option<Gains>,
 }
 
-/// Told of each finished run, how many of how many; an error it returns ends the work.
+/// Told of each finished run, and now and then in between, how many of how many; an error it returns ends the work.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> Result<()> + Sync);
 
-/// Runs every controller of the scenario with every seed. `done` is told of each finished run, and once before the first.
+/// Runs every controller of the scenario with every seed. `done` is told how far it is.
 ///
 /// # Errors
 /// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
@@ -96,7 +97,13 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
         events: &events,
     };
     let windows = score::windows(scenario);
-    let finished = std::sync::atomic::AtomicUsize::new(0);
+    let finished = Mutex::new(0);
+    // One after the other, so that nobody is told a smaller count after a larger one.
+    let tell = |more: usize| {
+        let mut finished = finished.lock().unwrap_or_else(PoisonError::into_inner);
+        *finished += more;
+        done(*finished, total)
+    };
     type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
     let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
         .into_par_iter()
@@ -106,11 +113,10 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
             let runs = scenario.controllers.par_iter().map(|kind| {
                 let mut plant = scenario.plant.build(seed)?;
                 let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
-                let trace = run(plant.as_mut(), &mut controller, &course)?;
+                let trace = run(plant.as_mut(), &mut controller, &course, &|_, _| tell(0))?;
                 let score = |window| Score::of(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
-                let count = finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                done(count + 1, total)?;
+                tell(1)?;
                 Ok(((seed == 1).then_some(trace), scores))
             });
             let runs = runs.collect::<Result<Vec<_>>>()?;
