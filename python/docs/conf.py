@@ -37,6 +37,7 @@ myst_enable_extensions = ["amsmath", "dollarmath"]
 myst_heading_anchors = 2
 
 nb_execution_mode = "force"
+nb_execution_in_temp = True  # what they save does not stay
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True

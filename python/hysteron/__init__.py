@@ -6,6 +6,7 @@ From a recording of input and output (temperature and displacement, say) to an M
 Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse` and `Model.start`.
 `design` plans a recording. Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `hysteron.control` and
 `track`, figures in `hysteron.plot`, a regressor in `hysteron.sklearn`, blocks for python-control in `hysteron.blocks`.
+What can go wrong is a `HysteronError`; its kinds, of which many are ValueErrors too, are in `hysteron.errors`.
 """
 
 from . import control
@@ -34,52 +35,39 @@ from ._hysteron import (
     scenarios,
     track,
 )
+# Exported without being in `__all__`: their inherited methods would fill `help(hysteron)`.
 from .errors import (
-    ControlError,
-    CoreError,
-    DesignError,
-    ExportError,
-    FileError,
-    FilterError,
-    FitError,
-    HysteronError,
-    HysteronWarning,
-    ModelFileError,
-    PreparationError,
-    RecordingError,
-    RigError,
-    ScenarioError,
-    ThermalError,
+    ControlError as ControlError,
+    CoreError as CoreError,
+    DesignError as DesignError,
+    ExportError as ExportError,
+    FileError as FileError,
+    FileMissingError as FileMissingError,
+    FilterError as FilterError,
+    FitError as FitError,
+    HysteronError as HysteronError,
+    HysteronWarning as HysteronWarning,
+    ModelFileError as ModelFileError,
+    PreparationError as PreparationError,
+    RecordingError as RecordingError,
+    RigError as RigError,
+    ScenarioError as ScenarioError,
+    ThermalError as ThermalError,
 )
 
 __all__ = [
     "Adapted",
     "Adaptive",
     "Comparison",
-    "ControlError",
-    "CoreError",
     "Design",
-    "DesignError",
-    "ExportError",
-    "FileError",
-    "FilterError",
-    "FitError",
-    "HysteronError",
-    "HysteronWarning",
     "Inverse",
     "Learning",
     "Model",
-    "ModelFileError",
     "PreisachPlant",
-    "PreparationError",
     "Recording",
-    "RecordingError",
-    "RigError",
-    "ScenarioError",
     "SimulatedPlant",
     "SpringPlant",
     "State",
-    "ThermalError",
     "adapt",
     "branches",
     "control",

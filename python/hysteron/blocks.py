@@ -45,8 +45,10 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
     >>> hysteron.blocks.memory(model, model.start(on=True))[:4]
     array([1., 1., 2., 0.])
     """
+    _needed("model", model, Model)
     vector = np.zeros(4 * model.levels + 8)
     if state is not None:
+        _needed("state", state, State)
         if state.model != model:
             raise CoreError("`state` belongs to another model")
         points = state.turning_points
@@ -54,6 +56,11 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
         vector[1] = state.input
         vector[2 : 2 + len(points)] = points
     return vector
+
+
+def _needed(name: str, value: object, kind: type) -> None:
+    if not isinstance(value, kind):
+        raise TypeError(f"`{name}` is {value!r}: a hysteron.{kind.__name__} is needed")
 
 
 def _state(model: Model, vector: np.ndarray) -> State:
@@ -93,6 +100,8 @@ def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
     >>> control.input_output_response(block, np.array([0, 0.1, 0.2]), [0.5, 1.0, 0.5]).y
     array([[4., 7., 5.]])
     """
+
+    _needed("model", model, Model)
 
     def update(t, x, u, params):
         state = _state(model, x)
@@ -140,6 +149,7 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     """
     if policy not in ("hold", "anticipate"):
         raise ValueError(f"`policy` is '{policy}': one of 'hold', 'anticipate' is needed")
+    _needed("model", model, Model)
     inverse = model.inverse()
     inputs = ["target"] if policy == "hold" else ["target", "heading"]
 
@@ -191,6 +201,7 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
     >>> control.input_output_response(block, np.array([0, 0.1]), [[4.0, 4.0], [4.0, 4.0], [0.5, 0.5]]).y
     array([[0.5, 0.5]])
     """
+    _needed("adaptive", adaptive, Adaptive)
     known = {0: adaptive.copy()}
     # What followed an estimator and its inputs: the same number for the same question.
     followed = {}

@@ -7,6 +7,7 @@ __all__ = [
     "HysteronError",
     "CoreError",
     "FileError",
+    "FileMissingError",
     "ModelFileError",
     "RecordingError",
     "FitError",
@@ -33,7 +34,11 @@ class CoreError(HysteronError, ValueError):
 
 
 class FileError(HysteronError, OSError):
-    """A file cannot be read or written."""
+    """A file cannot be read or written; `errno` and `filename` say why and which."""
+
+
+class FileMissingError(FileError, FileNotFoundError):
+    """A file, or the folder that it should go to, is not there."""
 
 
 class ModelFileError(HysteronError, ValueError):

@@ -6,6 +6,8 @@ operator off (or on, with ``start='on'``). So a plain `KFold`, which hands over 
 scores the wrong experiment; `BranchSplit` hands over what the operators remember as well.
 """
 
+import numbers
+
 import numpy as np
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
@@ -104,7 +106,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64, ensure_min_samples=2)
         options = self.get_params()
         del options["column"]
-        self.model_ = _hysteron.fit(self._input(X), y, **options)
+        self.model_ = _hysteron.fit(_column(X, self.column), y, **options)
         return self
 
     def predict(self, X):
@@ -121,17 +123,20 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         """
         check_is_fitted(self)
         X = validate_data(self, X, reset=False, dtype=np.float64)
-        return self.model_.start(on=self.start == "on").run(self._input(X))
-
-    def _input(self, X):
-        if not 0 <= self.column < X.shape[1]:
-            raise ValueError(f"`column` is {self.column}, but `X` has {X.shape[1]} columns, counted from 0")
-        return X[:, self.column]
+        return self.model_.start(on=self.start == "on").run(_column(X, self.column))
 
     def __sklearn_tags__(self):
         tags = super().__sklearn_tags__()
         tags.regressor_tags.poor_score = True  # the checks' outputs are no function of one input's path
         return tags
+
+
+def _column(X, column):
+    if not isinstance(column, numbers.Integral):
+        raise TypeError(f"`column` is {column!r}: a whole number is needed")
+    if not 0 <= column < X.shape[1]:
+        raise ValueError(f"`column` is {column}, but `X` has {X.shape[1]} columns, counted from 0")
+    return X[:, column]
 
 
 class BranchSplit:
@@ -193,7 +198,7 @@ class BranchSplit:
         ValueError
             Where there are fewer branches than folds.
         """
-        input = check_array(X, dtype=np.float64)[:, self.column]
+        input = _column(check_array(X, dtype=np.float64), self.column)
         starts = _starts(_hysteron.branches(input, band=self.band), self.n_splits)
         ends = [*starts[1:], len(input)]
         rows = np.arange(len(input))
@@ -210,6 +215,8 @@ class BranchSplit:
 
 def _starts(branch, folds):
     """The first samples of runs of whole branches of about as many samples."""
+    if not isinstance(folds, numbers.Integral):
+        raise TypeError(f"`n_splits` is {folds!r}: a whole number is needed")
     if folds < 2:
         raise ValueError(f"`n_splits` is {folds}: 2 or more are needed")
     first = np.flatnonzero(np.diff(branch, prepend=-1))

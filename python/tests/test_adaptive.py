@@ -152,7 +152,7 @@ def test_it_cannot_be_pickled_but_its_model_can():
         ({"leakage": 1.1}, hysteron.CoreError, "`leakage` must be from 0 to 1"),
         ({"movement": float("inf")}, hysteron.CoreError, "`movement` must be"),
         ({"trial": 0}, hysteron.CoreError, "`trial` must be 1 or more"),
-        ({"trial": -1}, ValueError, "`trial` is -1: it is from 1 to"),
+        ({"trial": -1}, ValueError, "`trial` is -1: a whole number"),
         ({"noise": 1.0}, hysteron.FitError, "`noise` means nothing to this method"),
         ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'gradient'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
@@ -174,7 +174,7 @@ def test_samples_that_are_refused():
             adaptive.step(50.0, bad)
         with pytest.raises(hysteron.CoreError, match="`input`"):
             adaptive.predict(bad)
-        with pytest.raises(hysteron.CoreError, match=r"`measured`\[1\]"):
+        with pytest.raises(hysteron.CoreError, match=r"`measured\[1\]`"):
             adaptive.run([1.0, 2.0], [1.0, bad])
         with pytest.raises(hysteron.CoreError, match="`target`"):
             adaptive.solve(bad)

@@ -1,5 +1,7 @@
 """Whatever is handed over: an exception that says what is wrong, or the right answer."""
 
+import errno
+import pickle
 import threading
 
 import numpy as np
@@ -117,7 +119,7 @@ def test_integers():
 
 
 def test_messages_name_argument_index_and_value():
-    with pytest.raises(hysteron.CoreError, match=r"`input`\[1\] is NaN"):
+    with pytest.raises(hysteron.CoreError, match=r"`input\[1\]` is NaN"):
         MODEL.simulate([0, np.nan])
     with pytest.raises(hysteron.RecordingError, match="column `lift`: sample 1 .from 0. is inf"):
         hysteron.Recording([0, 1], [0, np.inf], output_name="lift [mm]")
@@ -127,6 +129,97 @@ def test_messages_name_argument_index_and_value():
         hysteron.Recording([0, 1], [0, 1], time=[1, 0])
     with pytest.raises(TypeError, match="`time`: real numbers are needed, not datetime64"):
         hysteron.Recording([0, 1], [0, 1], time=np.zeros(2, "datetime64[s]"))
+
+
+RECORDING = hysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5])
+WHOLE = {
+    "levels": lambda n: hysteron.fit(RECORDING, levels=n),
+    "load_degree": lambda n: hysteron.fit(RECORDING, levels=2, load_degree=n),
+    "bootstrap": lambda n: hysteron.fit(RECORDING, levels=2, bootstrap=n),
+    "sign": lambda n: hysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=n),
+    "trial": lambda n: hysteron.Adaptive(MODEL, trial=n),
+    "seeds": lambda n: hysteron.track("sine", seeds=n),
+    "begin": lambda n: hysteron.control.Pid.from_step([0.0, 1.0], n, 1.0, 0.1),
+    "fmi": lambda n: MODEL.export_fmu("never.fmu", fmi=n),
+    **{
+        f"levels of {of}": call
+        for of, call in {
+            "a design": lambda n: hysteron.design((0, 1), n, heating_rate=1, cooling_rate=1),
+            "an excitation": lambda n: hysteron.excitation([0.0, 1.0], (0, 1), n),
+            "a summary": lambda n: RECORDING.summary(levels=n),
+        }.items()
+    },
+}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_a_number_that_is_no_count_is_refused_by_name(name):
+    argument = name.split()[0]
+    for number in [-7, -(10**30), 10**30]:
+        with pytest.raises(ValueError, match=f"`{argument}` is {number}"):
+            WHOLE[name](number)
+    with pytest.raises(ValueError, match=f"`{argument}` is "):
+        WHOLE[name](10**10_000)
+    for other in [2.5, "2", [2]]:
+        with pytest.raises(TypeError, match=f"`{argument}` is .*: a .*number"):
+            WHOLE[name](other)
+
+
+@pytest.mark.parametrize(
+    "call, error, text",
+    [
+        (lambda: hysteron.SpringPlant().advance(np.nan), ValueError, "`dt_s` is NaN"),
+        (lambda: hysteron.SpringPlant().advance(-1), ValueError, "`dt_s` is -1"),
+        (lambda: hysteron.PreisachPlant().write(np.nan), hysteron.CoreError, "`drive` is NaN"),
+        (lambda: hysteron.SpringPlant(fatigue=[]), TypeError, "`fatigue` is []: a dictionary"),
+        (lambda: hysteron.PreisachPlant(output_sensor=(1, 2)), TypeError, "`output_sensor` is (1, 2)"),
+        (lambda: hysteron.control.Pid(1.0).step(np.nan, 0.1), hysteron.CoreError, "`error` is NaN"),
+        (lambda: hysteron.control.Pid(1.0).hold(bias=np.inf), hysteron.CoreError, "`bias` is inf"),
+        (lambda: MODEL.restore(np.ones(3)), TypeError, "`saved`: a dictionary"),
+        (lambda: MODEL.restore({}), TypeError, "`saved`: a dictionary"),
+        (lambda: hysteron.fit(RECORDING, progress=3), TypeError, "`progress` is 3"),
+        (lambda: hysteron.Recording.from_frame([1, 2], input="a", output="b"), TypeError, "`frame` of"),
+        (lambda: hysteron.Recording.from_frame({"a": [1]}, input="a", output="b"), KeyError, "b"),
+        (lambda: MODEL.excitation([[0.0, 1.0], [0.0, np.nan]]), hysteron.CoreError, "`input[1][1]` is NaN"),
+    ],
+)
+def test_what_is_refused(call, error, text):
+    with pytest.raises(error) as raised:
+        call()
+    assert text in str(raised.value)
+
+
+def test_a_missing_file_is_what_python_knows_as_one(tmp_path):
+    path = tmp_path / "nowhere.json"
+    with pytest.raises(FileNotFoundError) as raised:
+        hysteron.Model.load(path)
+    assert isinstance(raised.value, hysteron.FileError) and raised.value.code == 20
+    assert (raised.value.errno, raised.value.filename) == (errno.ENOENT, str(path))
+    with pytest.raises(hysteron.FileError) as raised:
+        hysteron.Model.load(tmp_path)
+    assert raised.value.errno == errno.EISDIR
+
+
+def test_results_pickle():
+    state = MODEL.start()
+    state.run([0.9, 0.3, 0.6])
+    same = pickle.loads(pickle.dumps(state))
+    assert same.save()["input"] == 0.6 and np.array_equal(same.turning_points, state.turning_points)
+    assert pickle.loads(pickle.dumps(MODEL.inverse())).model == MODEL
+    learning = hysteron.Adaptive(MODEL).step(0.5, 3.0)
+    assert repr(pickle.loads(pickle.dumps(learning))) == repr(learning)
+    input = np.linspace(0, 1, 50)
+    adapted = hysteron.adapt(MODEL, input, MODEL.simulate(input))
+    again = pickle.loads(pickle.dumps(adapted))
+    assert again.model == adapted.model and repr(again) == repr(adapted)
+
+
+def test_operators_are_those_of_the_definition():
+    state = MODEL.start()
+    state.run([0.5, 1.0, 0.5])
+    np.testing.assert_array_equal(state.operators, [[1.0, 1.0], [np.nan, 0.5]])
+    state.reset(on=True)
+    np.testing.assert_array_equal(state.operators, [[1.0, 1.0], [np.nan, 1.0]])
 
 
 def test_threads_share_a_state():

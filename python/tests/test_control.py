@@ -231,7 +231,7 @@ def test_plants_are_labelled_and_repeat_themselves():
         (lambda: controller().step(np.nan, 0.0), hysteron.CoreError, "`target`"),
         (lambda: controller().step(1.0, 0.0, heading="up"), ValueError, "`heading` is 'up'"),
         (lambda: controller().step_command(np.inf, 0.0), hysteron.CoreError, "`command`"),
-        (lambda: controller().run(Stage(), [1.0, np.nan]), hysteron.CoreError, "`reference`[1]"),
+        (lambda: controller().run(Stage(), [1.0, np.nan]), hysteron.CoreError, "`reference[1]`"),
         (lambda: RelayTest((1, 0), 0.5), hysteron.ControlError, "`commands`"),
         (lambda: RelayTest((0, 1), 0.5, band=-1), hysteron.ControlError, "`band`"),
         (lambda: RelayTest((0, 1), 0.5).gains(0.1), ValueError, "not done"),

@@ -12,8 +12,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "python" / "docs"
 
 
-def blocks(page):
-    return re.findall(r"^```python\n(.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+def blocks(page, fence="python"):
+    """Those that a reader sees."""
+    found = re.findall(rf"^```{re.escape(fence)}\n(.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    return [block for block in found if not block.startswith(":tags: [remove-cell]")]
 
 
 def run(code, folder):
@@ -32,6 +34,6 @@ def test_readme(tmp_path):
 
 def test_start(tmp_path):
     pytest.importorskip("matplotlib")
-    code = blocks(DOCS / "start.md")
+    code = blocks(DOCS / "start.md", "{code-cell} python")
     assert len(code) >= 5
     assert run(code, tmp_path).count("%") == 1

@@ -1,5 +1,4 @@
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -114,7 +113,7 @@ def test_thermal(truth):
     [
         ({"levels": 1}, ValueError, "2 to"),
         ({"levels": 1.5}, TypeError, "`levels` is 1.5"),
-        ({"levels": -1}, TypeError, "`levels` is -1"),
+        ({"levels": -1}, ValueError, "`levels` is -1"),
         ({"levels": "many"}, TypeError, "'many'.*'auto'"),
         ({"levels": 10_000}, ValueError, "levels|operators"),
         ({"range": (80, 20)}, ValueError, "range"),
@@ -166,20 +165,6 @@ def test_an_error_in_the_callback_ends_the_fit(recording):
     with pytest.raises(LookupError):
         hysteron.fit(recording, levels=40, bootstrap=10_000, progress=fail)
     assert time.perf_counter() - began < 10  # it would take minutes
-
-
-def test_ctrl_c_ends_the_fit_and_leaves_nothing_running(recording):
-    hysteron.fit(recording, levels=5, bootstrap=10)  # so that the pool of threads is there
-    tasks = lambda: len(os.listdir("/proc/self/task")) if os.path.isdir("/proc/self/task") else 0
-    before = tasks()
-    timer = threading.Timer(0.2, signal.raise_signal, [signal.SIGINT])
-    timer.start()
-    began = time.perf_counter()
-    with pytest.raises(KeyboardInterrupt):
-        hysteron.fit(recording, levels=40, bootstrap=10_000)
-    assert time.perf_counter() - began < 10
-    timer.join()
-    assert tasks() <= before
 
 
 def test_other_threads_go_on_during_a_fit(recording):

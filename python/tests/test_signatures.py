@@ -21,8 +21,8 @@ METHODS = {
 def test_of_the_options_of_an_estimator(call):
     arguments = [MODEL] if call is hysteron.Adaptive else [MODEL, SERIES, 0.1 * SERIES]
     names = [p.name for p in inspect.signature(call).parameters.values() if p.kind is p.KEYWORD_ONLY]
-    assert len(names) == 14 + (call is hysteron.adapt)
-    for name in set(names) - {"method", "start", "time"}:
+    assert len(names) == (16 if call is hysteron.adapt else 14)
+    for name in set(names) - {"method", "start", "time", "progress"}:
         method = METHODS.get(name, "gradient")
         call(*arguments, method=method, **{name: None})
         if name != "load":

@@ -1,9 +1,5 @@
 """`track`: controllers compared on a simulated plant."""
 
-import _thread
-import threading
-import time
-
 import numpy as np
 import pytest
 
@@ -81,16 +77,6 @@ def test_what_progress_raises_ends_it():
 
     with pytest.raises(RuntimeError, match="enough"):
         hysteron.track(TEXT, seeds=50, progress=refuse)
-
-
-def test_ctrl_c_ends_it():
-    begun = time.monotonic()
-    timer = threading.Timer(0.3, _thread.interrupt_main)
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        # A minute and more, were it not ended.
-        hysteron.track(TEXT.replace("levels = 60", "levels = 240"), seeds=1000)
-    assert time.monotonic() - begun < 30.0
 
 
 def test_built_in_scenarios():

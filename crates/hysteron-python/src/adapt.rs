@@ -1,13 +1,18 @@
 //! `adapt`.
 
-use crate::adaptive::{adapt_options, outcomes};
-use crate::error::Raise;
+use crate::fit::start_of;
+use crate::given::recording_of;
+use crate::learning::outcomes;
 use crate::model::Model;
-use crate::recording::recording_of;
 use crate::said::told;
+use crate::watched::watched;
+use crate::whole::Whole;
+use crate::word::learner;
+use hysteron::AdaptOptions;
 use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 /// What came of an adaptation to a recording.
 #[pyclass(frozen, get_all, module = "hysteron")]
@@ -25,6 +30,21 @@ pub(crate) struct Adapted {
 
 #[pymethods]
 impl Adapted {
+    #[new]
+    fn new(model: Model, table: Py<PyDict>, comparison: Py<PyAny>) -> Self {
+        Self {
+            model,
+            table,
+            comparison,
+        }
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, of) = (slf.py(), slf.get());
+        let fields = (of.model.clone(), of.table.bind(py), of.comparison.bind(py));
+        (slf.get_type(), fields).into_pyobject(py)
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let whole = self.comparison.bind(py).get_item("whole")?;
         let rmse = |of| whole.get_item(of)?.get_item("rmse")?.extract::<f64>();
@@ -51,6 +71,8 @@ impl Adapted {
 ///     What follows the error, and how; see `Adaptive`. 'drift' errs least on measured recordings.
 /// start : {'off', 'on', 'unknown'}
 ///     Where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less.
+/// progress : callable, bool or None
+///     As for `fit`. Ctrl-C ends it in any case.
 /// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, load : optional
 ///     As for `Adaptive`; what is left out follows from model and recording. The noise is that of the output,
 ///     and at least 2 % of its range for weights, 5 % for shares; the dead zone is twice the output's noise.
@@ -78,8 +100,8 @@ impl Adapted {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (model, recording, output=None, *, time=None, method="drift", start="off", **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None)"
+    signature = (model, recording, output=None, *, time=None, method="drift", start="off", progress=None, **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(
@@ -90,14 +112,15 @@ pub(crate) fn adapt<'py>(
     time: Option<&Bound<'py, PyAny>>,
     method: &str,
     start: &str,
+    progress: Option<&Bound<'py, PyAny>>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Adapted> {
     let options = adapt_options(method, start, options)?;
     let recording = recording_of(recording, output, time, None)?.inner;
     let model = &model.inner;
-    let adapted = py
-        .detach(|| hysteron::adapt(model, &recording, &options))
-        .raise()?;
+    let adapted = watched(py, progress, |watch| {
+        hysteron::adapt_watched(model, &recording, &options, watch)
+    })?;
     let errors = recording.output.iter().zip(&adapted.output_model);
     let errors = PyArray1::from_iter(py, errors.map(|(measured, model)| measured - model));
     let table = PyDict::new(py);
@@ -117,4 +140,48 @@ pub(crate) fn adapt<'py>(
         table: table.unbind(),
         comparison: comparison.into_any().unbind(),
     })
+}
+
+/// The options of `Adaptive` and `adapt`.
+pub(crate) fn adapt_options(
+    method: &str,
+    start: &str,
+    given: Option<&Bound<'_, PyDict>>,
+) -> PyResult<AdaptOptions> {
+    let mut options = AdaptOptions {
+        learner: learner(method)?,
+        start: start_of(start)?,
+        ..AdaptOptions::default()
+    };
+    for (name, value) in given.into_iter().flatten() {
+        let name: String = name.extract()?;
+        if name == "trial" {
+            let trial: Option<Whole> = value.extract()?;
+            options.trial = trial.map(|trial| trial.of("trial")).transpose()?;
+            continue;
+        }
+        let slots = [
+            ("gain", &mut options.gain),
+            ("span", &mut options.span),
+            ("forgetting", &mut options.forgetting),
+            ("noise", &mut options.noise),
+            ("spread", &mut options.spread),
+            ("correlation", &mut options.correlation),
+            ("offset_share", &mut options.offset_share),
+            ("dead_zone", &mut options.dead_zone),
+            ("leakage", &mut options.leakage),
+            ("movement", &mut options.movement),
+            ("load", &mut options.load),
+        ];
+        let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
+            return Err(PyTypeError::new_err(format!(
+                "there is no argument `{name}`"
+            )));
+        };
+        let number = value.extract();
+        *slot = number.map_err(|_| {
+            PyTypeError::new_err(format!("`{name}`: a number is needed, not {value}"))
+        })?;
+    }
+    Ok(options)
 }

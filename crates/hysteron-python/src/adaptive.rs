@@ -1,56 +1,19 @@
 //! `Adaptive`.
 
+use crate::adapt::adapt_options;
 use crate::array::samples;
-use crate::error::{Raise, finite};
-use crate::fit::start_of;
-use crate::inverse::number;
+use crate::error::{Raise, finite, number};
+use crate::inverse::side_of;
+use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
-use crate::word::{learner, policy};
-use hysteron::{AdaptOptions, Clipped, Outcome};
+use crate::watched::watched;
+use crate::word::policy;
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// What a sample taught an `Adaptive`.
-#[pyclass(frozen, get_all, module = "hysteron")]
-pub(crate) struct Learning {
-    /// Output that was expected before anything was learned from the sample.
-    output: f64,
-    /// Measured less expected.
-    error: f64,
-    /// What was done: 'learned', 'waiting' (error within the dead zone, or an increment not finished),
-    /// 'at-rest' (the input did not move), 'frozen' or 'rolled-back' (the weights went back to the last good ones).
-    outcome: &'static str,
-    /// -1 or 1 where the input lay below or above the plane, else 0.
-    clipped: i8,
-}
-
-impl From<hysteron::Learning<f64>> for Learning {
-    fn from(learning: hysteron::Learning<f64>) -> Self {
-        Self {
-            output: learning.output,
-            error: learning.error,
-            outcome: learning.outcome.name(),
-            clipped: side(learning.clipped),
-        }
-    }
-}
-
-#[pymethods]
-impl Learning {
-    fn __repr__(&self) -> String {
-        let Self {
-            output,
-            error,
-            outcome,
-            clipped,
-        } = self;
-        format!("Learning(output={output}, error={error}, outcome='{outcome}', clipped={clipped})")
-    }
-}
 
 /// A model that learns while it runs: its weights and offset follow the plant.
 ///
@@ -185,13 +148,18 @@ impl Adaptive {
     /// ------
     /// CoreError
     ///     For numbers that are NaN or infinite; nothing is changed then.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.step(0.5, 4.5)
+    /// Learning(output=4, error=0.5, outcome='learned', clipped=0)
     fn step(&self, input: f64, measured: f64) -> PyResult<Learning> {
-        finite("input", &[input])?;
-        finite("measured", &[measured])?;
+        let (input, measured) = (number("input", input)?, number("measured", measured)?);
         Ok(self.lock().adaptive.step(input, measured).raise()?.into())
     }
 
-    /// Predict each sample, then learn from it.
+    /// Predict each sample, then learn from it. Ctrl-C ends it; what was learned until then stays.
     ///
     /// Parameters
     /// ----------
@@ -208,6 +176,12 @@ impl Adaptive {
     ///     For samples that are NaN or infinite; nothing is changed then.
     /// ValueError
     ///     For two lengths.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.run([0.5, 1.0], [4.5, 7.0])['outcome']
+    /// array(['learned', 'learned'], dtype='<U11')
     fn run<'py>(
         &self,
         py: Python<'py>,
@@ -223,9 +197,9 @@ impl Adaptive {
         }
         finite("input", input)?;
         finite("measured", measured)?;
-        let learned = py
-            .detach(|| self.lock().adaptive.run(input, measured))
-            .raise()?;
+        let learned = watched(py, None, |watch| {
+            self.lock().adaptive.run(input, measured, watch)
+        })?;
         let table = PyDict::new(py);
         table.set_item(
             "output",
@@ -255,9 +229,14 @@ impl Adaptive {
     /// ------
     /// CoreError
     ///     For an input that is NaN or infinite; nothing is changed then.
+    ///
+    /// Examples
+    /// --------
+    /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).predict(0.5)
+    /// 4.0
     fn predict(&self, input: f64) -> PyResult<f64> {
-        let output = self.lock().adaptive.predict(input);
-        output.raise_of("input", &[input])
+        let input = number("input", input)?;
+        self.lock().adaptive.predict(input).raise()
     }
 
     /// The input that gives `target`, by the weights as they are now. The inverse moves there from where it stood.
@@ -288,18 +267,25 @@ impl Adaptive {
     /// (0.5, 0)
     #[pyo3(signature = (target, *, heading=None, band=0.0))]
     fn solve(&self, target: f64, heading: Option<&str>, band: f64) -> PyResult<(f64, i8)> {
-        let policy = policy(heading, band)?;
+        let (target, policy) = (number("target", target)?, policy(heading, band)?);
         let mut pair = self.lock();
         let Pair { adaptive, wanted } = &mut *pair;
-        let solution = adaptive.solve(wanted, target, policy);
-        let solution = solution.raise_of("target", &[target])?;
-        Ok((solution.input, number(solution.status)))
+        let solution = adaptive.solve(wanted, target, policy).raise()?;
+        Ok((solution.input, side_of(solution.status)))
     }
 
     /// Let the inverse set out from where the measured input is.
     ///
     /// Turning points that were asked for by weights long changed stay in its memory until they are wiped out;
     /// a loop may call this wherever its target turns.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> _ = adaptive.solve(7.0)  # the inverse goes to the top, the input does not
+    /// >>> adaptive.align()
+    /// >>> adaptive.solve(2.0)
+    /// (0.16666666666666674, 0)
     fn align(&self) {
         let mut pair = self.lock();
         pair.wanted = pair.adaptive.state().clone();
@@ -349,6 +335,12 @@ impl Adaptive {
     /// Returns
     /// -------
     /// Model
+    ///
+    /// Examples
+    /// --------
+    /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).model().weights
+    /// array([[ 1.,  2.],
+    ///        [nan,  4.]])
     fn model(&self) -> PyResult<Model> {
         Ok(self.lock().adaptive.model().raise()?.into())
     }
@@ -358,6 +350,13 @@ impl Adaptive {
     /// Parameters
     /// ----------
     /// on : bool
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.reset(on=True)
+    /// >>> adaptive.output
+    /// 7.0
     #[pyo3(signature = (*, on=false))]
     fn reset(&self, on: bool) -> PyResult<()> {
         let mut pair = self.lock();
@@ -375,6 +374,13 @@ impl Adaptive {
     /// Parameters
     /// ----------
     /// frozen : bool
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.freeze()
+    /// >>> adaptive.step(0.5, 4.5).outcome
+    /// 'frozen'
     #[pyo3(signature = (frozen=true))]
     fn freeze(&self, frozen: bool) {
         self.lock().adaptive.freeze(frozen);
@@ -386,6 +392,15 @@ impl Adaptive {
     }
 
     /// Go back to the last good weights and offset: those last kept, or that stood a trial since.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive.keep()
+    /// >>> _ = adaptive.step(0.5, 40.0)  # a reading that was wrong
+    /// >>> adaptive.roll_back()
+    /// >>> adaptive.output
+    /// 4.0
     fn roll_back(&self) -> PyResult<()> {
         self.lock().adaptive.roll_back().raise()
     }
@@ -414,77 +429,5 @@ impl Adaptive {
             "<Adaptive, {} levels, at {input}: {output} expected>",
             self.levels
         )
-    }
-}
-
-/// The options of `Adaptive` and `adapt`.
-pub(crate) fn adapt_options(
-    method: &str,
-    start: &str,
-    given: Option<&Bound<'_, PyDict>>,
-) -> PyResult<AdaptOptions> {
-    let mut options = AdaptOptions {
-        learner: learner(method)?,
-        start: start_of(start)?,
-        ..AdaptOptions::default()
-    };
-    for (name, value) in given.into_iter().flatten() {
-        let name: String = name.extract()?;
-        if name == "trial" {
-            let trial: Option<i64> = value.extract()?;
-            let number = |trial| {
-                u32::try_from(trial).map_err(|_| {
-                    PyValueError::new_err(format!(
-                        "`trial` is {trial}: it is from 1 to {}",
-                        u32::MAX
-                    ))
-                })
-            };
-            options.trial = trial.map(number).transpose()?;
-            continue;
-        }
-        let slots = [
-            ("gain", &mut options.gain),
-            ("span", &mut options.span),
-            ("forgetting", &mut options.forgetting),
-            ("noise", &mut options.noise),
-            ("spread", &mut options.spread),
-            ("correlation", &mut options.correlation),
-            ("offset_share", &mut options.offset_share),
-            ("dead_zone", &mut options.dead_zone),
-            ("leakage", &mut options.leakage),
-            ("movement", &mut options.movement),
-            ("load", &mut options.load),
-        ];
-        let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
-            return Err(PyTypeError::new_err(format!(
-                "there is no argument `{name}`"
-            )));
-        };
-        let number = value.extract();
-        *slot = number.map_err(|_| {
-            PyTypeError::new_err(format!("`{name}`: a number is needed, not {value}"))
-        })?;
-    }
-    Ok(options)
-}
-
-/// Outcomes as an array of their names.
-pub(crate) fn outcomes<'py>(
-    py: Python<'py>,
-    outcomes: impl Iterator<Item = Outcome>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let place = |outcome| Outcome::ALL.iter().position(|o| *o == outcome).unwrap_or(0);
-    let places: Vec<usize> = outcomes.map(place).collect();
-    let names = Outcome::ALL.map(Outcome::name);
-    let names = py.import("numpy")?.call_method1("array", (names,))?;
-    names.get_item(PyArray1::from_vec(py, places))
-}
-
-fn side(clipped: Option<Clipped>) -> i8 {
-    match clipped {
-        None => 0,
-        Some(Clipped::Low) => -1,
-        Some(Clipped::High) => 1,
     }
 }

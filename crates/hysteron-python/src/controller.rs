@@ -1,13 +1,15 @@
 //! `control.Controller`.
 
+use crate::action::Action;
 use crate::adaptive::Adaptive;
 use crate::array::samples;
-use crate::error::{Raise, finite};
+use crate::error::{Raise, finite, number};
 use crate::model::Model;
 use crate::pid::Pid;
 use crate::plant::SimulatedPlant;
 use crate::said::options;
 use crate::trace::Trace;
+use crate::watched::watched;
 use crate::word::{choice, direction};
 use hysteron::control::{
     self, Compensator, Course, Gains, InnerLoop, Reading, Rest, Scheme, Target,
@@ -15,59 +17,8 @@ use hysteron::control::{
 use hysteron::track::{Event, course};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// What a `Controller` does with a sample.
-#[pyclass(frozen, get_all, module = "hysteron.control")]
-pub(crate) struct Action {
-    /// The input asked for.
-    command: f64,
-    /// The drive to write to the device.
-    drive: f64,
-    /// The output that the model expected before it learned; NaN without a model.
-    prediction: f64,
-    /// The output as filtered; NaN where there is nothing new to be believed.
-    output: f64,
-    /// The input as filtered; NaN where there is nothing new to be believed, None where it is not known.
-    input: Option<f64>,
-    /// Whether the drive or the command stood at a limit.
-    saturated: bool,
-    /// Whether the target lay out of the model's reach; the nearest end was aimed at.
-    out_of_reach: bool,
-    /// Whether a reading was missing, or stuck.
-    sensor_fault: bool,
-    /// Whether the model learned from the sample.
-    adapted: bool,
-}
-
-impl From<control::Action> for Action {
-    fn from(action: control::Action) -> Self {
-        Self {
-            command: action.command,
-            drive: action.drive,
-            prediction: action.prediction,
-            output: action.filtered.output,
-            input: action.filtered.input,
-            saturated: action.status.saturated,
-            out_of_reach: action.status.out_of_reach,
-            sensor_fault: action.status.sensor_fault,
-            adapted: action.status.adapted,
-        }
-    }
-}
-
-#[pymethods]
-impl Action {
-    fn __repr__(&self) -> String {
-        let Self {
-            command,
-            drive,
-            prediction,
-            ..
-        } = self;
-        format!("<Action: command {command}, drive {drive}, prediction {prediction}>")
-    }
-}
 
 /// One controller for all schemes: the inverse of a model as feedforward, a PID, both, and a loop around the input inside.
 ///
@@ -206,6 +157,13 @@ impl Controller {
     /// ------
     /// CoreError
     ///     For a target that is NaN or infinite; nothing is changed then.
+    ///
+    /// Examples
+    /// --------
+    /// >>> pid = hysteron.control.Pid(2.0)
+    /// >>> controller = hysteron.control.Controller(0.01, (0, 10), pid=pid)
+    /// >>> controller.step(3.0, 1.0)  # 3 wanted, 1 measured
+    /// <Action: command 4, drive 4, prediction NaN>
     #[pyo3(signature = (target, output, input=None, *, heading=None))]
     fn step(
         &self,
@@ -215,12 +173,12 @@ impl Controller {
         heading: Option<&str>,
     ) -> PyResult<Action> {
         let heading = heading.map(direction).transpose()?;
-        let target_ = Target {
-            output: target,
+        let target = Target {
+            output: number("target", target)?,
             heading,
         };
-        let action = self.lock().step(target_, Reading { output, input });
-        Ok(action.raise_of("target", &[target])?.into())
+        let action = self.lock().step(target, Reading { output, input });
+        Ok(action.raise()?.into())
     }
 
     /// One sample that brings the input to `command`, whatever the output is: for recordings, relay and step tests.
@@ -239,10 +197,17 @@ impl Controller {
     /// ------
     /// CoreError
     ///     For a command that is NaN or infinite; nothing is changed then.
+    ///
+    /// Examples
+    /// --------
+    /// >>> controller = hysteron.control.Controller(0.01, (0, 10), pid=hysteron.control.Pid(2.0))
+    /// >>> controller.step_command(12.0, 1.0).drive  # within the limits
+    /// 10.0
     #[pyo3(signature = (command, output, input=None))]
     fn step_command(&self, command: f64, output: f64, input: Option<f64>) -> PyResult<Action> {
+        let command = number("command", command)?;
         let action = self.lock().step_command(command, Reading { output, input });
-        Ok(action.raise_of("command", &[command])?.into())
+        Ok(action.raise()?.into())
     }
 
     /// Time between samples, s.
@@ -309,25 +274,7 @@ impl Controller {
         let reference = samples(reference, "reference")?;
         let reference = reference.as_slice()?;
         finite("reference", reference)?;
-        let events: Vec<Event> = match events {
-            Some(events) => options(
-                "events",
-                Some(
-                    &events
-                        .try_iter()?
-                        .collect::<PyResult<Vec<_>>>()?
-                        .into_pyobject(py)?,
-                ),
-            )?,
-            None => Vec::new(),
-        };
-        if let Some(event) = events.iter().find(|event| event.at_s < 0.0) {
-            let text = format!(
-                "`events`: 'at_s' is {}: a time from 0 on is needed",
-                event.at_s
-            );
-            return Err(PyValueError::new_err(text));
-        }
+        let events = events.map_or(Ok(Vec::new()), events_of)?;
         let headings = hysteron::headings(reference, self.tolerance);
         if let Ok(plant) = device.cast::<SimulatedPlant>() {
             let plant = plant.get();
@@ -337,8 +284,10 @@ impl Controller {
                 headings: &headings,
                 events: &events,
             };
-            let done = py.detach(|| control::run(plant.lock().as_mut(), &mut self.lock(), &course));
-            return Ok(done.raise()?.into());
+            let trace = watched(py, None, |watch| {
+                control::run(plant.lock().as_mut(), &mut self.lock(), &course, watch)
+            })?;
+            return Ok(trace.into());
         }
         if !events.is_empty() {
             return Err(PyValueError::new_err(
@@ -362,6 +311,24 @@ impl Controller {
         }
         Ok(trace.into())
     }
+}
+
+/// What happens to a plant in a run.
+fn events_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<Event>> {
+    let given: Vec<Bound<'_, PyDict>> = given.extract().map_err(|_| {
+        PyTypeError::new_err("`events`: a sequence of dictionaries is needed, each with 'at_s'")
+    })?;
+    let events = given.iter().enumerate();
+    let events = events.map(|(n, event)| {
+        let of = format!("`events[{n}]`");
+        let event: Event = options(&of, Some(event.as_any()))?;
+        if event.at_s < 0.0 {
+            let text = format!("{of}: 'at_s' is {}: a time from 0 on is needed", event.at_s);
+            return Err(PyValueError::new_err(text));
+        }
+        Ok(event)
+    });
+    events.collect()
 }
 
 /// What a device's `read` returned.

@@ -1,9 +1,10 @@
 //! `design` and `Design`.
 
 use crate::error::Raise;
+use crate::given::inputs_of;
 use crate::judge::classes;
 use crate::pool::in_pool;
-use crate::recording::inputs_of;
+use crate::whole::Whole;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -78,6 +79,14 @@ impl Design {
     /// Raises
     /// ------
     /// FileError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import os, tempfile
+    /// >>> path = os.path.join(tempfile.mkdtemp(), 'profile.csv')
+    /// >>> hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5).to_csv(path)
+    /// >>> open(path).readline()
+    /// 'time [s],input\n'
     fn to_csv(&self, path: PathBuf) -> PyResult<()> {
         self.inner.write_csv(&path).raise()
     }
@@ -138,7 +147,7 @@ impl Design {
 pub(crate) fn design(
     py: Python<'_>,
     range: (f64, f64),
-    levels: usize,
+    levels: Whole,
     heating_rate: f64,
     cooling_rate: f64,
     budget: Option<f64>,
@@ -150,20 +159,18 @@ pub(crate) fn design(
         heating: heating_rate,
         cooling: cooling_rate,
     };
+    let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
     let options = DesignOptions {
         operator: crate::word::operator(operator)?,
         budget_s: budget,
         step_s: step,
-        ..DesignOptions::new(Plane::new(range.0, range.1, levels).raise()?, rates)
+        ..DesignOptions::new(plane, rates)
     };
     let recorded = match recorded {
         Some(recorded) => inputs_of(recorded, "recorded")?,
         None => Vec::new(),
     };
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
-    let inner = py.detach(|| {
-        let design = in_pool(|| hysteron::design(&options, &inputs));
-        design.raise_of("recorded", recorded.first().map_or(&[], Vec::as_slice))
-    })?;
+    let inner = py.detach(|| in_pool(|| hysteron::design(&options, &inputs)).raise())?;
     Ok(Design { inner })
 }

@@ -1,7 +1,9 @@
 //! Errors of the façade as Python exceptions, one class for each kind: `hysteron.errors`.
 
 use hysteron::Error;
+use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
+use std::path::Path;
 
 /// The result of a function of the façade, for `?` in functions that return a [`PyResult`].
 pub(crate) trait Raise<T> {
@@ -20,14 +22,7 @@ impl<T, E: Into<Error>> Raise<T> for Result<T, E> {
         self.map_err(|error| match error.into() {
             Error::Core(hysteron::CoreError::InputNotFinite { index }) => {
                 let value = samples.get(index).copied().unwrap_or(f64::NAN);
-                let place = if samples.len() == 1 {
-                    String::new()
-                } else {
-                    format!("[{index}]")
-                };
-                let text =
-                    format!("`{argument}`{place} is {value}: every sample must be a finite number");
-                new("CoreError", &text, 7)
+                not_finite(&format!("{argument}[{index}]"), value)
             }
             other => exception(&other),
         })
@@ -36,15 +31,33 @@ impl<T, E: Into<Error>> Raise<T> for Result<T, E> {
 
 /// Refuses samples that are not finite, as [`Raise::raise_of`] does.
 pub(crate) fn finite(argument: &str, samples: &[f64]) -> PyResult<()> {
-    let fault = samples.iter().position(|x| !x.is_finite());
-    let refused = fault.map(|index| Err(hysteron::CoreError::InputNotFinite { index }));
-    refused.unwrap_or(Ok(())).raise_of(argument, samples)
+    match samples.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(not_finite(&format!("{argument}[{index}]"), samples[index])),
+    }
+}
+
+/// A number, which is refused where it is not finite.
+pub(crate) fn number(argument: &str, value: f64) -> PyResult<f64> {
+    match value.is_finite() {
+        true => Ok(value),
+        false => Err(not_finite(argument, value)),
+    }
+}
+
+fn not_finite(place: &str, value: f64) -> PyErr {
+    let code = hysteron::CoreError::InputNotFinite { index: 0 }.code();
+    let text = format!("`{place}` is {value}: a finite number is needed");
+    new("CoreError", (text,), code)
 }
 
 fn exception(error: &Error) -> PyErr {
     let class = match error {
         Error::Core(_) => "CoreError",
-        Error::File { .. } => "FileError",
+        Error::File { path, source } => match source.raw_os_error() {
+            Some(number) => return of_file(path, number, error.code()),
+            None => "FileError",
+        },
         Error::ModelFile { .. } => "ModelFileError",
         Error::Recording { .. } => "RecordingError",
         Error::Fit(_) => "FitError",
@@ -58,7 +71,21 @@ fn exception(error: &Error) -> PyErr {
         Error::Export(_) => "ExportError",
         _ => "HysteronError",
     };
-    new(class, &error.to_string(), error.code())
+    new(class, (in_python(&error.to_string()),), error.code())
+}
+
+/// An error of the system's, which Python says in its own words: with `errno` and `filename`.
+fn of_file(path: &Path, number: i32, code: i32) -> PyErr {
+    let arguments = Python::attach(|py| {
+        let said = py.import("os")?.call_method1("strerror", (number,))?;
+        let missing = py.import("errno")?.getattr("ENOENT")?.eq(number)?;
+        Ok::<_, PyErr>(((number, said.unbind(), path.as_os_str()), missing))
+    });
+    match arguments {
+        Ok((arguments, true)) => new("FileMissingError", arguments, code),
+        Ok((arguments, false)) => new("FileError", arguments, code),
+        Err(error) => error,
+    }
 }
 
 /// A text of the façade with options named as arguments: `--load-degree 2` is `load_degree` 2 here. Paths stay as they are.
@@ -79,10 +106,11 @@ pub(crate) fn in_python(text: &str) -> String {
     result
 }
 
-fn new(class: &str, text: &str, code: i32) -> PyErr {
+/// An exception of a class of `hysteron.errors`.
+fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {
     let made = Python::attach(|py| {
         let class = py.import("hysteron.errors")?.getattr(class)?;
-        let error = class.call1((in_python(text),))?;
+        let error = class.call1(arguments)?;
         error.setattr("code", code)?;
         Ok(PyErr::from_value(error))
     });

@@ -4,7 +4,6 @@ use crate::error::Raise;
 use crate::word::choice;
 use hysteron::Model;
 use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
@@ -46,18 +45,9 @@ pub(crate) fn fmu<'py>(
     model: &Model,
     path: &Path,
     inverse: bool,
-    fmi: u8,
+    fmi: Fmi,
     name: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let fmi = match fmi {
-        2 => Fmi::V2,
-        3 => Fmi::V3,
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "`fmi` is {fmi}: 2 or 3 is needed"
-            )));
-        }
-    };
     let options = FmuOptions { inverse, fmi, name };
     let fmu = py
         .detach(|| hysteron_export::fmu(model, &options, path))

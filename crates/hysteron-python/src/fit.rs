@@ -1,9 +1,10 @@
 //! `fit` and `left_out`.
 
+use crate::given::recordings_of;
 use crate::model::{Model, sign_of};
-use crate::recording::recordings_of;
 use crate::said::warn;
 use crate::watched::watched;
+use crate::whole::Whole;
 use crate::word::{choice, operator};
 use hysteron::{Candidates, FitOptions, Open, Solver, Start};
 use numpy::PyArray1;
@@ -71,7 +72,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, levels=None, range=None, operator="mkp", solver="nnls", smooth=None, start="off", sign=None,
-    offset=None, load_degree=1, bootstrap=None, thermal=None, time=None, load=None, progress=None,
+    offset=None, load_degree=None, bootstrap=None, thermal=None, time=None, load=None, progress=None,
 ), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
@@ -84,10 +85,10 @@ pub(crate) fn fit(
     solver: &str,
     smooth: Option<&Bound<'_, PyAny>>,
     start: &str,
-    sign: Option<i32>,
+    sign: Option<Whole>,
     offset: Option<f64>,
-    load_degree: usize,
-    bootstrap: Option<usize>,
+    load_degree: Option<Whole>,
+    bootstrap: Option<Whole>,
     thermal: Option<&str>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
@@ -104,11 +105,11 @@ pub(crate) fn fit(
         offset,
         load_degree,
     )?;
+    open.bootstrap = bootstrap.is_none();
     let options = FitOptions {
-        bootstrap: bootstrap.unwrap_or_default(),
+        bootstrap: bootstrap.map_or(Ok(0), |n| n.of("bootstrap"))?,
         ..options
     };
-    open.bootstrap = bootstrap.is_none();
     let thermal = match thermal {
         None => false,
         Some(word) => choice("thermal", word, &[("first-order", true)])?,
@@ -153,7 +154,7 @@ pub(crate) fn fit(
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, levels=None, range=None, operator="mkp", solver="nnls", smooth=None, start="off", sign=None,
-    offset=None, load_degree=1, time=None, load=None, progress=None,
+    offset=None, load_degree=None, time=None, load=None, progress=None,
 ), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn left_out<'py>(
@@ -166,9 +167,9 @@ pub(crate) fn left_out<'py>(
     solver: &str,
     smooth: Option<&Bound<'py, PyAny>>,
     start: &str,
-    sign: Option<i32>,
+    sign: Option<Whole>,
     offset: Option<f64>,
-    load_degree: usize,
+    load_degree: Option<Whole>,
     time: Option<&Bound<'py, PyAny>>,
     load: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
@@ -213,12 +214,12 @@ fn options(
     solver: &str,
     smooth: Option<&Bound<'_, PyAny>>,
     start: &str,
-    sign: Option<i32>,
+    sign: Option<Whole>,
     offset: Option<f64>,
-    load_degree: usize,
+    load_degree: Option<Whole>,
 ) -> PyResult<(FitOptions, Open)> {
-    let (levels, open_levels) = or_auto("levels", levels)?;
-    let (smooth, open_smooth) = or_auto("smooth", smooth)?;
+    let (levels, open_levels) = or_auto("levels", levels, |n| n.extract::<Whole>()?.of("levels"))?;
+    let (smooth, open_smooth) = or_auto("smooth", smooth, |strength| strength.extract())?;
     let usual = FitOptions::default();
     let solvers = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
     let options = FitOptions {
@@ -230,7 +231,7 @@ fn options(
         offset,
         smooth: smooth.unwrap_or(usual.smooth),
         start: start_of(start)?,
-        load_degree,
+        load_degree: load_degree.map_or(Ok(usual.load_degree), |n| n.of("load_degree"))?,
         bootstrap: 0,
     };
     let open = Open {
@@ -251,20 +252,19 @@ pub(crate) fn start_of(word: &str) -> PyResult<Start> {
     choice("start", word, &starts)
 }
 
-/// A value, or `None` where it is left out or 'auto'; and whether it is 'auto'.
-fn or_auto<T>(argument: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<(Option<T>, bool)>
-where
-    T: for<'a, 'py> FromPyObject<'a, 'py>,
-{
-    let Some(value) = value else {
-        return Ok((None, false));
-    };
-    match (value.extract(), value.cast::<PyString>()) {
-        (Ok(value), _) => Ok((Some(value), false)),
-        (_, Ok(word)) if word.to_cow()? == "auto" => Ok((None, true)),
-        _ => Err(PyTypeError::new_err(format!(
-            "`{argument}` is {}: a number from zero on or 'auto' is needed",
-            value.repr()?
+/// A number, or `None` where it is left out or 'auto'; and whether it is 'auto'.
+fn or_auto<T>(
+    argument: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    number: impl Fn(&Bound<'_, PyAny>) -> PyResult<T>,
+) -> PyResult<(Option<T>, bool)> {
+    match value.map(|value| (value, value.cast::<PyString>())) {
+        None => Ok((None, false)),
+        Some((_, Ok(word))) if *word == "auto" => Ok((None, true)),
+        Some((_, Ok(word))) => Err(PyTypeError::new_err(format!(
+            "`{argument}` is {}: a number or 'auto' is needed",
+            word.repr()?
         ))),
+        Some((value, Err(_))) => Ok((Some(number(value)?), false)),
     }
 }

@@ -1,7 +1,7 @@
 //! `Inverse`.
 
 use crate::array::samples;
-use crate::error::Raise;
+use crate::error::{Raise, number};
 use crate::model::Model;
 use crate::state::State;
 use crate::word::{choice, direction, policy, width};
@@ -9,6 +9,7 @@ use hysteron::{Invert, Status};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 /// The exact inverse of a model: the input that gives a wanted output. Made by `Model.inverse`.
 ///
@@ -32,7 +33,8 @@ impl Inverse {
     }
 }
 
-pub(crate) fn number(status: Status) -> i8 {
+/// On which side of all outputs a target lies.
+pub(crate) fn side_of(status: Status) -> i8 {
     match status {
         Status::Ok => 0,
         Status::Low => -1,
@@ -46,6 +48,12 @@ impl Inverse {
     #[getter]
     fn model(&self) -> Model {
         self.model.clone()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let py = slf.py();
+        let inverse = slf.get().model().into_pyobject(py)?.getattr("inverse")?;
+        (inverse, ()).into_pyobject(py)
     }
 
     /// The inputs for a series of targets.
@@ -76,6 +84,15 @@ impl Inverse {
     /// ------
     /// CoreError
     ///     For a target that is NaN or infinite, or a state of another model.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> inverse, wanted = model.inverse(), [0.0, 6.0, 6.0, 3.0]
+    /// >>> inverse.run(wanted)[0]
+    /// array([-1.        ,  0.83333333,  0.83333333,  0.08333333])
+    /// >>> inverse.run(wanted, policy='anticipate')[0]  # over the dead band at the turn
+    /// array([-0.93      ,  0.83333333,  0.81583333,  0.08333333])
     #[pyo3(signature = (target, *, policy="hold", band=None, state=None, heading=None))]
     #[allow(clippy::type_complexity)]
     fn run<'py>(
@@ -123,7 +140,7 @@ impl Inverse {
             done.raise_of("target", target)
         })?;
         let input = PyArray1::from_iter(py, solutions.iter().map(|solution| solution.input));
-        let status = PyArray1::from_iter(py, solutions.iter().map(|s| number(s.status)));
+        let status = PyArray1::from_iter(py, solutions.iter().map(|s| side_of(s.status)));
         Ok((input, status))
     }
 
@@ -148,6 +165,15 @@ impl Inverse {
     /// ------
     /// CoreError
     ///     For a target that is NaN or infinite, or a state of another model; the state is then as it was.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> state = model.start()
+    /// >>> model.inverse().step(state, 6.0)
+    /// (0.8333333333333335, 0)
+    /// >>> model.inverse().step(state, 10.0)  # out of reach: the top of the plane
+    /// (1.0, 1)
     #[pyo3(signature = (state, target, *, heading=None, band=0.0))]
     fn step(
         &self,
@@ -156,10 +182,9 @@ impl Inverse {
         heading: Option<&str>,
         band: f64,
     ) -> PyResult<(f64, i8)> {
-        let policy = policy(heading, band)?;
+        let (target, policy) = (number("target", target)?, policy(heading, band)?);
         let inverse = self.model.inner.inverse().raise()?;
-        let solution = inverse.step(&mut state.lock(), target, policy);
-        let solution = solution.raise_of("target", &[target])?;
-        Ok((solution.input, number(solution.status)))
+        let solution = inverse.step(&mut state.lock(), target, policy).raise()?;
+        Ok((solution.input, side_of(solution.status)))
     }
 }

@@ -1,10 +1,12 @@
 //! What is known of a model: `Model.confidence`, `Model.band`, `Model.evaluate`; and `excitation`.
 
 use crate::error::Raise;
+use crate::given::inputs_of;
 use crate::plane::on_plane;
-use crate::recording::{Recording, inputs_of};
+use crate::recording::Recording;
 use crate::said::told;
-use hysteron::{Excitation, InverseRun, Model, Plane, Start};
+use crate::whole::Whole;
+use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -83,18 +85,23 @@ pub(crate) fn excitation<'py>(
     py: Python<'py>,
     input: &Bound<'py, PyAny>,
     range: (f64, f64),
-    levels: usize,
+    levels: Whole,
     operator: &str,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
+    excited(py, input, plane, crate::word::operator(operator)?)
+}
+
+pub(crate) fn excited<'py>(
+    py: Python<'py>,
+    input: &Bound<'py, PyAny>,
+    plane: Plane,
+    operator: Operator,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let inputs = inputs_of(input, "input")?;
-    let plane = Plane::new(range.0, range.1, levels).raise()?;
-    let operator = crate::word::operator(operator)?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-    let found = py.detach(|| {
-        let found = hysteron::excitation(&slices, plane, operator);
-        found.raise_of("input", inputs.first().map_or(&[], Vec::as_slice))
-    })?;
-    classes(py, levels, &found)
+    let found = py.detach(|| hysteron::excitation(&slices, plane, operator).raise())?;
+    classes(py, plane.levels(), &found)
 }
 
 pub(crate) fn evaluate<'py>(

@@ -1,5 +1,6 @@
 //! The Python package `hysteron`: types and errors converted, no logic.
 
+mod action;
 mod adapt;
 mod adaptive;
 mod array;
@@ -8,8 +9,10 @@ mod design;
 mod error;
 mod export;
 mod fit;
+mod given;
 mod inverse;
 mod judge;
+mod learning;
 mod model;
 mod pid;
 mod plane;
@@ -17,12 +20,14 @@ mod plant;
 mod pool;
 mod prepare;
 mod recording;
+mod relay_test;
 mod said;
 mod state;
 mod trace;
 mod track;
 mod turning;
 mod watched;
+mod whole;
 mod word;
 
 use pyo3::prelude::*;
@@ -30,11 +35,13 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _hysteron {
     #[pymodule_export]
+    use crate::action::Action;
+    #[pymodule_export]
     use crate::adapt::{Adapted, adapt};
     #[pymodule_export]
-    use crate::adaptive::{Adaptive, Learning};
+    use crate::adaptive::Adaptive;
     #[pymodule_export]
-    use crate::controller::{Action, Controller};
+    use crate::controller::Controller;
     #[pymodule_export]
     use crate::design::{Design, design};
     #[pymodule_export]
@@ -44,15 +51,19 @@ mod _hysteron {
     #[pymodule_export]
     use crate::judge::excitation;
     #[pymodule_export]
+    use crate::learning::Learning;
+    #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
-    use crate::pid::{Pid, RelayTest};
+    use crate::pid::Pid;
     #[pymodule_export]
     use crate::plant::{PreisachPlant, SimulatedPlant, SpringPlant};
     #[pymodule_export]
     use crate::prepare::prepare;
     #[pymodule_export]
     use crate::recording::{Recording, read};
+    #[pymodule_export]
+    use crate::relay_test::RelayTest;
     #[pymodule_export]
     use crate::state::State;
     #[pymodule_export]

@@ -1,18 +1,20 @@
 //! `Model`.
 
 use crate::array::{samples, zeros};
-use crate::error::Raise;
+use crate::error::{Raise, number};
 use crate::fit::start_of;
+use crate::given::{optional, recording_of};
 use crate::inverse::Inverse;
 use crate::judge;
 use crate::plane::{on_plane, weights_of};
-use crate::recording::{optional, recording_of};
 use crate::said::told;
 use crate::state::State;
-use crate::word::{operator, operator_name};
+use crate::whole::Whole;
+use crate::word::{self, operator_name};
 use hysteron::{Plane, Quantity, Sign, Surroundings};
+use hysteron_export::Fmi;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use std::path::PathBuf;
@@ -66,14 +68,15 @@ impl From<hysteron::Model> for Model {
 #[pymethods]
 impl Model {
     #[new]
-    #[pyo3(signature = (weights, range, *, operator="mkp", offset=0.0, sign=1, input="input", output="output"))]
+    #[pyo3(signature = (weights, range, *, operator="mkp", offset=0.0, sign=None, input="input", output="output"),
+        text_signature = "(weights, range, *, operator='mkp', offset=0.0, sign=1, input='input', output='output')")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         weights: &Bound<'_, PyAny>,
         range: (f64, f64),
         operator: &str,
         offset: f64,
-        sign: i32,
+        sign: Option<Whole>,
         input: &str,
         output: &str,
     ) -> PyResult<Self> {
@@ -81,9 +84,11 @@ impl Model {
         // The levels that come nearest; a count that is none of any plane's is then refused.
         let levels = ((2.0 * weights.len() as f64).sqrt()) as usize;
         let plane = Plane::new(range.0, range.1, levels).raise()?;
-        let operator = crate::model::operator(operator)?;
-        let mut model =
-            hysteron::Model::new(operator, plane, weights, offset, sign_of(sign)?).raise()?;
+        let (operator, sign) = (
+            word::operator(operator)?,
+            sign.map_or(Ok(Sign::Positive), sign_of)?,
+        );
+        let mut model = hysteron::Model::new(operator, plane, weights, offset, sign).raise()?;
         model.input = Quantity::from_column(input);
         model.output = Quantity::from_column(output);
         Ok(model.into())
@@ -102,6 +107,15 @@ impl Model {
     /// Raises
     /// ------
     /// FileError, ModelFileError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import os, tempfile
+    /// >>> path = os.path.join(tempfile.mkdtemp(), 'model.json')
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model.save(path)
+    /// >>> hysteron.Model.load(path) == model
+    /// True
     #[classmethod]
     fn load(_class: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
         Ok(hysteron::Model::read(&path).raise()?.into())
@@ -125,6 +139,12 @@ impl Model {
     /// Raises
     /// ------
     /// ModelFileError
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> hysteron.Model.from_json(model.to_json()) == model
+    /// True
     #[classmethod]
     fn from_json(_class: &Bound<'_, PyType>, text: &str) -> PyResult<Self> {
         Ok(hysteron::Model::from_json(text).raise()?.into())
@@ -311,6 +331,15 @@ impl Model {
     /// ------
     /// FitError
     ///     For a model that was fitted without a bootstrap; otherwise as `simulate`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 40, 800))
+    /// >>> lift = 0.1 * temperature + 0.01 * np.sin(np.arange(800))
+    /// >>> model = hysteron.fit(temperature, lift, levels=6)
+    /// >>> lower, upper = model.band(temperature)
+    /// >>> bool(np.mean((lower <= lift) & (lift <= upper)) > 0.9)
+    /// True
     #[pyo3(signature = (input, *, time=None, load=None))]
     #[allow(clippy::type_complexity)]
     fn band<'py>(
@@ -380,12 +409,19 @@ impl Model {
     }
 
     /// What an input, or several, say about each operator of this model's plane: `hysteron.excitation`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model.excitation([0.0, 1.0, 0.0])
+    /// array([[ 0.,  3.],
+    ///        [nan,  3.]])
     fn excitation<'py>(
         &self,
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        judge::excitation(py, input, self.range(), self.levels(), self.operator())
+        judge::excited(py, input, *self.inner.plane(), self.inner.operator())
     }
 
     /// A state with every operator off, or on.
@@ -397,6 +433,12 @@ impl Model {
     /// Returns
     /// -------
     /// State
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model.start(on=True).step(0.5)
+    /// 5.0
     #[pyo3(signature = (*, on=false))]
     fn start(&self, on: bool) -> State {
         self.started(on)
@@ -417,10 +459,26 @@ impl Model {
     /// ------
     /// CoreError
     ///     For turning points that do not nest.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> state = model.start()
+    /// >>> _ = state.run([1.0, 0.2, 0.6])
+    /// >>> again = model.restore(state.save())
+    /// >>> again.step(0.4) == state.step(0.4)
+    /// True
     fn restore(&self, saved: &Bound<'_, PyAny>) -> PyResult<State> {
-        let points = saved.get_item("turning_points")?;
+        let entry = |name| {
+            saved.get_item(name).map_err(|_| {
+                PyTypeError::new_err(
+                    "`saved`: a dictionary with 'turning_points' and 'input' is needed",
+                )
+            })
+        };
+        let points = entry("turning_points")?;
         let points = samples(&points, "turning_points")?;
-        let input = saved.get_item("input")?.extract()?;
+        let input = number("input", entry("input")?.extract()?)?;
         let state = self.inner.restore(points.as_slice()?, input).raise()?;
         Ok(State::new(self.clone(), state))
     }
@@ -435,6 +493,13 @@ impl Model {
     /// ------
     /// CoreError
     ///     Where a weight is below zero: the output is then not monotone.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> inputs, status = model.inverse().run([4.0, 7.0, 5.0])
+    /// >>> inputs
+    /// array([0.5, 1. , 0.5])
     fn inverse(&self) -> PyResult<Inverse> {
         Inverse::new(self.clone())
     }
@@ -453,6 +518,17 @@ impl Model {
     /// Raises
     /// ------
     /// FitError
+    ///
+    /// Examples
+    /// --------
+    /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 20, 400))
+    /// >>> runs = [hysteron.Recording(temperature, (9 - load) * temperature, load=np.full(400, load)) for load in (3.0, 6.0)]
+    /// >>> model = hysteron.fit(runs, levels=6, bootstrap=0)
+    /// >>> model.load_range
+    /// (3.0, 6.0)
+    /// >>> low, high = model.at_load(4.5).output_range
+    /// >>> round(high - low)
+    /// 270
     fn at_load(&self, load: f64) -> PyResult<Self> {
         Ok(self.inner.at_load(load).raise()?.into())
     }
@@ -526,15 +602,25 @@ impl Model {
     /// CoreError
     ///     For the inverse of a model with weights below zero.
     /// FileError
-    #[pyo3(signature = (path, *, inverse=false, fmi=2, name=None))]
+    ///
+    /// Examples
+    /// --------
+    /// >>> import os, tempfile
+    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> fmu = model.export_fmu(os.path.join(tempfile.mkdtemp(), 'inverse.fmu'), inverse=True)
+    /// >>> fmu['name'], fmu['inputs'], fmu['outputs']
+    /// ('sf_Inverse_MKP', ['target', 'heading'], ['input', 'status'])
+    #[pyo3(signature = (path, *, inverse=false, fmi=None, name=None), text_signature = "($self, path, *, inverse=False, fmi=2, name=None)")]
     fn export_fmu<'py>(
         &self,
         py: Python<'py>,
         path: PathBuf,
         inverse: bool,
-        fmi: u8,
+        fmi: Option<Whole>,
         name: Option<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let versions = [(2, Fmi::V2), (3, Fmi::V3)];
+        let fmi = fmi.map_or(Ok(Fmi::V2), |fmi| fmi.one_of("fmi", "2 or 3", &versions))?;
         crate::export::fmu(py, &self.inner, &path, inverse, fmi, name)
     }
 
@@ -565,14 +651,12 @@ impl Model {
     }
 }
 
-pub(crate) fn sign_of(sign: i32) -> PyResult<Sign> {
-    match sign {
-        1 => Ok(Sign::Positive),
-        -1 => Ok(Sign::Negative),
-        _ => Err(PyValueError::new_err(format!(
-            "`sign` is {sign}: 1 or -1 is needed"
-        ))),
-    }
+pub(crate) fn sign_of(sign: Whole) -> PyResult<Sign> {
+    sign.one_of(
+        "sign",
+        "1 or -1",
+        &[(1, Sign::Positive), (-1, Sign::Negative)],
+    )
 }
 
 /// Runs `work` on new samples, without the interpreter's lock.

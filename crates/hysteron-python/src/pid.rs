@@ -1,14 +1,15 @@
-//! `control.Pid` and `control.RelayTest`.
+//! `control.Pid`.
 
 use crate::array::samples;
-use crate::error::Raise;
+use crate::error::{Raise, number};
+use crate::whole::Whole;
 use hysteron::control::{self, Gains};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
 /// Refuses what can be no time between samples.
-fn interval(name: &str, seconds: f64) -> PyResult<f64> {
+pub(crate) fn interval(name: &str, seconds: f64) -> PyResult<f64> {
     match seconds > 0.0 && seconds.is_finite() {
         true => Ok(seconds),
         false => Err(PyValueError::new_err(format!(
@@ -92,8 +93,13 @@ impl Pid {
     /// Returns
     /// -------
     /// Pid
+    ///
+    /// Examples
+    /// --------
+    /// >>> hysteron.control.Pid.from_oscillation(3.2, 1.0)
+    /// Pid(1, integral_s=2.2, derivative_s=0)
     #[staticmethod]
-    fn from_oscillation(ultimate_gain: f64, period_s: f64) -> PyResult<Self> {
+    pub(crate) fn from_oscillation(ultimate_gain: f64, period_s: f64) -> PyResult<Self> {
         let gains = Gains::from_oscillation(ultimate_gain, period_s);
         gains.check().raise()?;
         Ok(Self::of(gains))
@@ -129,13 +135,13 @@ impl Pid {
     #[staticmethod]
     fn from_step(
         output: &Bound<'_, PyAny>,
-        begin: usize,
+        begin: Whole,
         step: f64,
         interval_s: f64,
     ) -> PyResult<Self> {
         let output = samples(output, "output")?;
         let interval_s = interval("interval_s", interval_s)?;
-        let gains = Gains::from_step(output.as_slice()?, begin, step, interval_s);
+        let gains = Gains::from_step(output.as_slice()?, begin.of("begin")?, step, interval_s);
         let gains = gains.ok_or_else(|| {
             PyValueError::new_err("`output` does not answer the step by more than its noise, so that no PID can be tuned")
         })?;
@@ -179,7 +185,18 @@ impl Pid {
     /// Returns
     /// -------
     /// float
-    ///     Within the limits whatever the numbers are.
+    ///     Within the limits.
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a reading there is `hold`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> pid = hysteron.control.Pid(2.0, integral_s=4.0)
+    /// >>> pid.step(1.0, 0.5), pid.step(1.0, 0.5, limits=(0, 2))
+    /// (2.25, 2.0)
     #[pyo3(signature = (error, dt, *, bias=0.0, limits=None, held=(false, false)),
         text_signature = "($self, error, dt, *, bias=0.0, limits=None, held=(False, False))")]
     fn step(
@@ -190,6 +207,7 @@ impl Pid {
         limits: Option<(f64, f64)>,
         held: (bool, bool),
     ) -> PyResult<f64> {
+        let (error, bias) = (number("error", error)?, number("bias", bias)?);
         let (dt, limits) = (interval("dt", dt)?, ordered(limits)?);
         Ok(self.with(|pid| pid.step(error, dt, bias, limits, held)))
     }
@@ -204,9 +222,16 @@ impl Pid {
     /// Returns
     /// -------
     /// float
+    ///
+    /// Examples
+    /// --------
+    /// >>> pid = hysteron.control.Pid(2.0)
+    /// >>> _ = pid.step(1.0, 0.5)
+    /// >>> pid.hold(bias=1.0)
+    /// 3.0
     #[pyo3(signature = (*, bias=0.0, limits=None))]
     fn hold(&self, bias: f64, limits: Option<(f64, f64)>) -> PyResult<f64> {
-        let limits = ordered(limits)?;
+        let (bias, limits) = (number("bias", bias)?, ordered(limits)?);
         Ok(self.with(|pid| pid.hold(bias, limits)))
     }
 
@@ -222,123 +247,5 @@ impl Pid {
             derivative_s,
         } = self.gains;
         format!("Pid({gain}, integral_s={integral_s}, derivative_s={derivative_s})")
-    }
-}
-
-/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
-///
-/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the hysteresis,
-/// which a step test on one branch does not see.
-///
-/// Parameters
-/// ----------
-/// commands : tuple of float
-///     The relay's two commands, the lower one first.
-/// middle : float
-///     Output at which it switches.
-/// band : float
-///     How far beyond, from 0 on: larger than the noise.
-///
-/// Raises
-/// ------
-/// ControlError
-///
-/// Examples
-/// --------
-/// >>> plant = hysteron.PreisachPlant()
-/// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
-/// >>> while not test.done:
-/// ...     plant.write(test.command)
-/// ...     plant.advance(0.01)
-/// ...     test.push(plant.read()[0])
-/// >>> pid = test.gains(0.01)
-/// >>> pid.gain > 0 and pid.integral_s > 0
-/// True
-#[pyclass(frozen, module = "hysteron.control")]
-pub(crate) struct RelayTest {
-    inner: Mutex<control::RelayTest>,
-}
-
-impl RelayTest {
-    fn with<T>(&self, work: impl FnOnce(&mut control::RelayTest) -> T) -> T {
-        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-#[pymethods]
-impl RelayTest {
-    #[new]
-    #[pyo3(signature = (commands, middle, *, band=0.0))]
-    fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
-        let inner = Mutex::new(control::RelayTest::new(commands, middle, band).raise()?);
-        Ok(Self { inner })
-    }
-
-    /// The command for the sample that comes.
-    #[getter]
-    fn command(&self) -> f64 {
-        self.with(|test| test.command())
-    }
-
-    /// Whether there were periods enough.
-    #[getter]
-    fn done(&self) -> bool {
-        self.with(|test| test.is_done())
-    }
-
-    /// Lowest and highest output so far, None before the first.
-    #[getter]
-    fn outputs(&self) -> Option<(f64, f64)> {
-        self.with(|test| test.outputs())
-    }
-
-    /// Take the output that followed the command.
-    ///
-    /// Parameters
-    /// ----------
-    /// output : float
-    ///     NaN for a lost reading.
-    fn push(&self, output: f64) {
-        self.with(|test| test.push(output));
-    }
-
-    /// Ultimate gain and period, once the test is done.
-    ///
-    /// Parameters
-    /// ----------
-    /// interval_s : float
-    ///     Time between samples.
-    ///
-    /// Returns
-    /// -------
-    /// tuple of float, or None
-    fn oscillation(&self, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
-        let interval_s = interval("interval_s", interval_s)?;
-        let found = self.with(|test| test.oscillation());
-        Ok(found.map(|(gain, period)| (gain, period * interval_s)))
-    }
-
-    /// A PID with the gains that follow, by Tyreus & Luyben 1992.
-    ///
-    /// Parameters
-    /// ----------
-    /// interval_s : float
-    ///     Time between samples.
-    ///
-    /// Returns
-    /// -------
-    /// Pid
-    ///
-    /// Raises
-    /// ------
-    /// ValueError
-    ///     Before the test is done.
-    fn gains(&self, interval_s: f64) -> PyResult<Pid> {
-        match self.oscillation(interval_s)? {
-            Some((gain, period_s)) => Pid::from_oscillation(gain, period_s),
-            None => Err(PyValueError::new_err(
-                "the test is not done: go on until `done`",
-            )),
-        }
     }
 }

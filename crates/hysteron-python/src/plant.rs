@@ -1,12 +1,16 @@
 //! Simulated plants.
 
-use crate::error::Raise;
-use crate::said::options;
+use crate::error::{Raise, number};
+use crate::said::{dictionary, options};
 use hysteron::plant::{self, PreisachPlantOptions, SpringPlantOptions};
 use hysteron::track::{Event, PlantOptions};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Longest time that a plant goes on without hearing of signals, s: a fraction of a second here.
+const HEARD_S: f64 = 3600.0;
 
 type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
 
@@ -57,6 +61,12 @@ impl SimulatedPlant {
     ///     NaN where the sensor gave nothing.
     /// input : float or None
     ///     The input of the hysteresis; None where no sensor measures it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> output, temperature = hysteron.SpringPlant().read()
+    /// >>> 21 < temperature < 23  # the room's
+    /// True
     fn read(&self) -> (f64, Option<f64>) {
         let reading = self.lock().read();
         (reading.output, reading.input)
@@ -67,18 +77,49 @@ impl SimulatedPlant {
     /// Parameters
     /// ----------
     /// drive : float
-    fn write(&self, drive: f64) {
+    ///
+    /// Raises
+    /// ------
+    /// CoreError
+    ///     For a drive that is NaN or infinite; the one before stays.
+    fn write(&self, drive: f64) -> PyResult<()> {
+        let drive = number("drive", drive)?;
         self.lock().write(drive);
+        Ok(())
     }
 
-    /// Let time pass.
+    /// Let time pass. Ctrl-C ends it, between two hours of the plant's time.
     ///
     /// Parameters
     /// ----------
     /// dt_s : float
-    ///     s; nothing happens for a time that cannot pass.
-    fn advance(&self, py: Python<'_>, dt_s: f64) {
-        py.detach(|| self.lock().advance(dt_s));
+    ///     s, from 0 on.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For a time that cannot pass.
+    ///
+    /// Examples
+    /// --------
+    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant.write(150)
+    /// >>> plant.advance(1.0)
+    /// >>> plant.truth()[1] > 149  # the amplifier has followed
+    /// True
+    fn advance(&self, py: Python<'_>, dt_s: f64) -> PyResult<()> {
+        if !(dt_s >= 0.0 && dt_s.is_finite()) {
+            let text = format!("`dt_s` is {dt_s}: a time from 0 on is needed, in seconds");
+            return Err(PyValueError::new_err(text));
+        }
+        let mut left = dt_s;
+        while left > 0.0 {
+            let now = left.min(HEARD_S);
+            py.detach(|| self.lock().advance(now));
+            left -= now;
+            py.check_signals()?;
+        }
+        Ok(())
     }
 
     /// The true output and input, without sensors.
@@ -86,6 +127,11 @@ impl SimulatedPlant {
     /// Returns
     /// -------
     /// output, input : float
+    ///
+    /// Examples
+    /// --------
+    /// >>> hysteron.PreisachPlant().truth()
+    /// (0.0, 0.0)
     fn truth(&self) -> (f64, Option<f64>) {
         let truth = self.lock().truth();
         (truth.output, truth.input)
@@ -108,6 +154,13 @@ impl SimulatedPlant {
     /// ------
     /// RigError
     ///     For values outside the plant's physics, and for what the plant does not know.
+    ///
+    /// Examples
+    /// --------
+    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant.disturb(lost=True)
+    /// >>> plant.read()[0]
+    /// nan
     #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
     fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let given = match what {
@@ -171,6 +224,9 @@ impl SpringPlant {
     #[new]
     #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, room_degc=22.0, predeformation_mm=0.0, limit_a=2.0, fatigue=None, thermocouple=..., lvdt=..., seed=1)")]
     fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
+        for name in ["fatigue", "thermocouple", "lvdt"] {
+            dictionary(name, options)?;
+        }
         let options: SpringPlantOptions =
             self::options("SpringPlant", options.map(|o| o.as_any()))?;
         let plant: Boxed = Box::new(plant::SpringPlant::new(&options).raise()?);
@@ -231,6 +287,9 @@ impl PreisachPlant {
     #[new]
     #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, lag_s=0.02, limit_v=150.0, levels=240, drift=..., measure_input=False, output_sensor=..., input_sensor=..., seed=1)")]
     fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
+        for name in ["drift", "output_sensor", "input_sensor"] {
+            dictionary(name, options)?;
+        }
         let options: PreisachPlantOptions =
             self::options("PreisachPlant", options.map(|o| o.as_any()))?;
         let plant: Boxed = Box::new(plant::PreisachPlant::new(&options).raise()?);

@@ -1,8 +1,9 @@
 //! `prepare`.
 
-use crate::error::Raise;
-use crate::recording::{Recording, recording_of};
+use crate::given::recording_of;
+use crate::recording::Recording;
 use crate::said::told;
+use crate::watched::watched;
 use hysteron::{PrepareOptions, RateDependence, Step};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -30,6 +31,8 @@ use pyo3::types::PyString;
 ///     Reversals of the input up to this are noise, in its unit; 'auto' as far as the noise reaches.
 /// time, load : array_like, shape (n,), optional
 ///     With an input and an output.
+/// progress : callable, bool or None
+///     As for `fit`. Ctrl-C ends it in any case.
 ///
 /// Returns
 /// -------
@@ -53,8 +56,8 @@ use pyo3::types::PyString;
 /// >>> bool(abs(prepared.input[100] + 38.36) < 0.1)
 /// True
 #[pyfunction]
-#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, band=None, time=None, load=None),
-    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', band='auto', time=None, load=None)")]
+#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, band=None, time=None, load=None, progress=None),
+    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', band='auto', time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn prepare<'py>(
     py: Python<'py>,
@@ -67,6 +70,7 @@ pub(crate) fn prepare<'py>(
     band: Option<&Bound<'py, PyAny>>,
     time: Option<&Bound<'py, PyAny>>,
     load: Option<&Bound<'py, PyAny>>,
+    progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Recording, Bound<'py, PyAny>)> {
     let usual = PrepareOptions::default();
     let options = PrepareOptions {
@@ -77,10 +81,11 @@ pub(crate) fn prepare<'py>(
         band: step("band", band, usual.band)?,
     };
     let recording = recording_of(recording, output, time, load)?;
-    let (prepared, report, rate) = py.detach(|| {
-        let (prepared, report) = hysteron::prepare(&recording.inner, &options).raise()?;
-        let rate = hysteron::rate_dependence(&prepared).raise()?;
-        Ok::<_, PyErr>((prepared, report, rate))
+    let (prepared, report, rate) = watched(py, progress, |watch| {
+        let (prepared, report) = hysteron::prepare_watched(&recording.inner, &options, watch)?;
+        watch("dependence on rate", f64::NAN)?;
+        let rate = hysteron::rate_dependence(&prepared)?;
+        Ok((prepared, report, rate))
     })?;
     let said = told(py, &report)?;
     said.set_item("rate", told(py, &rate)?)?;

@@ -1,13 +1,14 @@
 //! `Recording` and `read`.
 
-use crate::array::samples;
 use crate::error::Raise;
+use crate::given::{optional, series};
 use crate::said::{told, warn};
-use hysteron::{Columns, Origin, Plane, Quantity, Repair};
+use crate::whole::Whole;
+use hysteron::{Columns, FitOptions, Origin, Plane, Quantity, Repair};
 use numpy::PyArray1;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple, PyType};
+use pyo3::types::{PyDict, PyTuple, PyType};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ impl Recording {
     #[new]
     #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false))]
     #[allow(clippy::too_many_arguments)]
-    fn new(
+    pub(crate) fn new(
         input: &Bound<'_, PyAny>,
         output: &Bound<'_, PyAny>,
         time: Option<&Bound<'_, PyAny>>,
@@ -125,7 +126,17 @@ impl Recording {
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let column = |name: &Bound<'py, PyAny>| frame.get_item(name);
+        let column = |name: &Bound<'py, PyAny>| {
+            let py = name.py();
+            frame.get_item(name).map_err(|error| {
+                if error.is_instance_of::<PyKeyError>(py) {
+                    return error;
+                }
+                let of = frame.get_type();
+                let text = format!("`frame` of {of} is not indexed by names of columns: {error}");
+                PyTypeError::new_err(text)
+            })
+        };
         let load_name = load.map(|name| name.to_string());
         Self::new(
             &column(input)?,
@@ -204,6 +215,14 @@ impl Recording {
     /// Raises
     /// ------
     /// FileError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import os, tempfile
+    /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
+    /// >>> hysteron.Recording([20, 80], [0, 14], input_name='T [degC]').to_csv(path)
+    /// >>> open(path).read()
+    /// 'T [degC],output\n20,0\n80,14\n'
     fn to_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.inner.write_csv(&path).raise())
     }
@@ -226,13 +245,14 @@ impl Recording {
     /// >>> summary = hysteron.Recording([20, 80, 50], [0, 14, 11]).summary(levels=5)
     /// >>> summary['samples'], summary['operators'], summary['excited']
     /// (3, 15, 15)
-    #[pyo3(signature = (*, levels=20, range=None))]
+    #[pyo3(signature = (*, levels=None, range=None), text_signature = "($self, *, levels=20, range=None)")]
     fn summary<'py>(
         &self,
         py: Python<'py>,
-        levels: usize,
+        levels: Option<Whole>,
         range: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let levels = levels.map_or(Ok(FitOptions::default().levels), |n| n.of("levels"))?;
         let plane = match range {
             Some((min, max)) => Plane::new(min, max, levels).raise()?,
             None => hysteron::plane_of(&self.inner, levels).raise()?,
@@ -348,75 +368,4 @@ pub(crate) fn read(
         }
     }
     Ok(recording.into())
-}
-
-/// A recording, or arrays that make one.
-pub(crate) fn recording_of(
-    value: &Bound<'_, PyAny>,
-    output: Option<&Bound<'_, PyAny>>,
-    time: Option<&Bound<'_, PyAny>>,
-    load: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Recording> {
-    match (value.cast::<Recording>(), output) {
-        (Ok(recording), None) if time.is_none() && load.is_none() => Ok(recording.get().clone()),
-        (Ok(_), _) => Err(PyTypeError::new_err(
-            "a Recording has its own output, time and load: leave these out",
-        )),
-        (Err(_), Some(output)) => {
-            Recording::new(value, output, time, load, "input", "output", "load", false)
-        }
-        (Err(_), None) => Err(PyTypeError::new_err(
-            "a Recording is needed, or an input and its output",
-        )),
-    }
-}
-
-/// One recording, as [`recording_of`], or a list of them.
-pub(crate) fn recordings_of(
-    value: &Bound<'_, PyAny>,
-    output: Option<&Bound<'_, PyAny>>,
-    time: Option<&Bound<'_, PyAny>>,
-    load: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<hysteron::Recording>> {
-    if output.is_none()
-        && let Ok(several) = value.extract::<Vec<Recording>>()
-    {
-        if time.is_some() || load.is_some() {
-            return Err(PyTypeError::new_err(
-                "recordings have their own time and load: leave these out",
-            ));
-        }
-        return Ok(several.iter().map(|r| (*r.inner).clone()).collect());
-    }
-    let recording = recording_of(value, output, time, load)?;
-    Ok(vec![Arc::unwrap_or_clone(recording.inner)])
-}
-
-/// One input, or a list of inputs, each an array or that of a recording.
-pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<Vec<f64>>> {
-    if let Ok(recording) = value.cast::<Recording>() {
-        return Ok(vec![recording.get().inner.input.clone()]);
-    }
-    let listed = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
-    match value.extract::<Vec<Bound<'_, PyAny>>>() {
-        Ok(several) if listed && several.first().is_none_or(|first| first.len().is_ok()) => several
-            .iter()
-            .map(|one| match one.cast::<Recording>() {
-                Ok(recording) => Ok(recording.get().inner.input.clone()),
-                Err(_) => series(one, argument),
-            })
-            .collect(),
-        _ => Ok(vec![series(value, argument)?]),
-    }
-}
-
-pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
-    Ok(samples(value, argument)?.as_slice()?.to_vec())
-}
-
-pub(crate) fn optional(
-    value: Option<&Bound<'_, PyAny>>,
-    argument: &str,
-) -> PyResult<Option<Vec<f64>>> {
-    value.map(|value| series(value, argument)).transpose()
 }

@@ -13,6 +13,19 @@ pub(crate) fn told<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bou
     py.import("json")?.call_method1("loads", (text,))
 }
 
+/// Refuses a keyword argument that is neither a dictionary nor `None`: [`options`] takes its values from a sequence as well.
+pub(crate) fn dictionary(name: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+    let value = given.map(|given| given.get_item(name)).transpose()?;
+    match value.flatten() {
+        Some(value) if !value.is_none() && !value.is_instance_of::<PyDict>() => {
+            let value = value.repr()?;
+            let text = format!("`{name}` is {value}: a dictionary is needed");
+            Err(PyTypeError::new_err(text))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The options that keyword arguments, or a dictionary, stand for.
 ///
 /// # Errors

@@ -1,11 +1,12 @@
 //! `State`.
 
 use crate::array::samples;
-use crate::error::Raise;
+use crate::error::{Raise, number};
 use crate::model::{Model, filled};
-use numpy::PyArray1;
+use crate::plane::on_plane;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a model remembers of its input, made by `Model.start`.
@@ -60,9 +61,16 @@ impl State {
     /// ------
     /// CoreError
     ///     For an input that is NaN or infinite; the state is then as it was.
+    ///
+    /// Examples
+    /// --------
+    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state.step(0.5)
+    /// 4.0
     fn step(&self, input: f64) -> PyResult<f64> {
-        let step = self.model.inner.step(&mut self.lock(), input);
-        Ok(step.raise_of("input", &[input])?.output)
+        let input = number("input", input)?;
+        let step = self.model.inner.step(&mut self.lock(), input).raise()?;
+        Ok(step.output)
     }
 
     /// Move through `input` and give the outputs.
@@ -79,6 +87,12 @@ impl State {
     /// ------
     /// CoreError
     ///     For a sample that is NaN or infinite; the state is then as it was.
+    ///
+    /// Examples
+    /// --------
+    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state.run([0.5, 1.0]), state.run([0.5])
+    /// (array([4., 7.]), array([5.]))
     pub(crate) fn run<'py>(
         &self,
         py: Python<'py>,
@@ -97,6 +111,14 @@ impl State {
     /// Parameters
     /// ----------
     /// on : bool
+    ///
+    /// Examples
+    /// --------
+    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state.reset(on=True)
+    /// >>> state.operators
+    /// array([[ 1.,  1.],
+    ///        [nan,  1.]])
     #[pyo3(signature = (*, on=false))]
     fn reset(&self, on: bool) {
         let model = &self.model.inner;
@@ -109,6 +131,13 @@ impl State {
     /// -------
     /// dict
     ///     With 'turning_points' (ndarray) and 'input' (float).
+    ///
+    /// Examples
+    /// --------
+    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> _ = state.run([1.0, 0.5])
+    /// >>> state.save()
+    /// {'turning_points': array([2. , 1.5]), 'input': 0.5}
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let saved = PyDict::new(py);
         saved.set_item("turning_points", self.turning_points(py))?;
@@ -122,6 +151,14 @@ impl State {
         // Not made with the state locked: an array can set off Python's collector, and with it any code.
         let points: Vec<f64> = self.lock().turning_points().collect();
         PyArray1::from_vec(py, points)
+    }
+
+    /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the diagonal.
+    #[getter]
+    fn operators<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let plane = self.model.inner.plane();
+        let gamma = self.model.inner.operator_states(&self.lock()).raise()?;
+        on_plane(py, plane.levels(), &gamma)
     }
 
     /// The last input, as it was given.
@@ -141,6 +178,12 @@ impl State {
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
         self.copy()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, state) = (slf.py(), slf.get());
+        let restore = state.model().into_pyobject(py)?.getattr("restore")?;
+        (restore, (state.save(py)?,)).into_pyobject(py)
     }
 
     fn __repr__(&self) -> String {

@@ -130,6 +130,13 @@ impl Trace {
     /// Returns
     /// -------
     /// dict of ndarray
+    ///
+    /// Examples
+    /// --------
+    /// >>> controller = hysteron.control.Controller(0.01, (0, 150), pid=hysteron.control.Pid(0.2))
+    /// >>> trace = controller.run(hysteron.PreisachPlant(), np.full(100, 20.0))
+    /// >>> {name: len(series) for name, series in trace.to_dict().items()}['drive']
+    /// 100
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let table = PyDict::new(py);
         table.set_item("time", self.time(py))?;

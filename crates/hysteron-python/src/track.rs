@@ -6,6 +6,7 @@ use crate::pid::Pid;
 use crate::said::told;
 use crate::trace::Trace;
 use crate::watched::watched;
+use crate::whole::Whole;
 use hysteron::track::{Comparison as Found, Scenario, Score};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -159,8 +160,7 @@ impl Comparison {
 /// Compare controllers on a simulated plant, as ``hysteron track`` does.
 ///
 /// For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with
-/// the same disturbances. The gains of all PIDs come from one test on the same plant. Ctrl-C ends it after the runs that
-/// have begun.
+/// the same disturbances. The gains of all PIDs come from one test on the same plant. Ctrl-C ends it.
 ///
 /// Parameters
 /// ----------
@@ -205,11 +205,13 @@ impl Comparison {
 pub(crate) fn track(
     py: Python<'_>,
     scenario: &Bound<'_, PyAny>,
-    seeds: Option<u32>,
+    seeds: Option<Whole>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Comparison> {
     let mut scenario = scenario_of(scenario)?;
-    scenario.seeds = seeds.unwrap_or(scenario.seeds);
+    if let Some(seeds) = seeds {
+        scenario.seeds = seeds.of("seeds")?;
+    }
     let inner = watched(py, progress, |watch| {
         hysteron::track::track(&scenario, &|done, all| {
             watch("runs", done as f64 / all as f64)
@@ -239,6 +241,12 @@ pub(crate) fn track(
 /// ------
 /// ScenarioError
 ///     For a plant that does not answer the test.
+///
+/// Examples
+/// --------
+/// >>> outer, inner = hysteron.control.tune('sine')  # a spring, heated by a current
+/// >>> outer.gain > 0 and inner.gain > 0
+/// True
 #[pyfunction]
 pub(crate) fn tune(
     py: Python<'_>,

@@ -1,9 +1,9 @@
 //! `branches` and `remembered`.
 
 use crate::array::samples;
+use crate::error::finite;
 use hysteron::NOISE;
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// For each sample of an input the branch that it lies on.
@@ -33,7 +33,8 @@ pub(crate) fn branches<'py>(
     band: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let input = samples(input, "input")?;
-    let input = finite(input.as_slice()?)?;
+    let input = input.as_slice()?;
+    finite("input", input)?;
     let (low, high) = input.iter().fold((f64::MAX, f64::MIN), |(low, high), x| {
         (low.min(*x), high.max(*x))
     });
@@ -68,16 +69,8 @@ pub(crate) fn remembered<'py>(
     input: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let input = samples(input, "input")?;
-    let found = hysteron::remembered(finite(input.as_slice()?)?);
+    let input = input.as_slice()?;
+    finite("input", input)?;
+    let found = hysteron::remembered(input);
     Ok(PyArray1::from_iter(py, found.iter().map(|n| *n as i64)))
-}
-
-fn finite(input: &[f64]) -> PyResult<&[f64]> {
-    match input.iter().position(|x| !x.is_finite()) {
-        None => Ok(input),
-        Some(n) => Err(PyValueError::new_err(format!(
-            "`input`[{n}] is {}: every sample must be a finite number",
-            input[n]
-        ))),
-    }
 }

@@ -3,6 +3,7 @@
 use crate::error::Raise;
 use crate::pool::in_pool;
 use hysteron::{Error, Watch};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use std::panic::resume_unwind;
@@ -89,6 +90,10 @@ fn callback<'py>(
                 .map(Some),
             false => Ok(None),
         },
-        Some(call) => Ok(Some(call.clone())),
+        Some(call) if call.is_callable() => Ok(Some(call.clone())),
+        Some(other) => Err(PyTypeError::new_err(format!(
+            "`progress` is {}: a callable, True or None is needed",
+            other.repr()?
+        ))),
     }
 }

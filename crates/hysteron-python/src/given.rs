@@ -1,0 +1,84 @@
+//! Recordings and inputs as calls take them: as such, or as arrays.
+
+use crate::array::samples;
+use crate::error::finite;
+use crate::recording::Recording;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
+use std::sync::Arc;
+
+/// A recording, or arrays that make one.
+pub(crate) fn recording_of(
+    value: &Bound<'_, PyAny>,
+    output: Option<&Bound<'_, PyAny>>,
+    time: Option<&Bound<'_, PyAny>>,
+    load: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Recording> {
+    match (value.cast::<Recording>(), output) {
+        (Ok(recording), None) if time.is_none() && load.is_none() => Ok(recording.get().clone()),
+        (Ok(_), _) => Err(PyTypeError::new_err(
+            "a Recording has its own output, time and load: leave these out",
+        )),
+        (Err(_), Some(output)) => {
+            Recording::new(value, output, time, load, "input", "output", "load", false)
+        }
+        (Err(_), None) => Err(PyTypeError::new_err(
+            "a Recording is needed, or an input and its output",
+        )),
+    }
+}
+
+/// One recording, as [`recording_of`], or a list of them.
+pub(crate) fn recordings_of(
+    value: &Bound<'_, PyAny>,
+    output: Option<&Bound<'_, PyAny>>,
+    time: Option<&Bound<'_, PyAny>>,
+    load: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<hysteron::Recording>> {
+    if output.is_none()
+        && let Ok(several) = value.extract::<Vec<Recording>>()
+    {
+        if time.is_some() || load.is_some() {
+            return Err(PyTypeError::new_err(
+                "recordings have their own time and load: leave these out",
+            ));
+        }
+        return Ok(several.iter().map(|r| (*r.inner).clone()).collect());
+    }
+    let recording = recording_of(value, output, time, load)?;
+    Ok(vec![Arc::unwrap_or_clone(recording.inner)])
+}
+
+/// One input, or a list of inputs, each an array or that of a recording.
+pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<Vec<f64>>> {
+    let input_of = |one: &Bound<'_, PyAny>, place: &str| match one.cast::<Recording>() {
+        Ok(recording) => Ok(recording.get().inner.input.clone()),
+        Err(_) => {
+            let input = series(one, place)?;
+            finite(place, &input)?;
+            Ok(input)
+        }
+    };
+    let listed = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    match value.extract::<Vec<Bound<'_, PyAny>>>() {
+        Ok(several) if listed && several.first().is_none_or(|first| first.len().is_ok()) => {
+            let several = several.iter().enumerate();
+            several
+                .map(|(k, one)| input_of(one, &format!("{argument}[{k}]")))
+                .collect()
+        }
+        _ => Ok(vec![input_of(value, argument)?]),
+    }
+}
+
+pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
+    Ok(samples(value, argument)?.as_slice()?.to_vec())
+}
+
+pub(crate) fn optional(
+    value: Option<&Bound<'_, PyAny>>,
+    argument: &str,
+) -> PyResult<Option<Vec<f64>>> {
+    value.map(|value| series(value, argument)).transpose()
+}

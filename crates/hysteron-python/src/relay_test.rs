@@ -1,0 +1,139 @@
+//! `control.RelayTest`.
+
+use crate::error::Raise;
+use crate::pid::{Pid, interval};
+use hysteron::control;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+///
+/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the hysteresis,
+/// which a step test on one branch does not see.
+///
+/// Parameters
+/// ----------
+/// commands : tuple of float
+///     The relay's two commands, the lower one first.
+/// middle : float
+///     Output at which it switches.
+/// band : float
+///     How far beyond, from 0 on: larger than the noise.
+///
+/// Raises
+/// ------
+/// ControlError
+///
+/// Examples
+/// --------
+/// >>> plant = hysteron.PreisachPlant()
+/// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+/// >>> while not test.done:
+/// ...     plant.write(test.command)
+/// ...     plant.advance(0.01)
+/// ...     test.push(plant.read()[0])
+/// >>> pid = test.gains(0.01)
+/// >>> pid.gain > 0 and pid.integral_s > 0
+/// True
+#[pyclass(frozen, module = "hysteron.control")]
+pub(crate) struct RelayTest {
+    inner: Mutex<control::RelayTest>,
+}
+
+impl RelayTest {
+    fn with<T>(&self, work: impl FnOnce(&mut control::RelayTest) -> T) -> T {
+        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[pymethods]
+impl RelayTest {
+    #[new]
+    #[pyo3(signature = (commands, middle, *, band=0.0))]
+    fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
+        let inner = Mutex::new(control::RelayTest::new(commands, middle, band).raise()?);
+        Ok(Self { inner })
+    }
+
+    /// The command for the sample that comes.
+    #[getter]
+    fn command(&self) -> f64 {
+        self.with(|test| test.command())
+    }
+
+    /// Whether there were periods enough.
+    #[getter]
+    fn done(&self) -> bool {
+        self.with(|test| test.is_done())
+    }
+
+    /// Lowest and highest output so far, None before the first.
+    #[getter]
+    fn outputs(&self) -> Option<(f64, f64)> {
+        self.with(|test| test.outputs())
+    }
+
+    /// Take the output that followed the command.
+    ///
+    /// Parameters
+    /// ----------
+    /// output : float
+    ///     NaN for a lost reading.
+    ///
+    /// Examples
+    /// --------
+    /// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> before = test.command
+    /// >>> test.push(40.0)  # beyond the middle and the band
+    /// >>> before, test.command
+    /// (110.0, 40.0)
+    fn push(&self, output: f64) {
+        self.with(|test| test.push(output));
+    }
+
+    /// Ultimate gain and period, once the test is done.
+    ///
+    /// Parameters
+    /// ----------
+    /// interval_s : float
+    ///     Time between samples.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of float, or None
+    ///
+    /// Examples
+    /// --------
+    /// >>> hysteron.control.RelayTest((40, 110), 36.0).oscillation(0.01) is None  # not done
+    /// True
+    fn oscillation(&self, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
+        let interval_s = interval("interval_s", interval_s)?;
+        let found = self.with(|test| test.oscillation());
+        Ok(found.map(|(gain, period)| (gain, period * interval_s)))
+    }
+
+    /// A PID with the gains that follow, by Tyreus & Luyben 1992.
+    ///
+    /// Parameters
+    /// ----------
+    /// interval_s : float
+    ///     Time between samples.
+    ///
+    /// Returns
+    /// -------
+    /// Pid
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Before the test is done.
+    fn gains(&self, interval_s: f64) -> PyResult<Pid> {
+        match self.oscillation(interval_s)? {
+            Some((gain, period_s)) => Pid::from_oscillation(gain, period_s),
+            None => Err(PyValueError::new_err(
+                "the test is not done: go on until `done`",
+            )),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+"""Ctrl-C ends whatever takes long, and leaves nothing running."""
+
+import _thread
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import hysteron
+from hysteron.control import Controller, Pid
+
+SECONDS = 10  # none of these would be done in that time, were it not ended
+
+MODEL = hysteron.Model(np.full(820, 0.01), (20, 80))
+SWINGS = np.tile(50 - 40 * np.cos(np.linspace(0, 60, 5000)), 400)
+SCENARIO = """
+title = "many runs"
+duration_s = 8
+interval_s = 0.01
+settle_s = 2
+seeds = 1000
+plant = { kind = "preisach", levels = 240 }
+model = { levels = 10, range = [8, 150], rates = [200, 200] }
+loop = { filter_s = 0.01, tolerance = 0.5 }
+controllers = ["pid", "inverse-pid"]
+reference = [{ kind = "constant", value = 36 }, { kind = "sine", amplitude = 24, period_s = 2 }]
+"""
+
+
+def loop():
+    return Controller(0.01, (0, 150), pid=Pid(0.2, integral_s=0.05))
+
+
+LONG = {
+    "fit": lambda recording: hysteron.fit(recording, levels=40, bootstrap=10_000),
+    "left_out": lambda recording: hysteron.left_out(recording, levels="auto", smooth="auto"),
+    "prepare": lambda recording: hysteron.prepare(SWINGS, SWINGS, time=1e-3 * np.arange(len(SWINGS)), lag="auto"),
+    "adapt": lambda recording: hysteron.adapt(MODEL, SWINGS, 1.1 * MODEL.simulate(SWINGS), method="least-squares"),
+    "Adaptive.run": lambda recording: hysteron.Adaptive(MODEL, method="least-squares").run(SWINGS, SWINGS),
+    "track": lambda recording: hysteron.track(SCENARIO),
+    "Controller.run": lambda recording: loop().run(hysteron.SpringPlant(), np.full(5_000_000, 10.0)),
+    "advance": lambda recording: hysteron.SpringPlant().advance(1e308),
+}
+
+
+def tasks():
+    return len(os.listdir("/proc/self/task")) if os.path.isdir("/proc/self/task") else 0
+
+
+@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("way", [lambda: signal.raise_signal(signal.SIGINT), _thread.interrupt_main], ids=["signal", "interrupt"])
+def test_ctrl_c_ends(name, way, recording):
+    hysteron.fit(recording, levels=5, bootstrap=10)  # so that the pool of threads is there
+    before = tasks()
+    timer = threading.Timer(0.5, way)
+    timer.start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        LONG[name](recording)
+    assert time.monotonic() - began < SECONDS
+    timer.join()
+    assert tasks() <= before
