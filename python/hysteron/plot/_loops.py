@@ -1,0 +1,113 @@
+"""Output over input."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from ._style import MODELLED, RECORDED, figure, label, single, source, without_body
+
+
+@figure
+def loops(recording, model=None, *, start="off", ax=None):
+    """Output over input, measured and modelled (Figs. 1 and 11).
+
+    Parameters
+    ----------
+    recording : Recording
+    model : Model, optional
+        Driven with the recording's input.
+    start : {'off', 'on', 'unknown'}
+        Where the operators stand before the first sample.
+    ax : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    TypeError
+        For a `recording`, `model` or `ax` of another type.
+    FitError, ThermalError
+        For a model that needs a load or time, of a recording without them.
+
+    Examples
+    --------
+    >>> from hysteron import plot
+    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1), output="lift [mm]")
+    >>> ax = plot.loops(hysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]), model)
+    >>> [line.get_label() for line in ax.get_lines()]
+    ['measured', 'modelled']
+    """
+    modelled = None if model is None else model.evaluate(recording, start=start)["output_model"]
+    ax = single(ax)
+    ax.plot(recording.input, recording.output, label=source(recording), **RECORDED)
+    if modelled is not None:
+        ax.plot(recording.input, modelled, label="modelled", **MODELLED)
+    ax.set(xlabel=label(recording.input_name), ylabel=label(recording.output_name))
+    ax.legend()
+    return ax
+
+
+@figure
+def major_loops(model, loads=None, *, ax=None):
+    """The loop between the ends of the plane, for a model that depends on a load at several loads (Fig. 2).
+
+    Parameters
+    ----------
+    model : Model
+    loads : float or array_like of shape (n,), optional
+        In the load's unit; by default the ends of the range that the model was fitted on, and its middle.
+    ax : matplotlib.axes.Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    FitError
+        For a load outside that range, or of a model that depends on none.
+    ValueError
+        For `loads` without any, or a model with a thermal body.
+    TypeError
+        For a `model`, `loads` or `ax` of another type.
+
+    Examples
+    --------
+    >>> from hysteron import plot
+    >>> ax = plot.major_loops(hysteron.Model([1.0, 2.0, 4.0], (20, 80), output="lift [mm]"))
+    >>> ax.get_ylabel()
+    'lift [mm]'
+    >>> float(ax.get_lines()[0].get_ydata().max())
+    7.0
+    """
+    without_body(model)
+    low, high = model.range
+    margin = (high - low) / (model.levels - 1)  # the ridges start one step below their level
+    up = np.linspace(low - margin, high, 400)
+    path = np.concatenate([up, up[::-1]])
+    if loads is None and model.load_range is None:
+        ax = single(ax)
+        ax.plot(path, model.simulate(path), **MODELLED)
+    else:
+        loads = np.linspace(*model.load_range, 3) if loads is None else _numbers(loads)
+        outputs = [model.at_load(load).simulate(path) for load in loads]
+        ax = single(ax)
+        lines = ("-", (0, (5, 2)), (0, (1, 1.2)), "-.")
+        for k, (load, output) in enumerate(zip(loads, outputs)):
+            shade = plt.get_cmap("viridis")(0.8 * k / max(len(loads) - 1, 1))
+            ax.plot(path, output, color=shade, linestyle=lines[k % 4], linewidth=1.3, label=f"{load:g}")
+        told = model.summary()["load"]
+        ax.legend(title=label(f"{told['name']} [{told['unit']}]" if told["unit"] else told["name"]))
+    ax.set(xlabel=label(model.input), ylabel=label(model.output))
+    return ax
+
+
+def _numbers(loads):
+    try:
+        numbers = np.asarray(loads, float).ravel()
+    except (TypeError, ValueError):
+        raise TypeError(f"`loads` is {loads!r}: numbers are needed") from None
+    if not len(numbers):
+        raise ValueError(f"`loads` is {loads!r}: there is no load to show")
+    return numbers
