@@ -5,19 +5,12 @@ use crate::handles::Table;
 use crate::model::MODELS;
 use crate::pointer::{Out, check};
 use crate::types::{HysteronAdaptation, HysteronLearning, policy, status as status_constant};
-use hysteron::{Adaptation, Adaptive, State};
+use hysteron::{Adaptation, Adaptive};
 use std::sync::{Mutex, PoisonError};
 
-/// The model that follows the plant, and the state of the inverse in front of it: reference and plant are not in
-/// the same place.
-struct Learner {
-    adaptive: Adaptive,
-    inverse: State,
-}
+static LEARNERS: Table<Mutex<Adaptive>> = Table::new(3);
 
-static LEARNERS: Table<Mutex<Learner>> = Table::new(3);
-
-fn with(adaptive: u64, work: impl FnOnce(&mut Learner) -> Result<()>) -> Result<()> {
+fn with(adaptive: u64, work: impl FnOnce(&mut Adaptive) -> Result<()>) -> Result<()> {
     let learner = LEARNERS.get(adaptive, "adaptive")?;
     let mut learner = learner.lock().unwrap_or_else(PoisonError::into_inner);
     work(&mut learner)
@@ -42,8 +35,7 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
         };
         let model = MODELS.get(model, "model")?;
         let adaptive = Adaptive::new(&model, options)?;
-        let inverse = adaptive.state().clone();
-        out.set(LEARNERS.insert(Mutex::new(Learner { adaptive, inverse }))?);
+        out.set(LEARNERS.insert(Mutex::new(adaptive))?);
         Ok(())
     })
 }
@@ -66,7 +58,7 @@ pub unsafe extern "C" fn hysteron_adaptive_step(
         // SAFETY: the contract of the crate.
         let learning = unsafe { Out::new(learning, "learning")? };
         with(adaptive, |learner| {
-            learning.set(learner.adaptive.step(input, measured)?.into());
+            learning.set(learner.step(input, measured)?.into());
             Ok(())
         })
     })
@@ -83,7 +75,7 @@ pub unsafe extern "C" fn hysteron_adaptive_predict(
         // SAFETY: the contract of the crate.
         let output = unsafe { Out::new(output, "output")? };
         with(adaptive, |learner| {
-            output.set(learner.adaptive.predict(input)?);
+            output.set(learner.predict(input)?);
             Ok(())
         })
     })
@@ -104,8 +96,8 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
         // SAFETY: the contract of the crate.
         let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
         let policy = policy(heading, tolerance)?;
-        with(adaptive, |Learner { adaptive, inverse }| {
-            let solution = adaptive.solve(inverse, target, policy)?;
+        with(adaptive, |learner| {
+            let solution = learner.solve(target, policy)?;
             input.set(solution.input);
             status.set(status_constant(solution.status));
             Ok(())
@@ -120,7 +112,7 @@ pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64)
         // SAFETY: the contract of the crate.
         let model = unsafe { Out::new(model, "model")? };
         with(adaptive, |learner| {
-            model.set(MODELS.insert(learner.adaptive.model()?)?);
+            model.set(MODELS.insert(learner.model()?)?);
             Ok(())
         })
     })
@@ -129,13 +121,7 @@ pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64)
 /// All operators off, those of the inverse too; the weights stay.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_reset(adaptive: u64) -> i32 {
-    guard(|| {
-        with(adaptive, |Learner { adaptive, inverse }| {
-            adaptive.reset()?;
-            inverse.clone_from(adaptive.state());
-            Ok(())
-        })
-    })
+    guard(|| with(adaptive, |learner| Ok(learner.reset()?)))
 }
 
 /// While frozen (not 0), nothing is learned.
@@ -143,7 +129,7 @@ pub extern "C" fn hysteron_adaptive_reset(adaptive: u64) -> i32 {
 pub extern "C" fn hysteron_adaptive_freeze(adaptive: u64, frozen: i32) -> i32 {
     guard(|| {
         with(adaptive, |learner| {
-            learner.adaptive.freeze(frozen != 0);
+            learner.freeze(frozen != 0);
             Ok(())
         })
     })
@@ -154,7 +140,7 @@ pub extern "C" fn hysteron_adaptive_freeze(adaptive: u64, frozen: i32) -> i32 {
 pub extern "C" fn hysteron_adaptive_keep(adaptive: u64) -> i32 {
     guard(|| {
         with(adaptive, |learner| {
-            learner.adaptive.keep();
+            learner.keep();
             Ok(())
         })
     })
@@ -163,5 +149,5 @@ pub extern "C" fn hysteron_adaptive_keep(adaptive: u64) -> i32 {
 /// Goes back to the last good weights.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_roll_back(adaptive: u64) -> i32 {
-    guard(|| with(adaptive, |learner| Ok(learner.adaptive.roll_back()?)))
+    guard(|| with(adaptive, |learner| Ok(learner.roll_back()?)))
 }

@@ -9,7 +9,7 @@ use crate::types::{
     HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant, policy,
     status as status_constant,
 };
-use hysteron::{Error, Model, State, headings};
+use hysteron::{Model, State, headings};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A state, with the model that it is one of.
@@ -35,23 +35,11 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
         // SAFETY: the contract of the crate.
         let out = unsafe { Out::new(state, "state")? };
         let model = MODELS.get(model, "model")?;
-        runs_by_itself(&model)?;
+        model.runs_by_itself()?;
         let state = Mutex::new(model.start());
         out.set(STATES.insert(Running { model, state })?);
         Ok(())
     })
-}
-
-fn runs_by_itself(model: &Model) -> Result<()> {
-    if model.thermal.is_some() {
-        let text = "a model with a thermal body needs the time of each sample, which this interface does not take";
-        return Err(Fault::Library(Error::Thermal(text.into())));
-    }
-    if model.load.is_some() {
-        let text = "the model depends on a load: take it at one, with hysteron_model_at_load";
-        return Err(Fault::Library(Error::Fit(text.into())));
-    }
-    Ok(())
 }
 
 /// Frees a state.

@@ -75,12 +75,8 @@ impl<'a> View<'a> {
 
     /// Lower and upper edge of the prediction band.
     pub(crate) fn band_edges(&self) -> Option<[Vec<f64>; 2]> {
-        let band = self.band()?;
-        let edge = |sign: f64| {
-            let modelled = self.evaluation.output_model.iter().zip(&band.half_width);
-            modelled.map(|(y, half)| y + sign * half).collect()
-        };
-        Some([edge(-1.0), edge(1.0)])
+        let (lower, upper) = self.band()?.ends(&self.evaluation.output_model);
+        Some([lower, upper])
     }
 
     pub(crate) fn simulated(&self) -> bool {

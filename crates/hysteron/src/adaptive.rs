@@ -26,7 +26,10 @@ use hysteron_core::{
 pub struct Adaptive {
     offline: Model,
     core: hysteron_core::Model<f64, Vec<f64>>,
+    /// Where the measured input is.
     state: State,
+    /// Where the inverse stands: at the inputs that it asked for.
+    wanted: State,
     estimator: Estimator<f64, Vec<f64>>,
     /// What the parameters are shares of; none where they are the weights.
     parts: Vec<Vec<f64>>,
@@ -77,6 +80,7 @@ impl Adaptive {
         Ok(Self {
             offline: model.clone(),
             core,
+            wanted: state.clone(),
             state,
             estimator,
             parts,
@@ -139,22 +143,42 @@ impl Adaptive {
         self.sign().factor() * (self.core.output(&self.state) + self.estimator.offset())
     }
 
-    /// Finds the input that gives `target`, by the weights as they are now, and moves `state` there: a state of
-    /// this model, which may have had other weights since.
+    /// Finds the input that gives `target`, by the weights as they are now. The inverse moves there from where it stood: it has a
+    /// state of its own, as reference and plant are not in the same place.
     ///
     /// # Errors
-    /// [`Error::Core`] for a target that is not finite; the state is then as it was.
-    pub fn solve(
+    /// [`Error::Core`] for a target that is not finite; nothing is changed then.
+    pub fn solve(&mut self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+        let offset = self.estimator.offset();
+        let core = &self.core;
+        invert(
+            core,
+            self.offline.sign(),
+            offset,
+            &mut self.wanted,
+            target,
+            policy,
+        )
+    }
+
+    /// Lets the inverse set out from where the measured input is. Turning points that were asked for by weights long changed
+    /// stay in its memory until they are wiped out; a loop may call this wherever its target turns.
+    pub fn align(&mut self) {
+        self.wanted.clone_from(&self.state);
+    }
+
+    /// As [`Adaptive::solve`], from a `state` of the caller's: one of this model, which may have had other weights since.
+    ///
+    /// # Errors
+    /// As [`Adaptive::solve`].
+    pub(crate) fn solve_from(
         &self,
         state: &mut State,
         target: f64,
         policy: Policy<f64>,
     ) -> Result<Solution<f64>> {
-        let sign = self.sign();
-        let raw = sign.factor() * target - self.estimator.offset();
-        self.core.rebase(state)?;
-        let solution = self.core.inverse()?.step(state, raw, sign.inward(policy))?;
-        Ok(sign.outward(solution))
+        let offset = self.estimator.offset();
+        invert(&self.core, self.sign(), offset, state, target, policy)
     }
 
     /// The weights as they are now, row by row.
@@ -203,22 +227,26 @@ impl Adaptive {
         &self.state
     }
 
-    /// Turns every operator off; the weights stay.
+    /// Turns every operator off, those of the inverse too; the weights stay.
     ///
     /// # Errors
     /// None that a caller can cause.
     pub fn reset(&mut self) -> Result<()> {
         self.estimator.realign();
-        Ok(self.core.reset_off(&mut self.state)?)
+        self.core.reset_off(&mut self.state)?;
+        self.align();
+        Ok(())
     }
 
-    /// Turns every operator on, as at the top of the plane; the weights stay.
+    /// Turns every operator on, as at the top of the plane, those of the inverse too; the weights stay.
     ///
     /// # Errors
     /// None that a caller can cause.
     pub fn saturate(&mut self) -> Result<()> {
         self.estimator.realign();
-        Ok(self.core.reset_on(&mut self.state)?)
+        self.core.reset_on(&mut self.state)?;
+        self.align();
+        Ok(())
     }
 
     /// While frozen, [`Adaptive::step`] predicts and nothing is learned.
@@ -243,6 +271,21 @@ impl Adaptive {
     fn sign(&self) -> Sign {
         self.offline.sign()
     }
+}
+
+/// The inverse of a core model and an offset, with the model's sign.
+fn invert(
+    core: &hysteron_core::Model<f64, Vec<f64>>,
+    sign: Sign,
+    offset: f64,
+    state: &mut State,
+    target: f64,
+    policy: Policy<f64>,
+) -> Result<Solution<f64>> {
+    let raw = sign.factor() * target - offset;
+    core.rebase(state)?;
+    let solution = core.inverse()?.step(state, raw, sign.inward(policy))?;
+    Ok(sign.outward(solution))
 }
 
 /// Bytes that an estimator may take.

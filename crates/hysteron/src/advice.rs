@@ -45,7 +45,7 @@ impl fmt::Display for Advice {
             ),
             Self::AgainstInput { part } if *part > 0.5 => write!(
                 f,
-                "on {:.0} % of its way the output goes the other way than the model's sign allows: leave --sign out",
+                "on {:.0} % of its way the output goes the other way than the model's sign allows: leave --sign out; where it was left out, the output hardly follows from this input",
                 100.0 * part
             ),
             Self::AgainstInput { part } => write!(
@@ -56,7 +56,7 @@ impl fmt::Display for Advice {
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the first input leaves {operators} operators open, which are taken as off: if it does not follow on the lowest input, use --start unknown"
+                "the first input leaves {operators} operators open, which are taken as off: if the recording does not begin after the lowest input, use --start unknown"
             ),
         }
     }

@@ -102,6 +102,12 @@ impl Band {
     }
 }
 
+/// Lower and upper end of a band around a modelled output.
+pub(crate) fn ends(output_model: &[f64], half_width: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let pairs = output_model.iter().zip(half_width);
+    pairs.map(|(y, half)| (y - half, y + half)).unzip()
+}
+
 /// The prediction band over a recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BandEvaluation {
@@ -112,6 +118,12 @@ pub struct BandEvaluation {
 }
 
 impl BandEvaluation {
+    /// Lower and upper end around the modelled output.
+    #[must_use]
+    pub fn ends(&self, output_model: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        ends(output_model, &self.half_width)
+    }
+
     /// Of `model` on `recording`, whose output is modelled as `output_model`.
     pub(crate) fn of(
         model: &Model,

@@ -78,7 +78,7 @@ pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
 pub use thermal::{FirstOrder, ThermalState, fit_thermal};
-pub use turning::{Headings, NOISE, Turning, branches, headings, remembered};
+pub use turning::{Headings, NOISE, Turning, branches, headings, noise_band, remembered};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;

@@ -1,5 +1,6 @@
 //! The output of an actuator for what it is driven with: through its thermal body, under its load, with its band.
 
+use crate::band::ends;
 use crate::thermal::needs_time;
 use crate::{Error, Model, Result};
 use std::borrow::Cow;
@@ -14,6 +15,26 @@ pub struct Surroundings<'a> {
 }
 
 impl Model {
+    /// Refuses a model that does not run sample by sample on its input alone.
+    ///
+    /// # Errors
+    /// [`Error::Thermal`] for one with a thermal body, [`Error::Fit`] for one that depends on a load.
+    pub fn runs_by_itself(&self) -> Result<()> {
+        if self.thermal.is_some() {
+            return Err(Error::Thermal(
+                "the model has a thermal body, which needs the time of each sample: it runs over whole series only".into(),
+            ));
+        }
+        if let Some(load) = &self.load {
+            let (low, high) = load.range();
+            return Err(Error::Fit(format!(
+                "the model depends on the load `{}`: take it at one load first, from {low} to {high}",
+                load.quantity.name
+            )));
+        }
+        Ok(())
+    }
+
     /// The outputs for `input`, from every operator off, whatever the model is made of: an input that drives a thermal
     /// body goes through it, and a load is followed. For a plain model the same as [`Model::simulate`].
     ///
@@ -53,8 +74,7 @@ impl Model {
         let seen = self.seen(input, surroundings)?;
         let output = self.at(&seen, surroundings)?;
         let half = band.run(&seen)?;
-        let ends = output.iter().zip(&half);
-        Ok(ends.map(|(y, h)| (y - h, y + h)).unzip())
+        Ok(ends(&output, &half))
     }
 
     /// The input as the operators see it.

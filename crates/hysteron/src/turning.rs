@@ -5,6 +5,13 @@ use crate::Direction;
 /// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
 pub const NOISE: f64 = 0.01;
 
+/// Reversals of a series that count as noise where nobody says otherwise: [`NOISE`] of its range; 0 of none.
+#[must_use]
+pub fn noise_band(series: &[f64]) -> f64 {
+    let (low, high) = crate::recording::range(series);
+    NOISE * (high - low).max(0.0)
+}
+
 /// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
 /// from it by more than `band`.
 ///

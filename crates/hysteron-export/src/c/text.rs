@@ -28,7 +28,10 @@ pub(super) fn header<T: Number>(
     let file = source.file_name().unwrap_or_default().to_string_lossy();
     let (low, high) = model.output_range();
     let mut lines = vec![
-        format!("{}: the model of {}", name, plain(&file)),
+        match *file == **name {
+            true => format!("{name}: a hysteresis model"),
+            false => format!("{name}: the model of {}", plain(&file)),
+        },
         format!(
             "{operator} operators, K = {levels} levels, {} of {} operators with a weight, {}",
             model.weights().iter().filter(|mu| **mu != 0.0).count(),

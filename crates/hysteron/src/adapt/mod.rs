@@ -73,6 +73,13 @@ pub struct Drift {
 }
 
 impl Adapted {
+    /// Measured less predicted, for each sample of the recording adapted to.
+    #[must_use]
+    pub fn errors(&self, recording: &Recording) -> Vec<f64> {
+        let pairs = recording.output.iter().zip(&self.output_model);
+        pairs.map(|(measured, model)| measured - model).collect()
+    }
+
     /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
     /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`).
     ///
@@ -92,11 +99,14 @@ impl Adapted {
             });
         }
         let added = ["output_model", "error", "outcome"];
+        let errors = self.errors(recording);
         recording.write_csv_with(path, &added, |n| {
-            let predicted = self.output_model[n];
-            let error = recording.output[n] - predicted;
             let outcome = self.outcomes[n].name().to_owned();
-            [predicted.to_string(), error.to_string(), outcome]
+            [
+                self.output_model[n].to_string(),
+                errors[n].to_string(),
+                outcome,
+            ]
         })
     }
 }

@@ -123,7 +123,7 @@ impl Compensator {
         };
         match &self.kind {
             Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target, policy),
-            Kind::Adaptive(adaptive) => adaptive.solve(wanted, target, policy),
+            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, target, policy),
         }
     }
 

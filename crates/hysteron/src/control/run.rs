@@ -1,11 +1,8 @@
 //! A controller on a simulated plant, sample by sample.
 
-use super::{Controller, Disturbance, SimulatedPlant, Snapshot, Target, Trace};
+use super::{Controller, Disturbance, SimulatedPlant, Target, Trace};
 use crate::identify::SAMPLES_BETWEEN;
 use crate::{Direction, Result, Watch};
-
-/// Snapshots of adapted weights over a run.
-const SNAPSHOTS: usize = 60;
 
 /// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
 #[derive(Debug, Clone)]
@@ -32,7 +29,6 @@ pub fn run(
     let mut trace = Trace::default();
     let mut events = course.events.iter().peekable();
     let count = course.reference.len();
-    let every = count.div_ceil(SNAPSHOTS).max(1);
     for (n, &output) in course.reference.iter().enumerate() {
         if n % SAMPLES_BETWEEN == 0 {
             watch("control loop", n as f64 / count as f64)?;
@@ -46,17 +42,7 @@ pub fn run(
         let action = controller.step(Target { output, heading }, reading)?;
         plant.write(action.drive);
         plant.advance(controller.interval_s());
-
-        let time = n as f64 * controller.interval_s();
-        trace.push(time, output, (reading, truth), &action);
-        let adapting = controller.compensator().and_then(|c| c.adapting());
-        if let (Some(adaptive), true) = (adapting, n % every == 0 || n + 1 == count) {
-            trace.snapshots.push(Snapshot {
-                time,
-                offset: adaptive.offset(),
-                weights: adaptive.weights(),
-            });
-        }
+        trace.record(count, output, (reading, truth), (controller, &action));
     }
     Ok(trace)
 }

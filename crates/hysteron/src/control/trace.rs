@@ -1,6 +1,9 @@
 //! What a run of a control loop leaves behind.
 
-use super::{Action, Reading};
+use super::{Action, Controller, Reading};
+
+/// Snapshots of adapted weights over a run.
+const SNAPSHOTS: usize = 60;
 
 /// What the loop had to say of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,14 +55,26 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Adds a sample: what was wanted, what was read and, of a simulated plant, what was true, and what the controller did.
-    pub fn push(
+    /// Adds the next of `count` samples: what was wanted, what was read and, of a simulated plant, what was true, and what the
+    /// controller did. Now and then also its weights, where these adapt.
+    pub fn record(
         &mut self,
-        time: f64,
+        count: usize,
         reference: f64,
         (reading, truth): (Reading, Reading),
-        action: &Action,
+        (controller, action): (&Controller, &Action),
     ) {
+        let n = self.time.len();
+        let time = n as f64 * controller.interval_s();
+        let every = count.div_ceil(SNAPSHOTS).max(1);
+        let adapting = controller.compensator().and_then(|c| c.adapting());
+        if let (Some(adaptive), true) = (adapting, n.is_multiple_of(every) || n + 1 == count) {
+            self.snapshots.push(Snapshot {
+                time,
+                offset: adaptive.offset(),
+                weights: adaptive.weights(),
+            });
+        }
         self.time.push(time);
         self.reference.push(reference);
         self.output.push(truth.output);

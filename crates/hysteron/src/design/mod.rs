@@ -226,10 +226,11 @@ fn within_budget(options: &DesignOptions, turns: &[usize]) -> Result<Vec<usize>>
     }
     let selections = (1..=rings).rev().map(|count| spiral::evenly(turns, count));
     selections.into_iter().find(fits).ok_or_else(|| {
-        let least = seconds(&spiral::evenly(turns, 1)) / 60.0;
+        let least = seconds(&spiral::evenly(turns, 1));
         Error::Design(format!(
-            "{:.4} min are too short for a single ring, which takes {least:.4} min: allow more time or faster rates",
-            budget / 60.0
+            "{:.4} min ({budget:.1} s) are too short for a single ring, which takes {:.4} min ({least:.1} s): allow more time or faster rates",
+            budget / 60.0,
+            least / 60.0
         ))
     })
 }

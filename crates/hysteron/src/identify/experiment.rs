@@ -5,7 +5,7 @@ use super::FitOptions;
 use super::regressor::MOST_RECORDINGS;
 use crate::load::bernstein;
 use crate::recording::range;
-use crate::turning::{NOISE, branches};
+use crate::turning::{branches, noise_band};
 use crate::{Error, Plane, Recording, Result};
 use std::ops::Range;
 
@@ -94,10 +94,10 @@ impl Experiment {
 
     /// A branch ends where the input turns by more than noise.
     fn find_branches(&mut self) {
-        let (low, high) = range(&self.input);
+        let band = noise_band(&self.input);
         for range in &self.recordings {
             let before = self.branches();
-            let own = branches(&self.input[range.clone()], NOISE * (high - low));
+            let own = branches(&self.input[range.clone()], band);
             self.branch.extend(own.iter().map(|branch| before + branch));
         }
     }

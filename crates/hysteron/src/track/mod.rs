@@ -33,6 +33,8 @@ const STUCK_SAMPLES: f64 = 15.0;
 /// What a comparison came to.
 #[derive(Debug, Clone)]
 pub struct Comparison {
+    /// The scenario's title.
+    pub title: String,
     /// The controllers, in order.
     pub controllers: Vec<Kind>,
     /// The windows, in order.
@@ -131,6 +133,7 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
         problem: "at least one run is needed".into(),
     })?;
     Ok(Comparison {
+        title: scenario.title.clone(),
         controllers: scenario.controllers.clone(),
         windows,
         scores,

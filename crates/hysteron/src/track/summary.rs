@@ -13,6 +13,8 @@ pub struct Median {
     pub window: String,
     /// The controller.
     pub controller: &'static str,
+    /// Its name in a scenario.
+    pub name: &'static str,
     /// Medians over the seeds.
     #[serde(flatten)]
     pub score: Score,
@@ -25,6 +27,8 @@ pub struct Ratio {
     pub window: String,
     /// The controller.
     pub controller: &'static str,
+    /// Its name in a scenario.
+    pub name: &'static str,
     /// What it is compared with.
     pub compared_with: &'static str,
     /// Ratio of the tracking errors (RMSE).
@@ -55,6 +59,7 @@ impl Comparison {
                 medians.push(Median {
                     window: window.name.clone(),
                     controller: kind.words(),
+                    name: kind.name(),
                     score: Score {
                         rmse: of(|s| s.rmse),
                         max_abs: of(|s| s.max_abs),
@@ -91,6 +96,7 @@ impl Comparison {
                 ratios.push(Ratio {
                     window: window.name.clone(),
                     controller: a.words(),
+                    name: a.name(),
                     compared_with: b.words(),
                     rmse: of(|s| s.rmse),
                     prediction_rmse: of(|s| s.prediction_rmse),
