@@ -5,26 +5,16 @@
 SciPy gets the dense regressor: one column for each operator, and two of ones for an offset of either sign. Making it is counted apart.
 """
 
-import time
 import warnings
 
 import numpy as np
 from scipy.optimize import nnls
+from timing import best
 
 import hysteron
 
 SAMPLES = 10_000
 RANGE = (20.0, 80.0)
-
-
-def best(work, times):
-    """The best of a few: what else the machine does only ever adds time."""
-    taken, result = [], None
-    for _ in range(times):
-        start = time.perf_counter()
-        result = work()
-        taken.append(time.perf_counter() - start)
-    return min(taken), result
 
 
 def experiment(levels):

@@ -12,26 +12,17 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
 import zlib
 
 import numpy as np
+from timing import best
 
 import hysteron
 from hysteron import _hysteron
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = 1_000_000
-
-
-def best(work, times=50):
-    """The best of a few: what else the machine does only ever adds time."""
-    taken = []
-    for _ in range(times):
-        start = time.perf_counter()
-        work()
-        taken.append(time.perf_counter() - start)
-    return min(taken)
+RUNS = 50
 
 
 def inputs(plane):
@@ -75,11 +66,11 @@ def main():
     most = parser.parse_args().most
     levels = 20
     model = hysteron.Model(np.full(levels * (levels + 1) // 2, 0.01), (20, 80))
-    print(f"{SAMPLES} samples, {levels} levels; best of 50 runs.\n")
+    print(f"{SAMPLES} samples, {levels} levels; best of {RUNS} runs.\n")
     print("| input | Rust, ns a sample | Python `simulate` | ratio | `State.step` in a loop |")
     print("| --- | ---: | ---: | ---: | ---: |")
     for name, input in inputs(model.plane):
-        simulated = 1e9 * best(lambda: model.simulate(input)) / SAMPLES
+        simulated = 1e9 * best(lambda: model.simulate(input), RUNS)[0] / SAMPLES
         reference = rust(model, input)
         some = input[:100_000].tolist()
         state = model.start()
@@ -89,7 +80,7 @@ def main():
             for x in some:
                 step(x)
 
-        stepped = 1e9 * best(loop) / len(some)
+        stepped = 1e9 * best(loop, RUNS)[0] / len(some)
         ratio = None if reference is None else simulated / reference
         shown = "" if reference is None else f"{reference:.2f}"
         print(f"| {name} | {shown} | {simulated:.2f} | {'' if ratio is None else f'{ratio:.2f}'} | {stepped:.0f} |")

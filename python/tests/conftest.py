@@ -1,7 +1,11 @@
+import os
+
 import numpy as np
 import pytest
 
 import hysteron
+
+os.environ["MPLBACKEND"] = "Agg"  # figures need no screen
 
 
 @pytest.fixture(scope="session")
@@ -31,3 +35,19 @@ def recording(truth, swings):
         input_name="temperature [degC]",
         output_name="lift [mm]",
     )
+
+
+@pytest.fixture(scope="session")
+def model(recording):
+    """Fitted to the recording, with a prediction band."""
+    return hysteron.fit(recording, levels=12, bootstrap=50)
+
+
+@pytest.fixture
+def drawn():
+    """Draws what the test has made, and closes it."""
+    plt = pytest.importorskip("matplotlib.pyplot")
+    yield
+    for number in plt.get_fignums():
+        plt.figure(number).canvas.draw()
+    plt.close("all")

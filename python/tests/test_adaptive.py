@@ -2,10 +2,10 @@
 
 import copy
 import pickle
-import threading
 
 import numpy as np
 import pytest
+from common import together
 
 import hysteron
 
@@ -157,7 +157,7 @@ def test_it_cannot_be_pickled_but_its_model_can():
         ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'gradient'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
-        ({"gain": "much"}, TypeError, "`gain`: a number is needed"),
+        ({"gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),
     ],
 )
 def test_options_that_are_refused(options, error, text):
@@ -189,31 +189,22 @@ def test_samples_that_are_refused():
 def test_threads_may_share_one():
     adaptive = hysteron.Adaptive(model(), gain=0.1)
     measured = model(1.4).simulate(TEMPERATURE)
-    failures = []
 
     def work(kind):
-        try:
-            for n, (x, y) in enumerate(zip(TEMPERATURE, measured, strict=True)):
-                match (kind + n) % 5:
-                    case 0:
-                        adaptive.step(x, y)
-                    case 1:
-                        adaptive.solve(y)
-                    case 2:
-                        adaptive.run(TEMPERATURE[:50], measured[:50])
-                    case 3:
-                        assert np.isfinite(adaptive.model().offset)
-                    case 4:
-                        adaptive.copy().predict(x)
-        except BaseException as error:
-            failures.append(error)
+        for n, (x, y) in enumerate(zip(TEMPERATURE, measured, strict=True)):
+            match (kind + n) % 5:
+                case 0:
+                    adaptive.step(x, y)
+                case 1:
+                    adaptive.solve(y)
+                case 2:
+                    adaptive.run(TEMPERATURE[:50], measured[:50])
+                case 3:
+                    assert np.isfinite(adaptive.model().offset)
+                case 4:
+                    adaptive.copy().predict(x)
 
-    threads = [threading.Thread(target=work, args=(kind,)) for kind in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures
+    together(work)
     assert np.nanmin(adaptive.weights) >= 0.0
 
 

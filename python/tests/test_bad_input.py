@@ -2,10 +2,10 @@
 
 import errno
 import pickle
-import threading
 
 import numpy as np
 import pytest
+from common import together
 
 import hysteron
 
@@ -224,23 +224,14 @@ def test_operators_are_those_of_the_definition():
 
 def test_threads_share_a_state():
     state = MODEL.start()
-    errors = []
 
     def work(seed):
         values = np.random.default_rng(seed).random(200)
-        try:
-            for _ in range(50):
-                state.run(values)
-                state.step(values[0])
-                MODEL.restore(state.save())
-                state.turning_points, state.copy().reset()
-        except Exception as error:
-            errors.append(error)
+        for _ in range(50):
+            state.run(values)
+            state.step(values[0])
+            MODEL.restore(state.save())
+            state.turning_points, state.copy().reset()
 
-    threads = [threading.Thread(target=work, args=(n,)) for n in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert errors == []
+    together(work)
     assert state.step(1) == 7.0

@@ -1,10 +1,10 @@
 """Controllers, simulated plants and tuning."""
 
 import pickle
-import threading
 
 import numpy as np
 import pytest
+from common import together
 
 import hysteron
 from hysteron.control import Controller, Pid, RelayTest
@@ -132,8 +132,9 @@ def test_readings_that_are_refused():
 
     with pytest.raises(TypeError, match=r"`device.read\(\)` gave warm"):
         controller().run(Device(), [1.0])
-    with pytest.raises(AttributeError):
-        controller().run(object(), [1.0])
+    for device in (3, object()):
+        with pytest.raises(TypeError, match=r"`device` is .*: an object with read\(\) and write\(drive\) is needed"):
+            controller().run(device, [1.0])
     with pytest.raises(ValueError, match="simulated plants only"):
         controller().run(Stage(), [1.0], events=[{"at_s": 0, "load_n": 3}])
 
@@ -272,20 +273,12 @@ def test_a_relay_test_tunes_a_loop_that_tracks():
 
 
 def test_threads_may_share_a_controller_and_a_plant(identified):
-    loop, plant, failures = controller(identified), hysteron.PreisachPlant(levels=60), []
+    loop, plant = controller(identified), hysteron.PreisachPlant(levels=60)
 
-    def work():
-        try:
-            for n in range(5):
-                loop.run(plant, REFERENCE[:100])
-                plant.write(loop.step(30.0 + n, *plant.read()).drive)
-                plant.advance(INTERVAL)
-        except BaseException as error:
-            failures.append(error)
+    def work(_):
+        for n in range(5):
+            loop.run(plant, REFERENCE[:100])
+            plant.write(loop.step(30.0 + n, *plant.read()).drive)
+            plant.advance(INTERVAL)
 
-    threads = [threading.Thread(target=work) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures
+    together(work)

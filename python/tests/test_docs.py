@@ -1,6 +1,5 @@
 """The code of the first page, and that of the README, runs word for word in an empty folder."""
 
-import os
 import pathlib
 import re
 import subprocess
@@ -19,8 +18,7 @@ def blocks(page, fence="python"):
 
 
 def run(code, folder):
-    env = {**os.environ, "MPLBACKEND": "Agg"}
-    done = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=folder, env=env, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["spring.json"]
     return done.stdout

@@ -1,6 +1,3 @@
-import os
-import subprocess
-import sys
 import threading
 import time
 
@@ -82,7 +79,7 @@ def test_load(recording, swings):
             model.simulate(swings, **bad)
     with pytest.raises(hysteron.FitError, match="load"):
         model.at_load(1).simulate(swings, load=load)
-    with pytest.raises(hysteron.FitError, match="`?load_degree`?"):
+    with pytest.raises(hysteron.FitError, match="take `load_degree` 1 at most"):
         hysteron.fit(swings, output, load=np.repeat([0.0, 1.0], 1500), load_degree=2, levels=5)
 
 
@@ -112,10 +109,8 @@ def test_thermal(truth):
     "options, error, said",
     [
         ({"levels": 1}, ValueError, "2 to"),
-        ({"levels": 1.5}, TypeError, "`levels` is 1.5"),
-        ({"levels": -1}, ValueError, "`levels` is -1"),
         ({"levels": "many"}, TypeError, "'many'.*'auto'"),
-        ({"levels": 10_000}, ValueError, "levels|operators"),
+        ({"levels": 10_000}, ValueError, "take fewer levels"),
         ({"range": (80, 20)}, ValueError, "range"),
         ({"range": (np.nan, 20)}, ValueError, "range"),
         ({"range": (500, 600)}, hysteron.FitError, "moves no operator"),
@@ -127,10 +122,8 @@ def test_thermal(truth):
         ({"sign": 2}, ValueError, "`sign` is 2"),
         ({"offset": np.inf}, hysteron.FitError, "offset"),
         ({"bootstrap": 20_000}, hysteron.FitError, "10000"),
-        ({"bootstrap": -1}, (OverflowError, ValueError, TypeError), "negative|0"),
         ({"thermal": "second-order"}, ValueError, "`thermal` is 'second-order'"),
         ({"time": [0.0]}, TypeError, "own"),
-        ({"progress": 3}, TypeError, "callable"),
     ],
 )
 def test_bad_options_are_named(recording, options, error, said):
@@ -195,18 +188,15 @@ def test_left_out(recording):
     assert len(chosen) == 5 and all(smooth == 1e-6 for _, smooth in chosen)
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
-def test_a_forked_process_fits_as_well(tmp_path):
-    # In a process of its own: where it fails it never ends.
-    code = """
-import multiprocessing, numpy as np, hysteron
-u = 50 + 30 * np.sin(np.linspace(0, 20, 200))
-def fit(k):
-    return hysteron.fit(u, 0.5 * u, levels=k, smooth="auto").levels
-fit(5)
-with multiprocessing.get_context("fork").Pool(2) as pool:
-    print(pool.map(fit, [4, 5, 6]))
-print(fit(7))
-"""
-    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=60)
-    assert done.stdout == "[4, 5, 6]\n7\n", done.stderr
+def test_what_does_not_run_by_itself_has_no_state(recording, swings):
+    load = np.repeat([1.0, 2.0, 3.0], 1000)
+    model = hysteron.fit(swings, load * recording.output, load=load, levels=5, bootstrap=0)
+    for begin in (model.start, lambda: model.restore({"turning_points": [0.0], "input": 20.0})):
+        with pytest.raises(hysteron.FitError, match="take it at one load first, from 1 to 3"):
+            begin()
+    assert model.at_load(2.0).start().step(50.0) == model.at_load(2.0).simulate([50.0])[0]
+    assert "under load" in repr(model)
+    time = np.arange(len(swings)) * 0.1
+    body = hysteron.fit((swings / 100) ** 2, recording.output, time=time, levels=5, thermal="first-order", bootstrap=0)
+    with pytest.raises(hysteron.ThermalError, match="needs the time of each sample"):
+        body.start()

@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 import pytest
+from common import SLOW_SCENARIO
 
 import hysteron
 from hysteron.control import Controller, Pid
@@ -16,18 +17,6 @@ SECONDS = 10  # none of these would be done in that time, were it not ended
 
 MODEL = hysteron.Model(np.full(820, 0.01), (20, 80))
 SWINGS = np.tile(50 - 40 * np.cos(np.linspace(0, 60, 5000)), 400)
-SCENARIO = """
-title = "many runs"
-duration_s = 8
-interval_s = 0.01
-settle_s = 2
-seeds = 1000
-plant = { kind = "preisach", levels = 240 }
-model = { levels = 10, range = [8, 150], rates = [200, 200] }
-loop = { filter_s = 0.01, tolerance = 0.5 }
-controllers = ["pid", "inverse-pid"]
-reference = [{ kind = "constant", value = 36 }, { kind = "sine", amplitude = 24, period_s = 2 }]
-"""
 
 
 def loop():
@@ -40,7 +29,7 @@ LONG = {
     "prepare": lambda recording: hysteron.prepare(SWINGS, SWINGS, time=1e-3 * np.arange(len(SWINGS)), lag="auto"),
     "adapt": lambda recording: hysteron.adapt(MODEL, SWINGS, 1.1 * MODEL.simulate(SWINGS), method="least-squares"),
     "Adaptive.run": lambda recording: hysteron.Adaptive(MODEL, method="least-squares").run(SWINGS, SWINGS),
-    "track": lambda recording: hysteron.track(SCENARIO),
+    "track": lambda recording: hysteron.track(SLOW_SCENARIO, seeds=1000),
     "Controller.run": lambda recording: loop().run(hysteron.SpringPlant(), np.full(5_000_000, 10.0)),
     "advance": lambda recording: hysteron.SpringPlant().advance(1e308),
 }

@@ -8,11 +8,6 @@ import pytest
 import hysteron
 
 
-@pytest.fixture(scope="module")
-def model(recording):
-    return hysteron.fit(recording, levels=12, bootstrap=50)
-
-
 def test_confidence(model):
     found = model.confidence
     below = np.tril(np.ones((12, 12), bool), -1)

@@ -1,4 +1,4 @@
-"""Signatures that are written by hand, where arguments are taken as they come, name the real arguments."""
+"""Signatures that are written by hand: they name the real arguments, and the defaults that they show are the real ones."""
 
 import inspect
 
@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 import hysteron
+from hysteron.control import Pid
 
 MODEL = hysteron.Model(np.ones(15), (20, 80))
-SERIES = 50 - 30 * np.cos(np.linspace(0, 20, 200))
+#: From within the plane, so that the start counts.
+SERIES = 50 - 30 * np.cos(np.linspace(1, 21, 200))
+#: Of two loads, so that the order of the weights in the load counts.
+OUTPUT, LOAD = np.sqrt(SERIES) * np.repeat([1.0, 1.1], 100), np.repeat([0.0, 1.0], 100)
+RECORDING = hysteron.Recording(SERIES, np.sqrt(SERIES), time=np.arange(200.0) ** 1.1)  # not even
 METHODS = {
     "gain": "gradient",
     "span": "increments",
@@ -17,10 +22,56 @@ METHODS = {
 }
 
 
+def driven(plant):
+    """While the quick plant moves, and when the slow one is warm."""
+    plant.write(0.8 * plant.drives[1])
+    readings = []
+    for seconds in (0.1, 30.0):
+        plant.advance(seconds)
+        readings.append(plant.read())
+    return readings
+
+
+def disturbed(**shown):
+    plant = hysteron.SpringPlant()
+    plant.disturb(**shown)
+    return driven(plant)
+
+
+#: What tells one call from another.
+DEFAULTS = {
+    hysteron.Model: lambda **shown: hysteron.Model(np.ones(15), (20, 80), **shown),
+    hysteron.Model.export_fmu: lambda **shown: MODEL.export_fmu("model.fmu", **shown),
+    hysteron.Recording.summary: lambda **shown: RECORDING.summary(**shown),
+    hysteron.fit: lambda **shown: hysteron.fit(SERIES, OUTPUT, **{**shown, "load": LOAD}),
+    hysteron.left_out: lambda **shown: hysteron.left_out(SERIES, OUTPUT, **{**shown, "load": LOAD}),
+    hysteron.prepare: lambda **shown: hysteron.prepare(RECORDING, **shown),
+    hysteron.adapt: lambda **shown: hysteron.adapt(MODEL, RECORDING, **shown).table,
+    hysteron.Adaptive: lambda **shown: hysteron.Adaptive(MODEL, **shown).run(SERIES, OUTPUT),
+    hysteron.SpringPlant: lambda **shown: driven(hysteron.SpringPlant(**shown)),
+    hysteron.PreisachPlant: lambda **shown: driven(hysteron.PreisachPlant(**shown)),
+    hysteron.SimulatedPlant.disturb: disturbed,
+    Pid.step: lambda **shown: Pid(1.0, integral_s=1.0).step(1.0, 0.1, **shown),
+}
+
+
+def options(call):
+    return [p for p in inspect.signature(call).parameters.values() if p.kind is p.KEYWORD_ONLY]
+
+
+@pytest.mark.filterwarnings("ignore::hysteron.HysteronWarning")
+@pytest.mark.parametrize("function", DEFAULTS, ids=lambda function: function.__qualname__)
+def test_the_defaults_are_those_that_are_shown(function, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shown = {p.name: p.default for p in options(function) if p.default is not ...}
+    assert shown
+    np.testing.assert_equal(DEFAULTS[function](**shown), DEFAULTS[function]())
+
+
 @pytest.mark.parametrize("call", [hysteron.Adaptive, hysteron.adapt])
 def test_of_the_options_of_an_estimator(call):
     arguments = [MODEL] if call is hysteron.Adaptive else [MODEL, SERIES, 0.1 * SERIES]
-    names = [p.name for p in inspect.signature(call).parameters.values() if p.kind is p.KEYWORD_ONLY]
+    names = [option.name for option in options(call)]
     assert len(names) == (16 if call is hysteron.adapt else 14)
     for name in set(names) - {"method", "start", "time", "progress"}:
         method = METHODS.get(name, "gradient")
@@ -31,16 +82,7 @@ def test_of_the_options_of_an_estimator(call):
 
 @pytest.mark.parametrize("plant", [hysteron.SpringPlant, hysteron.PreisachPlant])
 def test_of_the_options_of_a_plant(plant):
-    parameters = inspect.signature(plant).parameters.values()
-    plain = {p.name: p.default for p in parameters if p.default is not ...}
-    reading = plant(**plain).read()
-    assert reading == plant().read(), "a default is not as it says"
-    for name in {p.name for p in parameters} - set(plain):
-        plant(**{name: {}})
-
-
-def test_of_a_disturbance():
-    names = list(inspect.signature(hysteron.SimulatedPlant.disturb).parameters)[1:]
-    assert len(names) == 5
+    names = [option.name for option in options(plant) if option.default is ...]
+    assert names
     for name in names:
-        hysteron.SpringPlant().disturb(**{name: None})
+        plant(**{name: {}})

@@ -2,26 +2,14 @@
 
 import numpy as np
 import pytest
+from common import SCENARIO, SLOW_SCENARIO
 
 import hysteron
-
-TEXT = """
-title = "A sine on a simulated piezo-like actuator"
-duration_s = 8
-interval_s = 0.01
-settle_s = 2
-seeds = 2
-plant = { kind = "preisach", levels = 60 }
-model = { levels = 10, range = [8, 150], rates = [200, 200] }
-loop = { filter_s = 0.01, tolerance = 0.5 }
-controllers = ["pid", "inverse-pid", "adaptive-pid"]
-reference = [{ kind = "constant", value = 36 }, { kind = "sine", amplitude = 24, period_s = 2 }]
-"""
 
 
 @pytest.fixture(scope="module")
 def comparison():
-    return hysteron.track(TEXT)
+    return hysteron.track(SCENARIO)
 
 
 def test_scores_are_a_table(comparison):
@@ -51,12 +39,12 @@ def test_what_else_there_is(comparison, tmp_path):
     assert len(comparison.traces["adaptive-pid"].snapshots) > 10
     comparison.to_csv(tmp_path / "scores.csv")
     assert len((tmp_path / "scores.csv").read_text().splitlines()) == 13
-    pid, inner = hysteron.control.tune(TEXT)
+    pid, inner = hysteron.control.tune(SCENARIO)
     assert inner is None and repr(pid) == repr(comparison.pid)
 
 
 def test_a_file_is_its_text(comparison, tmp_path):
-    (tmp_path / "sine.toml").write_text(TEXT)
+    (tmp_path / "sine.toml").write_text(SCENARIO)
     for path in [tmp_path / "sine.toml", str(tmp_path / "sine.toml")]:
         found = hysteron.track(path, seeds=1)
         assert np.array_equal(found.scores["rmse"], comparison.scores["rmse"].reshape(3, 2, 2)[:, 0].ravel())
@@ -65,8 +53,7 @@ def test_a_file_is_its_text(comparison, tmp_path):
 def test_progress_is_told():
     told = []
     # It is told every 50 ms: this takes longer.
-    longer = TEXT.replace("levels = 60", "levels = 240")
-    hysteron.track(longer, seeds=30, progress=lambda what, share: told.append((what, share)))
+    hysteron.track(SLOW_SCENARIO, seeds=30, progress=lambda what, share: told.append((what, share)))
     assert told and {what for what, _ in told} == {"runs"}
     assert [share for _, share in told] == sorted(share for _, share in told)
 
@@ -76,7 +63,7 @@ def test_what_progress_raises_ends_it():
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        hysteron.track(TEXT, seeds=50, progress=refuse)
+        hysteron.track(SCENARIO, seeds=50, progress=refuse)
 
 
 def test_built_in_scenarios():
@@ -88,8 +75,8 @@ def test_built_in_scenarios():
     ("scenario", "error", "text"),
     [
         ("nowhere", hysteron.ScenarioError, "no such built-in scenario: load-step"),
-        (TEXT.replace("0.01", "-1"), hysteron.ScenarioError, "interval_s"),
-        (TEXT + "colour = 3\n", hysteron.ScenarioError, "colour"),
+        (SCENARIO.replace("0.01", "-1"), hysteron.ScenarioError, "interval_s"),
+        (SCENARIO + "colour = 3\n", hysteron.ScenarioError, "colour"),
         (3, TypeError, "`scenario` is 3: a name, a path or a text"),
     ],
 )
@@ -99,4 +86,4 @@ def test_what_is_refused(scenario, error, text):
             call(scenario)
         assert text in str(raised.value)
     with pytest.raises(hysteron.ScenarioError):
-        hysteron.track(TEXT, seeds=0)
+        hysteron.track(SCENARIO, seeds=0)

@@ -7,10 +7,9 @@ use crate::model::Model;
 use crate::said::told;
 use crate::watched::watched;
 use crate::whole::Whole;
-use crate::word::learner;
+use crate::word::{learner, named, no_argument};
 use hysteron::AdaptOptions;
 use numpy::PyArray1;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -121,8 +120,7 @@ pub(crate) fn adapt<'py>(
     let adapted = watched(py, progress, |watch| {
         hysteron::adapt_watched(model, &recording, &options, watch)
     })?;
-    let errors = recording.output.iter().zip(&adapted.output_model);
-    let errors = PyArray1::from_iter(py, errors.map(|(measured, model)| measured - model));
+    let errors = PyArray1::from_vec(py, adapted.errors(&recording));
     let table = PyDict::new(py);
     table.set_item("input", PyArray1::from_vec(py, recording.input.clone()))?;
     table.set_item("output", PyArray1::from_vec(py, recording.output.clone()))?;
@@ -174,14 +172,9 @@ pub(crate) fn adapt_options(
             ("load", &mut options.load),
         ];
         let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
-            return Err(PyTypeError::new_err(format!(
-                "there is no argument `{name}`"
-            )));
+            return Err(no_argument(&name));
         };
-        let number = value.extract();
-        *slot = number.map_err(|_| {
-            PyTypeError::new_err(format!("`{name}`: a number is needed, not {value}"))
-        })?;
+        *slot = named(&name, "a number", &value)?;
     }
     Ok(options)
 }

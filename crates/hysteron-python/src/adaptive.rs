@@ -7,13 +7,13 @@ use crate::inverse::side_of;
 use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
+use crate::shared::Shared;
 use crate::watched::watched;
 use crate::word::policy;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A model that learns while it runs: its weights and offset follow the plant.
 ///
@@ -79,34 +79,20 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// 22.5
 #[pyclass(frozen, module = "hysteron")]
 pub(crate) struct Adaptive {
-    inner: Mutex<Pair>,
-    levels: usize,
-}
-
-#[derive(Clone)]
-struct Pair {
-    adaptive: hysteron::Adaptive,
-    /// Where the inverse stands.
-    wanted: hysteron::State,
+    inner: Shared<hysteron::Adaptive>,
 }
 
 impl From<hysteron::Adaptive> for Adaptive {
     fn from(adaptive: hysteron::Adaptive) -> Self {
-        let levels = adaptive.offline().plane().levels();
-        let wanted = adaptive.state().clone();
-        let inner = Mutex::new(Pair { adaptive, wanted });
-        Self { inner, levels }
+        let inner = Shared::new(adaptive);
+        Self { inner }
     }
 }
 
 impl Adaptive {
-    fn lock(&self) -> MutexGuard<'_, Pair> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// The façade's, as it is now.
-    pub(crate) fn now(&self) -> hysteron::Adaptive {
-        self.lock().adaptive.clone()
+    pub(crate) fn now(&self, py: Python<'_>) -> hysteron::Adaptive {
+        self.inner.with(py, |adaptive| adaptive.clone())
     }
 }
 
@@ -154,9 +140,10 @@ impl Adaptive {
     /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.step(0.5, 4.5)
     /// Learning(output=4, error=0.5, outcome='learned', clipped=0)
-    fn step(&self, input: f64, measured: f64) -> PyResult<Learning> {
+    fn step(&self, py: Python<'_>, input: f64, measured: f64) -> PyResult<Learning> {
         let (input, measured) = (number("input", input)?, number("measured", measured)?);
-        Ok(self.lock().adaptive.step(input, measured).raise()?.into())
+        let step = |adaptive: &mut hysteron::Adaptive| adaptive.step(input, measured);
+        Ok(self.inner.with(py, step).raise()?.into())
     }
 
     /// Predict each sample, then learn from it. Ctrl-C ends it; what was learned until then stays.
@@ -198,7 +185,8 @@ impl Adaptive {
         finite("input", input)?;
         finite("measured", measured)?;
         let learned = watched(py, None, |watch| {
-            self.lock().adaptive.run(input, measured, watch)
+            let run = |adaptive: &mut hysteron::Adaptive| adaptive.run(input, measured, watch);
+            self.inner.with_detached(run)
         })?;
         let table = PyDict::new(py);
         table.set_item(
@@ -234,9 +222,10 @@ impl Adaptive {
     /// --------
     /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).predict(0.5)
     /// 4.0
-    fn predict(&self, input: f64) -> PyResult<f64> {
+    fn predict(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
         let input = number("input", input)?;
-        self.lock().adaptive.predict(input).raise()
+        let predict = |adaptive: &mut hysteron::Adaptive| adaptive.predict(input);
+        self.inner.with(py, predict).raise()
     }
 
     /// The input that gives `target`, by the weights as they are now. The inverse moves there from where it stood.
@@ -266,11 +255,16 @@ impl Adaptive {
     /// >>> adaptive.solve(4.0)
     /// (0.5, 0)
     #[pyo3(signature = (target, *, heading=None, band=0.0))]
-    fn solve(&self, target: f64, heading: Option<&str>, band: f64) -> PyResult<(f64, i8)> {
+    fn solve(
+        &self,
+        py: Python<'_>,
+        target: f64,
+        heading: Option<&str>,
+        band: f64,
+    ) -> PyResult<(f64, i8)> {
         let (target, policy) = (number("target", target)?, policy(heading, band)?);
-        let mut pair = self.lock();
-        let Pair { adaptive, wanted } = &mut *pair;
-        let solution = adaptive.solve(wanted, target, policy).raise()?;
+        let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target, policy);
+        let solution = self.inner.with(py, solve).raise()?;
         Ok((solution.input, side_of(solution.status)))
     }
 
@@ -286,48 +280,50 @@ impl Adaptive {
     /// >>> adaptive.align()
     /// >>> adaptive.solve(2.0)
     /// (0.16666666666666674, 0)
-    fn align(&self) {
-        let mut pair = self.lock();
-        pair.wanted = pair.adaptive.state().clone();
+    fn align(&self, py: Python<'_>) {
+        self.inner.with(py, |adaptive| adaptive.align());
     }
 
     /// The output expected where the input is now.
     #[getter]
-    fn output(&self) -> f64 {
-        self.lock().adaptive.output()
+    fn output(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |adaptive| adaptive.output())
     }
 
     /// The weights as they are now, shape (K, K), in the output's unit, NaN below the diagonal.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let weights = self.lock().adaptive.weights();
-        on_plane(py, self.levels, &weights)
+        on_plane(py, &self.inner.with(py, |adaptive| adaptive.weights()))
     }
 
     /// The output with every operator off, as it is now.
     #[getter]
-    fn offset(&self) -> f64 {
-        self.lock().adaptive.offset()
+    fn offset(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |adaptive| adaptive.offset())
     }
 
     /// The model that this began with; of one that depends on a load, the one at the load that was named.
     #[getter]
-    fn offline(&self) -> Model {
-        self.lock().adaptive.offline().clone().into()
+    fn offline(&self, py: Python<'_>) -> Model {
+        self.inner
+            .with(py, |adaptive| adaptive.offline().clone())
+            .into()
     }
 
     /// The turning points of the measured input, as those of `State`.
     #[getter]
     fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        // An array may be made by Python's allocator, which may run anything: not with the lock held.
-        let points: Vec<f64> = self.lock().adaptive.state().turning_points().collect();
+        let points = |adaptive: &mut hysteron::Adaptive| -> Vec<f64> {
+            adaptive.state().turning_points().collect()
+        };
+        let points = self.inner.with(py, points);
         PyArray1::from_vec(py, points)
     }
 
     /// The last input, as it was given.
     #[getter]
-    fn input(&self) -> f64 {
-        self.lock().adaptive.state().input()
+    fn input(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |adaptive| adaptive.state().input())
     }
 
     /// The model as it is now.
@@ -341,8 +337,9 @@ impl Adaptive {
     /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).model().weights
     /// array([[ 1.,  2.],
     ///        [nan,  4.]])
-    fn model(&self) -> PyResult<Model> {
-        Ok(self.lock().adaptive.model().raise()?.into())
+    fn model(&self, py: Python<'_>) -> PyResult<Model> {
+        let model = self.inner.with(py, |adaptive| adaptive.model());
+        Ok(model.raise()?.into())
     }
 
     /// Every operator off, or on, also those of the inverse; the weights stay.
@@ -358,15 +355,12 @@ impl Adaptive {
     /// >>> adaptive.output
     /// 7.0
     #[pyo3(signature = (*, on=false))]
-    fn reset(&self, on: bool) -> PyResult<()> {
-        let mut pair = self.lock();
-        if on {
-            pair.adaptive.saturate().raise()?;
-        } else {
-            pair.adaptive.reset().raise()?;
-        }
-        pair.wanted = pair.adaptive.state().clone();
-        Ok(())
+    fn reset(&self, py: Python<'_>, on: bool) -> PyResult<()> {
+        let reset = |adaptive: &mut hysteron::Adaptive| match on {
+            true => adaptive.saturate(),
+            false => adaptive.reset(),
+        };
+        self.inner.with(py, reset).raise()
     }
 
     /// While frozen, `step` predicts and nothing is learned.
@@ -382,13 +376,19 @@ impl Adaptive {
     /// >>> adaptive.step(0.5, 4.5).outcome
     /// 'frozen'
     #[pyo3(signature = (frozen=true))]
-    fn freeze(&self, frozen: bool) {
-        self.lock().adaptive.freeze(frozen);
+    fn freeze(&self, py: Python<'_>, frozen: bool) {
+        self.inner.with(py, |adaptive| adaptive.freeze(frozen));
     }
 
     /// Take the present weights and offset as the last good ones.
-    fn keep(&self) {
-        self.lock().adaptive.keep();
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> _ = adaptive.step(0.5, 4.5)
+    /// >>> adaptive.keep()
+    fn keep(&self, py: Python<'_>) {
+        self.inner.with(py, |adaptive| adaptive.keep());
     }
 
     /// Go back to the last good weights and offset: those last kept, or that stood a trial since.
@@ -401,33 +401,40 @@ impl Adaptive {
     /// >>> adaptive.roll_back()
     /// >>> adaptive.output
     /// 4.0
-    fn roll_back(&self) -> PyResult<()> {
-        self.lock().adaptive.roll_back().raise()
+    fn roll_back(&self, py: Python<'_>) -> PyResult<()> {
+        self.inner.with(py, |adaptive| adaptive.roll_back()).raise()
     }
 
     /// One of its own that has learned the same.
-    fn copy(&self) -> Self {
-        let inner = Mutex::new(self.lock().clone());
-        Self {
-            inner,
-            levels: self.levels,
-        }
+    ///
+    /// Returns
+    /// -------
+    /// Adaptive
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> other = adaptive.copy()
+    /// >>> _ = adaptive.step(0.5, 4.5)
+    /// >>> adaptive.output > 4 and other.predict(0.5) == 4
+    /// True
+    fn copy(&self, py: Python<'_>) -> Self {
+        self.now(py).into()
     }
 
-    fn __copy__(&self) -> Self {
-        self.copy()
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copy(py)
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.copy()
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy(py)
     }
 
-    fn __repr__(&self) -> String {
-        let pair = self.lock();
-        let (input, output) = (pair.adaptive.state().input(), pair.adaptive.output());
-        format!(
-            "<Adaptive, {} levels, at {input}: {output} expected>",
-            self.levels
-        )
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (levels, input, output) = self.inner.with(py, |adaptive| {
+            let levels = adaptive.offline().plane().levels();
+            (levels, adaptive.state().input(), adaptive.output())
+        });
+        format!("<Adaptive, {levels} levels, at {input}: {output} expected>")
     }
 }

@@ -56,7 +56,16 @@ pub(crate) fn array<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
     numpy.call_method1("asarray", (value,))
 }
 
-/// A new array of `count` zeros to be filled.
-pub(crate) fn zeros(py: Python<'_>, count: usize) -> Bound<'_, PyArray1<f64>> {
-    PyArray1::zeros(py, count, false)
+/// Runs `work` on new samples, without the interpreter's lock.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    count: usize,
+    work: impl FnOnce(&mut [f64]) -> PyResult<()> + Send,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let array = PyArray1::zeros(py, count, false);
+    let mut values = array.try_readwrite()?;
+    let slice = values.as_slice_mut()?;
+    py.detach(|| work(slice))?;
+    drop(values);
+    Ok(array)
 }

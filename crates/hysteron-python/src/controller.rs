@@ -3,22 +3,21 @@
 use crate::action::Action;
 use crate::adaptive::Adaptive;
 use crate::array::samples;
+use crate::device::{events_of, follow};
 use crate::error::{Raise, finite, number};
 use crate::model::Model;
 use crate::pid::Pid;
 use crate::plant::SimulatedPlant;
-use crate::said::options;
+use crate::shared::Shared;
 use crate::trace::Trace;
 use crate::watched::watched;
 use crate::word::{choice, direction};
 use hysteron::control::{
     self, Compensator, Course, Gains, InnerLoop, Reading, Rest, Scheme, Target,
 };
-use hysteron::track::{Event, course};
+use hysteron::track::course;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// One controller for all schemes: the inverse of a model as feedforward, a PID, both, and a loop around the input inside.
 ///
@@ -78,14 +77,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// True
 #[pyclass(frozen, module = "hysteron.control")]
 pub(crate) struct Controller {
-    inner: Mutex<control::Controller>,
+    inner: Shared<control::Controller>,
     tolerance: f64,
-}
-
-impl Controller {
-    fn lock(&self) -> MutexGuard<'_, control::Controller> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 #[pymethods]
@@ -131,7 +124,7 @@ impl Controller {
             filter_s,
             stuck_s,
         };
-        let inner = Mutex::new(control::Controller::new(scheme).raise()?);
+        let inner = Shared::new(control::Controller::new(scheme).raise()?);
         Ok(Self { inner, tolerance })
     }
 
@@ -167,6 +160,7 @@ impl Controller {
     #[pyo3(signature = (target, output, input=None, *, heading=None))]
     fn step(
         &self,
+        py: Python<'_>,
         target: f64,
         output: f64,
         input: Option<f64>,
@@ -177,7 +171,10 @@ impl Controller {
             output: number("target", target)?,
             heading,
         };
-        let action = self.lock().step(target, Reading { output, input });
+        let reading = Reading { output, input };
+        let action = self
+            .inner
+            .with(py, |controller| controller.step(target, reading));
         Ok(action.raise()?.into())
     }
 
@@ -204,24 +201,34 @@ impl Controller {
     /// >>> controller.step_command(12.0, 1.0).drive  # within the limits
     /// 10.0
     #[pyo3(signature = (command, output, input=None))]
-    fn step_command(&self, command: f64, output: f64, input: Option<f64>) -> PyResult<Action> {
+    fn step_command(
+        &self,
+        py: Python<'_>,
+        command: f64,
+        output: f64,
+        input: Option<f64>,
+    ) -> PyResult<Action> {
         let command = number("command", command)?;
-        let action = self.lock().step_command(command, Reading { output, input });
+        let reading = Reading { output, input };
+        let step = |controller: &mut control::Controller| controller.step_command(command, reading);
+        let action = self.inner.with(py, step);
         Ok(action.raise()?.into())
     }
 
     /// Time between samples, s.
     #[getter]
-    fn interval_s(&self) -> f64 {
-        self.lock().interval_s()
+    fn interval_s(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |controller| controller.interval_s())
     }
 
     /// What the model in the loop has learned: a copy as it is now; None where none learns.
     #[getter]
-    fn adaptive(&self) -> Option<Adaptive> {
-        let controller = self.lock();
-        let adaptive = controller.compensator()?.adapting()?;
-        Some(adaptive.clone().into())
+    fn adaptive(&self, py: Python<'_>) -> Option<Adaptive> {
+        let adapting = |controller: &mut control::Controller| {
+            let adaptive = controller.compensator()?.adapting()?;
+            Some(adaptive.clone())
+        };
+        self.inner.with(py, adapting).map(Adaptive::from)
     }
 
     /// Follow a reference on a device, one sample for each of its values.
@@ -250,6 +257,8 @@ impl Controller {
     ///     For a reference that is NaN or infinite.
     /// RigError
     ///     For an event that the plant does not know.
+    /// ValueError, TypeError
+    ///     For events of a device that is no simulated plant, and for a device that cannot be read or written.
     ///
     /// Examples
     /// --------
@@ -278,14 +287,19 @@ impl Controller {
         let headings = hysteron::headings(reference, self.tolerance);
         if let Ok(plant) = device.cast::<SimulatedPlant>() {
             let plant = plant.get();
-            let events = course(&events, self.interval_s());
+            let events = course(&events, self.interval_s(py));
             let course = Course {
                 reference,
                 headings: &headings,
                 events: &events,
             };
             let trace = watched(py, None, |watch| {
-                control::run(plant.lock().as_mut(), &mut self.lock(), &course, watch)
+                plant.inner.with_detached(|plant| {
+                    let run = |controller: &mut _| {
+                        control::run(plant.as_mut(), controller, &course, watch)
+                    };
+                    self.inner.with_detached(run)
+                })
             })?;
             return Ok(trace.into());
         }
@@ -294,63 +308,14 @@ impl Controller {
                 "`events` happen to simulated plants only",
             ));
         }
-        let (dt_s, advance) = (self.interval_s(), device.getattr_opt("advance")?);
-        let mut trace = control::Trace::default();
-        for (n, (&output, &heading)) in reference.iter().zip(&headings).enumerate() {
-            py.check_signals()?;
-            let reading = reading(&device.call_method0("read")?)?;
-            let action = self
-                .lock()
-                .step(Target { output, heading }, reading)
-                .raise()?;
-            device.call_method1("write", (action.drive,))?;
-            if let Some(advance) = &advance {
-                advance.call1((dt_s,))?;
-            }
-            trace.push(n as f64 * dt_s, output, (reading, reading), &action);
-        }
+        let trace = follow(py, device, &self.inner, reference, &headings)?;
         Ok(trace.into())
     }
 }
 
-/// What happens to a plant in a run.
-fn events_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<Event>> {
-    let given: Vec<Bound<'_, PyDict>> = given.extract().map_err(|_| {
-        PyTypeError::new_err("`events`: a sequence of dictionaries is needed, each with 'at_s'")
-    })?;
-    let events = given.iter().enumerate();
-    let events = events.map(|(n, event)| {
-        let of = format!("`events[{n}]`");
-        let event: Event = options(&of, Some(event.as_any()))?;
-        if event.at_s < 0.0 {
-            let text = format!("{of}: 'at_s' is {}: a time from 0 on is needed", event.at_s);
-            return Err(PyValueError::new_err(text));
-        }
-        Ok(event)
-    });
-    events.collect()
-}
-
-/// What a device's `read` returned.
-fn reading(read: &Bound<'_, PyAny>) -> PyResult<Reading> {
-    let (output, input): (Option<f64>, Option<f64>) = match read.extract() {
-        Ok(both) => both,
-        Err(_) => {
-            let output = read.extract::<Option<f64>>().map_err(|_| {
-                PyTypeError::new_err(format!("`device.read()` gave {read}: the output is needed, or a pair of output and input"))
-            })?;
-            (output, None)
-        }
-    };
-    Ok(Reading {
-        output: output.unwrap_or(f64::NAN),
-        input,
-    })
-}
-
 fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {
     if let Ok(adaptive) = model.cast::<Adaptive>() {
-        return Ok(Compensator::adaptive(adaptive.get().now()));
+        return Ok(Compensator::adaptive(adaptive.get().now(model.py())));
     }
     let model = model.cast::<Model>().map_err(|_| {
         PyTypeError::new_err(format!(

@@ -3,7 +3,7 @@
 use crate::error::Raise;
 use crate::given::inputs_of;
 use crate::judge::classes;
-use crate::pool::in_pool;
+use crate::pool::detached;
 use crate::whole::Whole;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
@@ -41,15 +41,14 @@ impl Design {
     /// What recordings and profile say together, shape (K, K), as `excitation` has it.
     #[getter]
     fn excitation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        classes(py, self.inner.plane.levels(), &self.inner.excitation)
+        classes(py, &self.inner.excitation)
     }
 
     /// What the recordings alone say, shape (K, K); None without recordings.
     #[getter]
     fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let levels = self.inner.plane.levels();
         let recorded = self.inner.recorded.as_ref();
-        recorded.map(|found| classes(py, levels, found)).transpose()
+        recorded.map(|found| classes(py, found)).transpose()
     }
 
     /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is determined.
@@ -98,7 +97,7 @@ impl Design {
     fn __repr__(&self) -> String {
         let (samples, legs) = (self.inner.time.len(), self.inner.legs.len());
         format!(
-            "<Design, {legs} branches, {samples} samples, {} s>",
+            "<Design, {legs} branches, {samples} samples, {:.1} s>",
             self.duration()
         )
     }
@@ -136,7 +135,7 @@ impl Design {
 /// --------
 /// >>> profile = hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5)
 /// >>> profile
-/// <Design, 20 branches, 5101 samples, 805.2631578947369 s>
+/// <Design, 20 branches, 5101 samples, 805.3 s>
 /// >>> bool(np.nanmin(profile.excitation) == 3)  # every operator is determined
 /// True
 /// >>> len(hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
@@ -171,6 +170,6 @@ pub(crate) fn design(
         None => Vec::new(),
     };
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
-    let inner = py.detach(|| in_pool(|| hysteron::design(&options, &inputs)).raise())?;
+    let inner = detached(py, || hysteron::design(&options, &inputs)).raise()?;
     Ok(Design { inner })
 }

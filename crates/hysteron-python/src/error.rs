@@ -88,7 +88,8 @@ fn of_file(path: &Path, number: i32, code: i32) -> PyErr {
     }
 }
 
-/// A text of the façade with options named as arguments: `--load-degree 2` is `load_degree` 2 here. Paths stay as they are.
+/// A text of the façade with options named as arguments: `--load-degree 2` is `load_degree` 2 here, and `--start unknown` is
+/// `start="unknown"`. Paths stay as they are.
 pub(crate) fn in_python(text: &str) -> String {
     let mut parts = text.split("--");
     let mut result = parts.next().unwrap_or_default().to_owned();
@@ -101,10 +102,20 @@ pub(crate) fn in_python(text: &str) -> String {
         let quote = if before == Some('`') { "" } else { "`" };
         let name = part.find(|c: char| c != '-' && !c.is_ascii_alphabetic());
         let (name, rest) = part.split_at(name.unwrap_or(part.len()));
-        result += &format!("{quote}{}{quote}{rest}", name.replace('-', "_"));
+        let name = name.replace('-', "_");
+        let word = WORDS
+            .iter()
+            .find_map(|word| Some((word, rest.strip_prefix(' ')?.strip_prefix(word)?)));
+        result += &match word {
+            Some((word, rest)) => format!("{quote}{name}=\"{word}\"{quote}{rest}"),
+            None => format!("{quote}{name}{quote}{rest}"),
+        };
     }
     result
 }
+
+/// Values of options that are texts in Python.
+const WORDS: [&str; 2] = ["unknown", "ols"];
 
 /// An exception of a class of `hysteron.errors`.
 fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {

@@ -5,10 +5,9 @@ use crate::model::{Model, sign_of};
 use crate::said::warn;
 use crate::watched::watched;
 use crate::whole::Whole;
-use crate::word::{choice, operator};
+use crate::word::{choice, named, no_argument, operator};
 use hysteron::{Candidates, FitOptions, Open, Solver, Start};
 use numpy::PyArray1;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -23,15 +22,16 @@ use pyo3::types::{PyDict, PyString};
 ///     Several are one experiment, each from its own initial state; or the input, with the output beside it.
 /// output : array_like, shape (n,), optional
 /// levels : int or 'auto'
-///     Number of levels ``K`` of the plane, which has ``K (K + 1) / 2`` operators. 'auto' chooses it by the error on
+///     Number of levels ``K`` of the plane, from 2 on, which has ``K (K + 1) / 2`` operators. 'auto' chooses it by the error on
 ///     branches left out.
 /// range : tuple of float, optional
 ///     Lowest and highest level, in the input's unit. By default the active range is that of the input.
 /// operator : {'mkp', 'kp', 'relay'}
+///     With an offset that is identified 'kp' fits as 'mkp' does: it is the same but for the offset.
 /// solver : {'nnls', 'ols'}
 ///     Weights from zero on, which have an inverse, or plain least squares, as a rule without one.
 /// smooth : float or 'auto'
-///     Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; 'auto' as for the levels.
+///     Strength of the smoothness across the plane, from 0 on, 1e-10 to 1e-4 as a rule; 'auto' as for the levels.
 /// start : {'off', 'on', 'unknown'}
 ///     Where the operators stand before the first sample.
 /// sign : {None, 1, -1}
@@ -71,40 +71,21 @@ use pyo3::types::{PyDict, PyString};
 /// True
 #[pyfunction]
 #[pyo3(signature = (
-    recording, output=None, *, levels=None, range=None, operator="mkp", solver="nnls", smooth=None, start="off", sign=None,
-    offset=None, load_degree=None, bootstrap=None, thermal=None, time=None, load=None, progress=None,
+    recording, output=None, *, bootstrap=None, thermal=None, time=None, load=None, progress=None, **options,
 ), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
     recording: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
-    levels: Option<&Bound<'_, PyAny>>,
-    range: Option<(f64, f64)>,
-    operator: &str,
-    solver: &str,
-    smooth: Option<&Bound<'_, PyAny>>,
-    start: &str,
-    sign: Option<Whole>,
-    offset: Option<f64>,
-    load_degree: Option<Whole>,
     bootstrap: Option<Whole>,
     thermal: Option<&str>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
-    let (options, mut open) = options(
-        levels,
-        range,
-        operator,
-        solver,
-        smooth,
-        start,
-        sign,
-        offset,
-        load_degree,
-    )?;
+    let (options, mut open) = fit_options(options)?;
     open.bootstrap = bootstrap.is_none();
     let options = FitOptions {
         bootstrap: bootstrap.map_or(Ok(0), |n| n.of("bootstrap"))?,
@@ -153,38 +134,19 @@ pub(crate) fn fit(
 /// (7, True)
 #[pyfunction]
 #[pyo3(signature = (
-    recording, output=None, *, levels=None, range=None, operator="mkp", solver="nnls", smooth=None, start="off", sign=None,
-    offset=None, load_degree=None, time=None, load=None, progress=None,
+    recording, output=None, *, time=None, load=None, progress=None, **options,
 ), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn left_out<'py>(
     py: Python<'py>,
     recording: &Bound<'py, PyAny>,
     output: Option<&Bound<'py, PyAny>>,
-    levels: Option<&Bound<'py, PyAny>>,
-    range: Option<(f64, f64)>,
-    operator: &str,
-    solver: &str,
-    smooth: Option<&Bound<'py, PyAny>>,
-    start: &str,
-    sign: Option<Whole>,
-    offset: Option<f64>,
-    load_degree: Option<Whole>,
     time: Option<&Bound<'py, PyAny>>,
     load: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (options, open) = options(
-        levels,
-        range,
-        operator,
-        solver,
-        smooth,
-        start,
-        sign,
-        offset,
-        load_degree,
-    )?;
+    let (options, open) = fit_options(options)?;
     let candidates = (open.levels || open.smooth).then(|| {
         Candidates::new(
             (!open.levels).then_some(options.levels),
@@ -206,40 +168,46 @@ pub(crate) fn left_out<'py>(
     Ok(dict)
 }
 
-#[allow(clippy::too_many_arguments)]
-fn options(
-    levels: Option<&Bound<'_, PyAny>>,
-    range: Option<(f64, f64)>,
-    operator_word: &str,
-    solver: &str,
-    smooth: Option<&Bound<'_, PyAny>>,
-    start: &str,
-    sign: Option<Whole>,
-    offset: Option<f64>,
-    load_degree: Option<Whole>,
-) -> PyResult<(FitOptions, Open)> {
-    let (levels, open_levels) = or_auto("levels", levels, |n| n.extract::<Whole>()?.of("levels"))?;
-    let (smooth, open_smooth) = or_auto("smooth", smooth, |strength| strength.extract())?;
-    let usual = FitOptions::default();
-    let solvers = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
-    let options = FitOptions {
-        operator: operator(operator_word)?,
-        levels: levels.unwrap_or(usual.levels),
-        range,
-        solver: choice("solver", solver, &solvers)?,
-        sign: sign.map(sign_of).transpose()?,
-        offset,
-        smooth: smooth.unwrap_or(usual.smooth),
-        start: start_of(start)?,
-        load_degree: load_degree.map_or(Ok(usual.load_degree), |n| n.of("load_degree"))?,
+/// The options that `fit` and `left_out` share.
+fn fit_options(given: Option<&Bound<'_, PyDict>>) -> PyResult<(FitOptions, Open)> {
+    let mut options = FitOptions {
         bootstrap: 0,
+        ..FitOptions::default()
     };
-    let open = Open {
-        levels: open_levels,
-        smooth: open_smooth,
+    let mut open = Open {
+        levels: false,
+        smooth: false,
         bootstrap: false,
     };
+    for (name, value) in given.into_iter().flatten() {
+        let name: String = name.extract()?;
+        let word = || named::<String>(&name, "a text", &value);
+        match name.as_str() {
+            _ if value.is_none() => {}
+            "levels" if is_auto(&value) => open.levels = true,
+            "levels" if value.is_instance_of::<PyString>() => {
+                options.levels = named(&name, "a whole number or 'auto'", &value)?;
+            }
+            "levels" => options.levels = value.extract::<Whole>()?.of("levels")?,
+            "range" => options.range = Some(named(&name, "a pair of numbers", &value)?),
+            "operator" => options.operator = operator(&word()?)?,
+            "solver" => options.solver = choice("solver", &word()?, &SOLVERS)?,
+            "smooth" if is_auto(&value) => open.smooth = true,
+            "smooth" => options.smooth = named(&name, "a number or 'auto'", &value)?,
+            "start" => options.start = start_of(&word()?)?,
+            "sign" => options.sign = Some(sign_of(value.extract()?)?),
+            "offset" => options.offset = Some(named(&name, "a number", &value)?),
+            "load_degree" => options.load_degree = value.extract::<Whole>()?.of("load_degree")?,
+            _ => return Err(no_argument(&name)),
+        }
+    }
     Ok((options, open))
+}
+
+const SOLVERS: [(&str, Solver); 2] = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
+
+fn is_auto(value: &Bound<'_, PyAny>) -> bool {
+    value.cast::<PyString>().is_ok_and(|word| *word == "auto")
 }
 
 /// Where the operators stand at first.
@@ -250,21 +218,4 @@ pub(crate) fn start_of(word: &str) -> PyResult<Start> {
         ("unknown", Start::Unknown),
     ];
     choice("start", word, &starts)
-}
-
-/// A number, or `None` where it is left out or 'auto'; and whether it is 'auto'.
-fn or_auto<T>(
-    argument: &str,
-    value: Option<&Bound<'_, PyAny>>,
-    number: impl Fn(&Bound<'_, PyAny>) -> PyResult<T>,
-) -> PyResult<(Option<T>, bool)> {
-    match value.map(|value| (value, value.cast::<PyString>())) {
-        None => Ok((None, false)),
-        Some((_, Ok(word))) if *word == "auto" => Ok((None, true)),
-        Some((_, Ok(word))) => Err(PyTypeError::new_err(format!(
-            "`{argument}` is {}: a number or 'auto' is needed",
-            word.repr()?
-        ))),
-        Some((value, Err(_))) => Ok((Some(number(value)?), false)),
-    }
 }

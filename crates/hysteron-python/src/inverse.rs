@@ -3,6 +3,7 @@
 use crate::array::samples;
 use crate::error::{Raise, number};
 use crate::model::Model;
+use crate::pool::detached;
 use crate::state::State;
 use crate::word::{choice, direction, policy, width};
 use hysteron::{Invert, Status};
@@ -50,6 +51,10 @@ impl Inverse {
         self.model.clone()
     }
 
+    fn __repr__(&self) -> String {
+        format!("<Inverse of {}>", self.model.__repr__())
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
         let inverse = slf.get().model().into_pyobject(py)?.getattr("inverse")?;
@@ -66,8 +71,8 @@ impl Inverse {
     ///     What the input does while the target stands still: it rests, or crosses the dead band to where
     ///     the output starts to move the way that the target goes next.
     /// band : float, optional
-    ///     Reversals of the target up to this size are noise and not followed, in the output's unit.
-    ///     By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
+    ///     Reversals of the target up to this size are noise and not followed, in the output's unit: a peak of the
+    ///     target may be missed by as much. By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
     /// state : State, optional
     ///     Where to go on from; it is moved. By default every operator off.
     /// heading : sequence of {None, 'rising', 'falling'}, shape (n,), optional
@@ -78,12 +83,14 @@ impl Inverse {
     /// input : ndarray, shape (n,)
     ///     In the input's unit.
     /// status : ndarray of int8, shape (n,)
-    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///     0 where the input gives the target, up to the band, -1 and 1 where it lies below or above every output.
     ///
     /// Raises
     /// ------
     /// CoreError
     ///     For a target that is NaN or infinite, or a state of another model.
+    /// ValueError
+    ///     For a `heading` of another length, unknown words and a `band` below zero.
     ///
     /// Examples
     /// --------
@@ -127,18 +134,18 @@ impl Inverse {
         } else {
             Invert::Hold { band }
         };
-        let solutions = py.detach(|| {
-            let inverse = model.inverse().raise()?;
+        let solutions = detached(py, || {
+            let inverse = model.inverse()?;
             let through = |state: &mut hysteron::State| match &headings {
                 Some(headings) => inverse.headed(state, target, headings, band),
                 None => inverse.series(state, target, how),
             };
-            let done = match state {
-                Some(state) => through(&mut state.lock()),
+            match state {
+                Some(state) => state.inner.with_detached(through),
                 None => through(&mut model.start()),
-            };
-            done.raise_of("target", target)
-        })?;
+            }
+        });
+        let solutions = solutions.raise_of("target", target)?;
         let input = PyArray1::from_iter(py, solutions.iter().map(|solution| solution.input));
         let status = PyArray1::from_iter(py, solutions.iter().map(|s| side_of(s.status)));
         Ok((input, status))
@@ -177,6 +184,7 @@ impl Inverse {
     #[pyo3(signature = (state, target, *, heading=None, band=0.0))]
     fn step(
         &self,
+        py: Python<'_>,
         state: &State,
         target: f64,
         heading: Option<&str>,
@@ -184,7 +192,8 @@ impl Inverse {
     ) -> PyResult<(f64, i8)> {
         let (target, policy) = (number("target", target)?, policy(heading, band)?);
         let inverse = self.model.inner.inverse().raise()?;
-        let solution = inverse.step(&mut state.lock(), target, policy).raise()?;
+        let step = |state: &mut _| inverse.step(state, target, policy);
+        let solution = state.inner.with(py, step).raise()?;
         Ok((solution.input, side_of(solution.status)))
     }
 }

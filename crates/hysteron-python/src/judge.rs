@@ -1,8 +1,9 @@
-//! What is known of a model: `Model.confidence`, `Model.band`, `Model.evaluate`; and `excitation`.
+//! What is known of a model: `Model.confidence`, `Model.evaluate`; and `excitation`.
 
 use crate::error::Raise;
 use crate::given::inputs_of;
 use crate::plane::on_plane;
+use crate::pool::detached;
 use crate::recording::Recording;
 use crate::said::told;
 use crate::whole::Whole;
@@ -22,10 +23,10 @@ pub(crate) fn confidence<'py>(
     let dict = PyDict::new(py);
     let levels = (1..=plane.levels()).map(|k| plane.level(k));
     dict.set_item("levels", PyArray1::from_iter(py, levels))?;
-    let errors = on_plane(py, plane.levels(), &found.standard_error)?;
+    let errors = on_plane(py, &found.standard_error)?;
     dict.set_item("standard_error", errors)?;
     dict.set_item("offset_error", found.offset_error)?;
-    let classes = classes(py, plane.levels(), &found.excitation)?;
+    let classes = classes(py, &found.excitation)?;
     dict.set_item("excitation", classes)?;
     dict.set_item("rank", found.rank)?;
     dict.set_item("unknowns", found.unknowns)?;
@@ -39,14 +40,13 @@ pub(crate) fn confidence<'py>(
 /// Classes on the plane as their numbers in [`Excitation::ALL`].
 pub(crate) fn classes<'py>(
     py: Python<'py>,
-    levels: usize,
     classes: &[Excitation],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let number = |class: &Excitation| {
         let place = Excitation::ALL.iter().position(|other| other == class);
         place.unwrap_or_default() as f64
     };
-    on_plane(py, levels, &classes.iter().map(number).collect::<Vec<_>>())
+    on_plane(py, &classes.iter().map(number).collect::<Vec<_>>())
 }
 
 /// What inputs say about each operator of a plane, whatever the output was.
@@ -100,8 +100,8 @@ pub(crate) fn excited<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let inputs = inputs_of(input, "input")?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-    let found = py.detach(|| hysteron::excitation(&slices, plane, operator).raise())?;
-    classes(py, plane.levels(), &found)
+    let found = detached(py, || hysteron::excitation(&slices, plane, operator)).raise()?;
+    classes(py, &found)
 }
 
 pub(crate) fn evaluate<'py>(
@@ -110,21 +110,21 @@ pub(crate) fn evaluate<'py>(
     recording: &Recording,
     start: Start,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let found = py.detach(|| hysteron::evaluate_from(model, &recording.inner, start).raise())?;
+    let found = detached(py, || {
+        hysteron::evaluate_from(model, &recording.inner, start)
+    })
+    .raise()?;
     let dict = PyDict::new(py);
     dict.set_item("forward", told(py, &found.forward)?)?;
     dict.set_item("clipped", found.clipped)?;
     let band = match &found.band {
         None => None,
         Some(band) => {
-            let ends = |sign: f64| {
-                let pairs = found.output_model.iter().zip(&band.half_width);
-                PyArray1::from_iter(py, pairs.map(|(y, half)| y + sign * half))
-            };
+            let (lower, upper) = band.ends(&found.output_model);
             let dict = PyDict::new(py);
             dict.set_item("coverage_percent", band.coverage_percent)?;
-            dict.set_item("lower", ends(-1.0))?;
-            dict.set_item("upper", ends(1.0))?;
+            dict.set_item("lower", PyArray1::from_vec(py, lower))?;
+            dict.set_item("upper", PyArray1::from_vec(py, upper))?;
             Some(dict)
         }
     };

@@ -6,6 +6,7 @@ mod adaptive;
 mod array;
 mod controller;
 mod design;
+mod device;
 mod error;
 mod export;
 mod fit;
@@ -19,9 +20,12 @@ mod plane;
 mod plant;
 mod pool;
 mod prepare;
+mod read;
 mod recording;
 mod relay_test;
+mod run;
 mod said;
+mod shared;
 mod state;
 mod trace;
 mod track;
@@ -61,7 +65,9 @@ mod _hysteron {
     #[pymodule_export]
     use crate::prepare::prepare;
     #[pymodule_export]
-    use crate::recording::{Recording, read};
+    use crate::read::read;
+    #[pymodule_export]
+    use crate::recording::Recording;
     #[pymodule_export]
     use crate::relay_test::RelayTest;
     #[pymodule_export]
@@ -69,7 +75,7 @@ mod _hysteron {
     #[pymodule_export]
     use crate::trace::Trace;
     #[pymodule_export]
-    use crate::track::{Comparison, headings, scenarios, track, tune};
+    use crate::track::{Comparison, scenarios, track, tune};
     #[pymodule_export]
-    use crate::turning::{branches, remembered};
+    use crate::turning::{branches, headings, remembered};
 }

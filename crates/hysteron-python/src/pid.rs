@@ -2,11 +2,11 @@
 
 use crate::array::samples;
 use crate::error::{Raise, number};
+use crate::shared::Shared;
 use crate::whole::Whole;
 use hysteron::control::{self, Gains};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
 
 /// Refuses what can be no time between samples.
 pub(crate) fn interval(name: &str, seconds: f64) -> PyResult<f64> {
@@ -55,17 +55,13 @@ fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
 #[pyclass(frozen, module = "hysteron.control")]
 pub(crate) struct Pid {
     pub(crate) gains: Gains,
-    inner: Mutex<control::Pid>,
+    inner: Shared<control::Pid>,
 }
 
 impl Pid {
     pub(crate) fn of(gains: Gains) -> Self {
-        let inner = Mutex::new(control::Pid::new(gains));
+        let inner = Shared::new(control::Pid::new(gains));
         Self { gains, inner }
-    }
-
-    fn with<T>(&self, work: impl FnOnce(&mut control::Pid) -> T) -> T {
-        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
@@ -191,6 +187,8 @@ impl Pid {
     /// ------
     /// CoreError
     ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a reading there is `hold`.
+    /// ValueError
+    ///     For a `dt` of zero and less, and limits of which the upper one comes first.
     ///
     /// Examples
     /// --------
@@ -201,6 +199,7 @@ impl Pid {
         text_signature = "($self, error, dt, *, bias=0.0, limits=None, held=(False, False))")]
     fn step(
         &self,
+        py: Python<'_>,
         error: f64,
         dt: f64,
         bias: f64,
@@ -209,7 +208,8 @@ impl Pid {
     ) -> PyResult<f64> {
         let (error, bias) = (number("error", error)?, number("bias", bias)?);
         let (dt, limits) = (interval("dt", dt)?, ordered(limits)?);
-        Ok(self.with(|pid| pid.step(error, dt, bias, limits, held)))
+        let step = |pid: &mut control::Pid| pid.step(error, dt, bias, limits, held);
+        Ok(self.inner.with(py, step))
     }
 
     /// The output without a reading: what the terms came to stays, and the derivative starts again.
@@ -230,14 +230,23 @@ impl Pid {
     /// >>> pid.hold(bias=1.0)
     /// 3.0
     #[pyo3(signature = (*, bias=0.0, limits=None))]
-    fn hold(&self, bias: f64, limits: Option<(f64, f64)>) -> PyResult<f64> {
+    fn hold(&self, py: Python<'_>, bias: f64, limits: Option<(f64, f64)>) -> PyResult<f64> {
         let (bias, limits) = (number("bias", bias)?, ordered(limits)?);
-        Ok(self.with(|pid| pid.hold(bias, limits)))
+        Ok(self.inner.with(py, |pid| pid.hold(bias, limits)))
     }
 
     /// At rest again, with nothing integrated.
-    fn reset(&self) {
-        self.with(|pid| *pid = control::Pid::new(self.gains));
+    ///
+    /// Examples
+    /// --------
+    /// >>> pid = hysteron.control.Pid(2.0, integral_s=4.0)
+    /// >>> _ = pid.step(1.0, 0.5)
+    /// >>> pid.reset()
+    /// >>> pid.step(1.0, 0.5)
+    /// 2.25
+    fn reset(&self, py: Python<'_>) {
+        self.inner
+            .with(py, |pid| *pid = control::Pid::new(self.gains));
     }
 
     fn __repr__(&self) -> String {

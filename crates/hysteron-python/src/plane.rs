@@ -6,18 +6,20 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Values of operators, row by row, on a plane with NaN below its diagonal.
+/// Levels of the plane that has so many operators, ``K (K + 1) / 2``; those that come nearest where none has.
+pub(crate) fn levels_of(operators: usize) -> usize {
+    (2.0 * operators as f64).sqrt() as usize
+}
+
+/// Values of operators, row by row, on their plane, with NaN below its diagonal.
 pub(crate) fn on_plane<'py>(
     py: Python<'py>,
-    levels: usize,
     values: &[f64],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let at = |i: usize, j: usize| {
-        if i > j {
-            f64::NAN
-        } else {
-            values[operator_index(i, j)]
-        }
+    let levels = levels_of(values.len());
+    let at = |i: usize, j: usize| match i > j {
+        true => f64::NAN,
+        false => values[operator_index(i, j)],
     };
     let rows = (1..=levels).map(|i| (1..=levels).map(|j| at(i, j)).collect());
     Ok(PyArray2::from_vec2(py, &rows.collect::<Vec<Vec<f64>>>())?)

@@ -1,13 +1,13 @@
 //! Simulated plants.
 
 use crate::error::{Raise, number};
-use crate::said::{dictionary, options};
+use crate::said::{arguments, options};
+use crate::shared::Shared;
 use hysteron::plant::{self, PreisachPlantOptions, SpringPlantOptions};
 use hysteron::track::{Event, PlantOptions};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Longest time that a plant goes on without hearing of signals, s: a fraction of a second here.
 const HEARD_S: f64 = 3600.0;
@@ -20,15 +20,8 @@ type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
 /// seed does the same.
 #[pyclass(frozen, subclass, module = "hysteron")]
 pub(crate) struct SimulatedPlant {
-    inner: Mutex<Boxed>,
+    pub(crate) inner: Shared<Boxed>,
     options: PlantOptions,
-}
-
-impl SimulatedPlant {
-    /// The plant, which nobody else has.
-    pub(crate) fn lock(&self) -> MutexGuard<'_, Boxed> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 #[pymethods]
@@ -67,8 +60,8 @@ impl SimulatedPlant {
     /// >>> output, temperature = hysteron.SpringPlant().read()
     /// >>> 21 < temperature < 23  # the room's
     /// True
-    fn read(&self) -> (f64, Option<f64>) {
-        let reading = self.lock().read();
+    fn read(&self, py: Python<'_>) -> (f64, Option<f64>) {
+        let reading = self.inner.with(py, |plant| plant.read());
         (reading.output, reading.input)
     }
 
@@ -82,9 +75,17 @@ impl SimulatedPlant {
     /// ------
     /// CoreError
     ///     For a drive that is NaN or infinite; the one before stays.
-    fn write(&self, drive: f64) -> PyResult<()> {
+    ///
+    /// Examples
+    /// --------
+    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant.write(1000)
+    /// >>> plant.advance(1.0)
+    /// >>> round(plant.truth()[1])  # its limit
+    /// 150
+    fn write(&self, py: Python<'_>, drive: f64) -> PyResult<()> {
         let drive = number("drive", drive)?;
-        self.lock().write(drive);
+        self.inner.with(py, |plant| plant.write(drive));
         Ok(())
     }
 
@@ -115,7 +116,7 @@ impl SimulatedPlant {
         let mut left = dt_s;
         while left > 0.0 {
             let now = left.min(HEARD_S);
-            py.detach(|| self.lock().advance(now));
+            py.detach(|| self.inner.with_detached(|plant| plant.advance(now)));
             left -= now;
             py.check_signals()?;
         }
@@ -132,8 +133,8 @@ impl SimulatedPlant {
     /// --------
     /// >>> hysteron.PreisachPlant().truth()
     /// (0.0, 0.0)
-    fn truth(&self) -> (f64, Option<f64>) {
-        let truth = self.lock().truth();
+    fn truth(&self, py: Python<'_>) -> (f64, Option<f64>) {
+        let truth = self.inner.with(py, |plant| plant.truth());
         (truth.output, truth.input)
     }
 
@@ -163,18 +164,12 @@ impl SimulatedPlant {
     /// nan
     #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
     fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        let given = match what {
-            Some(what) => what.copy()?,
-            None => PyDict::new(py),
-        };
+        let given = arguments(py, what, &[])?;
         given.set_item("at_s", 0.0)?;
-        let event: Event = options("a disturbance", Some(given.as_any()))?;
-        let mut plant = self.lock();
-        event
-            .disturbances()
-            .into_iter()
-            .try_for_each(|what| plant.disturb(what))
-            .raise()
+        let event: Event = options("a disturbance", given.as_any())?;
+        let what = event.disturbances();
+        let disturb = |plant: &mut Boxed| what.into_iter().try_for_each(|what| plant.disturb(what));
+        self.inner.with(py, disturb).raise()
     }
 }
 
@@ -223,14 +218,14 @@ pub(crate) struct SpringPlant;
 impl SpringPlant {
     #[new]
     #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, room_degc=22.0, predeformation_mm=0.0, limit_a=2.0, fatigue=None, thermocouple=..., lvdt=..., seed=1)")]
-    fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
-        for name in ["fatigue", "thermocouple", "lvdt"] {
-            dictionary(name, options)?;
-        }
-        let options: SpringPlantOptions =
-            self::options("SpringPlant", options.map(|o| o.as_any()))?;
+    fn new(
+        py: Python<'_>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let options = arguments(py, options, &["fatigue", "thermocouple", "lvdt"])?;
+        let options: SpringPlantOptions = self::options("SpringPlant", options.as_any())?;
         let plant: Boxed = Box::new(plant::SpringPlant::new(&options).raise()?);
-        let (inner, options) = (Mutex::new(plant), PlantOptions::Spring(options));
+        let (inner, options) = (Shared::new(plant), PlantOptions::Spring(options));
         Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
     }
 
@@ -286,14 +281,14 @@ pub(crate) struct PreisachPlant;
 impl PreisachPlant {
     #[new]
     #[pyo3(signature = (**options), text_signature = "(*, load_n=6.0, lag_s=0.02, limit_v=150.0, levels=240, drift=..., measure_input=False, output_sensor=..., input_sensor=..., seed=1)")]
-    fn new(options: Option<&Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<Self>> {
-        for name in ["drift", "output_sensor", "input_sensor"] {
-            dictionary(name, options)?;
-        }
-        let options: PreisachPlantOptions =
-            self::options("PreisachPlant", options.map(|o| o.as_any()))?;
+    fn new(
+        py: Python<'_>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let options = arguments(py, options, &["drift", "output_sensor", "input_sensor"])?;
+        let options: PreisachPlantOptions = self::options("PreisachPlant", options.as_any())?;
         let plant: Boxed = Box::new(plant::PreisachPlant::new(&options).raise()?);
-        let (inner, options) = (Mutex::new(plant), PlantOptions::Preisach(options));
+        let (inner, options) = (Shared::new(plant), PlantOptions::Preisach(options));
         Ok(PyClassInitializer::from(SimulatedPlant { inner, options }).add_subclass(Self))
     }
 

@@ -1,5 +1,6 @@
 //! Threads for the work, in a forked process too.
 
+use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -8,6 +9,11 @@ static USUAL: OnceLock<u32> = OnceLock::new();
 
 /// The pool of a process that was forked from that one, and which process that is.
 static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// Does `work` without the interpreter's lock, in such a pool.
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
+    py.detach(|| in_pool(work))
+}
 
 /// Does `work` in a pool whose threads are there. A fork copies the pool and not its threads: work that is given to it
 /// would be waited for for ever.

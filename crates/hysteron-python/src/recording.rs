@@ -1,10 +1,10 @@
-//! `Recording` and `read`.
+//! `Recording`.
 
 use crate::error::Raise;
 use crate::given::{optional, series};
-use crate::said::{told, warn};
+use crate::said::told;
 use crate::whole::Whole;
-use hysteron::{Columns, FitOptions, Origin, Plane, Quantity, Repair};
+use hysteron::{FitOptions, Origin, Plane, Quantity};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
@@ -93,12 +93,14 @@ impl Recording {
     /// Parameters
     /// ----------
     /// frame : pandas.DataFrame
-    /// input, output : str
-    ///     The columns, with their unit in brackets.
-    /// time : str, optional
+    /// input, output : hashable
+    ///     The columns: as a rule their names.
+    /// time : hashable, optional
     ///     The column of time in seconds.
-    /// load : str, optional
+    /// load : hashable, optional
     ///     The column of the load or stress.
+    /// input_name, output_name, load_name : str, optional
+    ///     What they are, with their unit in brackets; by default the names of the columns.
     ///
     /// Returns
     /// -------
@@ -117,7 +119,8 @@ impl Recording {
     /// >>> hysteron.Recording.from_frame(frame, input='T [degC]', output='lift')
     /// <Recording, 2 samples: T [degC] → lift>
     #[classmethod]
-    #[pyo3(signature = (frame, *, input, output, time=None, load=None))]
+    #[pyo3(signature = (frame, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None))]
+    #[allow(clippy::too_many_arguments)]
     fn from_frame<'py>(
         _class: &Bound<'_, PyType>,
         frame: &Bound<'py, PyAny>,
@@ -125,6 +128,9 @@ impl Recording {
         output: &Bound<'py, PyAny>,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
+        input_name: Option<&str>,
+        output_name: Option<&str>,
+        load_name: Option<&str>,
     ) -> PyResult<Self> {
         let column = |name: &Bound<'py, PyAny>| {
             let py = name.py();
@@ -137,15 +143,18 @@ impl Recording {
                 PyTypeError::new_err(text)
             })
         };
-        let load_name = load.map(|name| name.to_string());
+        let name_of = |name: Option<&str>, column: Option<&Bound<'py, PyAny>>| {
+            let column = column.map_or("load".into(), |column| column.to_string());
+            name.map_or(column, str::to_owned)
+        };
         Self::new(
             &column(input)?,
             &column(output)?,
             time.map(column).transpose()?.as_ref(),
             load.map(column).transpose()?.as_ref(),
-            &input.to_string(),
-            &output.to_string(),
-            load_name.as_deref().unwrap_or("load"),
+            &name_of(input_name, Some(input)),
+            &name_of(output_name, Some(output)),
+            &name_of(load_name, load),
             false,
         )
     }
@@ -290,82 +299,4 @@ impl Recording {
         let samples = self.inner.len();
         format!("<Recording, {samples} samples{simulated}: {input} → {output}>")
     }
-}
-
-/// Read a recording from a CSV, Parquet or MATLAB file.
-///
-/// Warns (`HysteronWarning`) of rows that were mended and of gaps in time.
-///
-/// Parameters
-/// ----------
-/// path : str or path-like
-/// input, output : str
-///     The columns; in a MATLAB file the variables, ``'M:2'`` being the second column of the matrix ``M``.
-/// time : str, optional
-///     The column of time in seconds.
-/// load : str, optional
-///     The column of the load or stress.
-/// input_name, output_name, load_name : str, optional
-///     What they are, with their unit in brackets; by default what the file says.
-/// repair : bool
-///     Drop rows without a number, sort times that go back, merge repeated ones. By default they are refused.
-///
-/// Returns
-/// -------
-/// Recording
-///
-/// Raises
-/// ------
-/// FileError
-/// RecordingError
-///     With line and column.
-///
-/// Examples
-/// --------
-/// >>> import os, tempfile
-/// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
-/// >>> _ = open(path, 'w').write('T [degC];lift\n20,5;0\n80;14\n')
-/// >>> hysteron.read(path, input='T [degC]', output='lift').input
-/// array([20.5, 80. ])
-#[pyfunction]
-#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false))]
-#[allow(clippy::too_many_arguments)]
-pub(crate) fn read(
-    py: Python<'_>,
-    path: PathBuf,
-    input: &str,
-    output: &str,
-    time: Option<&str>,
-    load: Option<&str>,
-    input_name: Option<&str>,
-    output_name: Option<&str>,
-    load_name: Option<&str>,
-    repair: bool,
-) -> PyResult<Recording> {
-    let columns = Columns {
-        input,
-        output,
-        time,
-        load,
-    };
-    let repair = match repair {
-        true => Repair::Mend,
-        false => Repair::Refuse,
-    };
-    let (mut recording, notes) =
-        py.detach(|| hysteron::Recording::read(&path, columns, repair).raise())?;
-    for note in notes {
-        warn(py, &format!("{}: {note}", path.display()))?;
-    }
-    let named = [
-        (input_name, &mut recording.input_quantity),
-        (output_name, &mut recording.output_quantity),
-        (load_name, &mut recording.load_quantity),
-    ];
-    for (name, quantity) in named {
-        if let Some(name) = name {
-            *quantity = Quantity::from_column(name);
-        }
-    }
-    Ok(recording.into())
 }

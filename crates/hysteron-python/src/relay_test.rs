@@ -2,10 +2,10 @@
 
 use crate::error::Raise;
 use crate::pid::{Pid, interval};
+use crate::shared::Shared;
 use hysteron::control;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
 
 /// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
 ///
@@ -38,13 +38,7 @@ use std::sync::{Mutex, PoisonError};
 /// True
 #[pyclass(frozen, module = "hysteron.control")]
 pub(crate) struct RelayTest {
-    inner: Mutex<control::RelayTest>,
-}
-
-impl RelayTest {
-    fn with<T>(&self, work: impl FnOnce(&mut control::RelayTest) -> T) -> T {
-        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
-    }
+    inner: Shared<control::RelayTest>,
 }
 
 #[pymethods]
@@ -52,26 +46,26 @@ impl RelayTest {
     #[new]
     #[pyo3(signature = (commands, middle, *, band=0.0))]
     fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
-        let inner = Mutex::new(control::RelayTest::new(commands, middle, band).raise()?);
+        let inner = Shared::new(control::RelayTest::new(commands, middle, band).raise()?);
         Ok(Self { inner })
     }
 
     /// The command for the sample that comes.
     #[getter]
-    fn command(&self) -> f64 {
-        self.with(|test| test.command())
+    fn command(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |test| test.command())
     }
 
     /// Whether there were periods enough.
     #[getter]
-    fn done(&self) -> bool {
-        self.with(|test| test.is_done())
+    fn done(&self, py: Python<'_>) -> bool {
+        self.inner.with(py, |test| test.is_done())
     }
 
     /// Lowest and highest output so far, None before the first.
     #[getter]
-    fn outputs(&self) -> Option<(f64, f64)> {
-        self.with(|test| test.outputs())
+    fn outputs(&self, py: Python<'_>) -> Option<(f64, f64)> {
+        self.inner.with(py, |test| test.outputs())
     }
 
     /// Take the output that followed the command.
@@ -88,8 +82,8 @@ impl RelayTest {
     /// >>> test.push(40.0)  # beyond the middle and the band
     /// >>> before, test.command
     /// (110.0, 40.0)
-    fn push(&self, output: f64) {
-        self.with(|test| test.push(output));
+    fn push(&self, py: Python<'_>, output: f64) {
+        self.inner.with(py, |test| test.push(output));
     }
 
     /// Ultimate gain and period, once the test is done.
@@ -107,9 +101,9 @@ impl RelayTest {
     /// --------
     /// >>> hysteron.control.RelayTest((40, 110), 36.0).oscillation(0.01) is None  # not done
     /// True
-    fn oscillation(&self, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
+    fn oscillation(&self, py: Python<'_>, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
         let interval_s = interval("interval_s", interval_s)?;
-        let found = self.with(|test| test.oscillation());
+        let found = self.inner.with(py, |test| test.oscillation());
         Ok(found.map(|(gain, period)| (gain, period * interval_s)))
     }
 
@@ -128,8 +122,18 @@ impl RelayTest {
     /// ------
     /// ValueError
     ///     Before the test is done.
-    fn gains(&self, interval_s: f64) -> PyResult<Pid> {
-        match self.oscillation(interval_s)? {
+    ///
+    /// Examples
+    /// --------
+    /// >>> plant, test = hysteron.PreisachPlant(), hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> while not test.done:
+    /// ...     plant.write(test.command)
+    /// ...     plant.advance(0.01)
+    /// ...     test.push(plant.read()[0])
+    /// >>> test.gains(0.01).derivative_s  # a PI controller
+    /// 0.0
+    fn gains(&self, py: Python<'_>, interval_s: f64) -> PyResult<Pid> {
+        match self.oscillation(py, interval_s)? {
             Some((gain, period_s)) => Pid::from_oscillation(gain, period_s),
             None => Err(PyValueError::new_err(
                 "the test is not done: go on until `done`",

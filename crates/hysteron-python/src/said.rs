@@ -13,55 +13,59 @@ pub(crate) fn told<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bou
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// Refuses a keyword argument that is neither a dictionary nor `None`: [`options`] takes its values from a sequence as well.
-pub(crate) fn dictionary(name: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-    let value = given.map(|given| given.get_item(name)).transpose()?;
-    match value.flatten() {
-        Some(value) if !value.is_none() && !value.is_instance_of::<PyDict>() => {
+/// Keyword arguments without those that are `None`: these are what they are by default. Those of `nested` are dictionaries, since
+/// [`options`] would take their values from a sequence as well.
+pub(crate) fn arguments<'py>(
+    py: Python<'py>,
+    given: Option<&Bound<'py, PyDict>>,
+    nested: &[&str],
+) -> PyResult<Bound<'py, PyDict>> {
+    let arguments = PyDict::new(py);
+    for (name, value) in given
+        .into_iter()
+        .flatten()
+        .filter(|(_, value)| !value.is_none())
+    {
+        let text = name.to_string();
+        if nested.contains(&text.as_str()) && !value.is_instance_of::<PyDict>() {
             let value = value.repr()?;
-            let text = format!("`{name}` is {value}: a dictionary is needed");
-            Err(PyTypeError::new_err(text))
+            let text = format!("`{text}` is {value}: a dictionary is needed");
+            return Err(PyTypeError::new_err(text));
         }
-        _ => Ok(()),
+        arguments.set_item(name, value)?;
     }
+    Ok(arguments)
 }
 
 /// The options that keyword arguments, or a dictionary, stand for.
 ///
 /// # Errors
 /// `TypeError` and `ValueError` say of whose options, and which is wrong.
-pub(crate) fn options<T: DeserializeOwned>(
-    of: &str,
-    given: Option<&Bound<'_, PyAny>>,
-) -> PyResult<T> {
-    let text = match given {
-        None => "{}".to_owned(),
-        Some(given) => {
-            let py = given.py();
-            let keywords = PyDict::new(py);
-            keywords.set_item("allow_nan", false)?;
-            // NumPy's numbers are not those of Python.
-            let item = py
-                .import("operator")?
-                .call_method1("methodcaller", ("item",))?;
-            keywords.set_item("default", item)?;
-            let text = py
-                .import("json")?
-                .call_method("dumps", (given,), Some(&keywords));
-            let said = |error: PyErr| error.value(py).to_string();
-            text.map_err(|error| match error.is_instance_of::<PyValueError>(py) {
-                true => PyValueError::new_err(format!(
-                    "{of}: every number must be finite: {}",
-                    said(error)
-                )),
-                false => PyTypeError::new_err(format!(
-                    "{of}: numbers, tuples and dictionaries of them are needed: {}",
-                    said(error)
-                )),
-            })?
-            .extract()?
-        }
-    };
+pub(crate) fn options<T: DeserializeOwned>(of: &str, given: &Bound<'_, PyAny>) -> PyResult<T> {
+    let py = given.py();
+    let keywords = PyDict::new(py);
+    keywords.set_item("allow_nan", false)?;
+    // NumPy's numbers are not those of Python.
+    let item = py
+        .import("operator")?
+        .call_method1("methodcaller", ("item",))?;
+    keywords.set_item("default", item)?;
+    let text = py
+        .import("json")?
+        .call_method("dumps", (given,), Some(&keywords));
+    let said = |error: PyErr| error.value(py).to_string();
+    let text: String = text
+        .map_err(|error| match error.is_instance_of::<PyValueError>(py) {
+            true => PyValueError::new_err(format!(
+                "{of}: every number must be finite: {}",
+                said(error)
+            )),
+            false => PyTypeError::new_err(format!(
+                "{of}: numbers, tuples and dictionaries of them are needed: {}",
+                said(error)
+            )),
+        })?
+        .extract()?;
     serde_json::from_str(&text).map_err(|error| {
         let text = error.to_string();
         let text = text.split(" at line ").next().unwrap_or_default();

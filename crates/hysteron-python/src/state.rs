@@ -1,13 +1,13 @@
 //! `State`.
 
-use crate::array::samples;
+use crate::array::{filled, samples};
 use crate::error::{Raise, number};
-use crate::model::{Model, filled};
+use crate::model::Model;
 use crate::plane::on_plane;
+use crate::shared::Shared;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a model remembers of its input, made by `Model.start`.
 ///
@@ -23,19 +23,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 #[pyclass(frozen, module = "hysteron")]
 pub(crate) struct State {
     model: Model,
-    inner: Mutex<hysteron::State>,
+    pub(crate) inner: Shared<hysteron::State>,
 }
 
 impl State {
     pub(crate) fn new(model: Model, state: hysteron::State) -> Self {
-        let inner = Mutex::new(state);
+        let inner = Shared::new(state);
         Self { model, inner }
-    }
-
-    /// The state, which nobody else has. Never waited for with the interpreter's lock held by a thread that
-    /// somebody inside waits for: no Python runs inside.
-    pub(crate) fn lock(&self) -> MutexGuard<'_, hysteron::State> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -67,10 +61,10 @@ impl State {
     /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.step(0.5)
     /// 4.0
-    fn step(&self, input: f64) -> PyResult<f64> {
-        let input = number("input", input)?;
-        let step = self.model.inner.step(&mut self.lock(), input).raise()?;
-        Ok(step.output)
+    fn step(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
+        let (model, input) = (&self.model.inner, number("input", input)?);
+        let step = self.inner.with(py, |state| model.step(state, input));
+        Ok(step.raise()?.output)
     }
 
     /// Move through `input` and give the outputs.
@@ -101,8 +95,11 @@ impl State {
         let input = samples(input, "input")?;
         let samples = input.as_slice()?;
         filled(py, samples.len(), |output| {
-            let done = self.model.inner.run(&mut self.lock(), samples, output);
-            done.raise_of("input", samples).map(|_| ())
+            let run = |state: &mut _| self.model.inner.run(state, samples, output);
+            self.inner
+                .with_detached(run)
+                .raise_of("input", samples)
+                .map(|_| ())
         })
     }
 
@@ -120,9 +117,10 @@ impl State {
     /// array([[ 1.,  1.],
     ///        [nan,  1.]])
     #[pyo3(signature = (*, on=false))]
-    fn reset(&self, on: bool) {
+    fn reset(&self, py: Python<'_>, on: bool) {
         let model = &self.model.inner;
-        *self.lock() = if on { model.saturated() } else { model.start() };
+        let begin = if on { model.saturated() } else { model.start() };
+        self.inner.with(py, |state| *state = begin);
     }
 
     /// What `Model.restore` needs to make this state again, bit for bit.
@@ -141,43 +139,56 @@ impl State {
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let saved = PyDict::new(py);
         saved.set_item("turning_points", self.turning_points(py))?;
-        saved.set_item("input", self.input())?;
+        saved.set_item("input", self.input(py))?;
         Ok(saved)
     }
 
     /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position last.
     #[getter]
     fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        // Not made with the state locked: an array can set off Python's collector, and with it any code.
-        let points: Vec<f64> = self.lock().turning_points().collect();
-        PyArray1::from_vec(py, points)
+        let points = |state: &mut hysteron::State| state.turning_points().collect();
+        PyArray1::from_vec(py, self.inner.with(py, points))
     }
 
     /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the diagonal.
     #[getter]
     fn operators<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let plane = self.model.inner.plane();
-        let gamma = self.model.inner.operator_states(&self.lock()).raise()?;
-        on_plane(py, plane.levels(), &gamma)
+        let model = &self.model.inner;
+        let gamma = self.inner.with(py, |state| model.operator_states(state));
+        on_plane(py, &gamma.raise()?)
     }
 
     /// The last input, as it was given.
     #[getter]
-    fn input(&self) -> f64 {
-        self.lock().input()
+    fn input(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |state| state.input())
     }
 
     /// A state of its own that has seen the same.
-    fn copy(&self) -> Self {
-        Self::new(self.model.clone(), self.lock().clone())
+    ///
+    /// Returns
+    /// -------
+    /// State
+    ///
+    /// Examples
+    /// --------
+    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> other = state.copy()
+    /// >>> state.step(1.0), other.step(0.5)
+    /// (7.0, 4.0)
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self::new(
+            self.model.clone(),
+            self.inner.with(py, |state| state.clone()),
+        )
     }
 
-    fn __copy__(&self) -> Self {
-        self.copy()
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copy(py)
     }
 
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.copy()
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy(py)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
@@ -186,12 +197,8 @@ impl State {
         (restore, (state.save(py)?,)).into_pyobject(py)
     }
 
-    fn __repr__(&self) -> String {
-        let state = self.lock();
-        format!(
-            "<State at {}, {} turning points>",
-            state.input(),
-            state.held()
-        )
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (input, points) = self.inner.with(py, |state| (state.input(), state.held()));
+        format!("<State at {input}, {points} turning points>")
     }
 }

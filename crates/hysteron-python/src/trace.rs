@@ -108,18 +108,17 @@ impl Trace {
         self.flags(py, |status| status.adapted)
     }
 
-    /// The weights over time, of a controller that adapts on a simulated plant.
+    /// The weights over time, of a controller that adapts.
     ///
     /// Dictionaries with 'time' (s), 'offset' and 'weights' (shape (K, K), NaN below the diagonal).
     #[getter]
     fn snapshots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
         for snapshot in &self.inner.snapshots {
-            let levels = (2.0 * snapshot.weights.len() as f64).sqrt() as usize;
             let entry = PyDict::new(py);
             entry.set_item("time", snapshot.time)?;
             entry.set_item("offset", snapshot.offset)?;
-            entry.set_item("weights", on_plane(py, levels, &snapshot.weights)?)?;
+            entry.set_item("weights", on_plane(py, &snapshot.weights)?)?;
             list.append(entry)?;
         }
         Ok(list)
@@ -163,6 +162,16 @@ impl Trace {
     /// Raises
     /// ------
     /// FileError
+    ///
+    /// Examples
+    /// --------
+    /// >>> import os, tempfile
+    /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
+    /// >>> controller = hysteron.control.Controller(0.01, (0, 150), pid=hysteron.control.Pid(0.2))
+    /// >>> trace = controller.run(hysteron.PreisachPlant(), np.full(100, 20.0))
+    /// >>> trace.to_csv(path)
+    /// >>> open(path).readline()[:29]
+    /// 'time_s,reference,output,measu'
     fn to_csv(&self, path: PathBuf) -> PyResult<()> {
         self.inner.write_csv(&path).raise()
     }

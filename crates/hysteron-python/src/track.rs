@@ -3,6 +3,7 @@
 use crate::error::Raise;
 use crate::model::Model;
 use crate::pid::Pid;
+use crate::pool::detached;
 use crate::said::told;
 use crate::trace::Trace;
 use crate::watched::watched;
@@ -18,7 +19,6 @@ use std::path::{Path, PathBuf};
 #[pyclass(frozen, module = "hysteron")]
 pub(crate) struct Comparison {
     inner: Found,
-    title: String,
 }
 
 #[pymethods]
@@ -26,7 +26,7 @@ impl Comparison {
     /// The scenario's title.
     #[getter]
     fn title(&self) -> &str {
-        &self.title
+        &self.inner.title
     }
 
     /// Always True: nothing was measured.
@@ -64,7 +64,7 @@ impl Comparison {
         table.set_item("controller", PyList::new(py, rows.iter().map(|row| row.0))?)?;
         table.set_item(
             "seed",
-            PyArray1::from_iter(py, rows.iter().map(|row| row.1)),
+            PyArray1::from_iter(py, rows.iter().map(|row| row.1 as i64)),
         )?;
         table.set_item(
             "window",
@@ -98,7 +98,7 @@ impl Comparison {
         Ok(table)
     }
 
-    /// Medians over the seeds, a dictionary for each window and controller; None where there is none.
+    /// Medians over the seeds, a dictionary for each window and controller, whose 'name' is that in `controllers`; None where there is none.
     #[getter]
     fn medians<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         told(py, &self.inner.medians())
@@ -153,7 +153,7 @@ impl Comparison {
 
     fn __repr__(&self) -> String {
         let names = self.controllers().join(", ");
-        format!("<Comparison, simulated: {}: {names}>", self.title)
+        format!("<Comparison, simulated: {}: {names}>", self.title())
     }
 }
 
@@ -200,6 +200,8 @@ impl Comparison {
 /// True
 /// >>> comparison.traces['inverse-pid']
 /// <Trace, 800 samples to 7.99 s>
+/// >>> import os, tempfile
+/// >>> comparison.to_csv(os.path.join(tempfile.mkdtemp(), 'scores.csv'))
 #[pyfunction]
 #[pyo3(signature = (scenario, *, seeds=None, progress=None))]
 pub(crate) fn track(
@@ -217,10 +219,7 @@ pub(crate) fn track(
             watch("runs", done as f64 / all as f64)
         })
     })?;
-    Ok(Comparison {
-        inner,
-        title: scenario.title,
-    })
+    Ok(Comparison { inner })
 }
 
 /// The gains that a scenario's test gives, the same for all its controllers.
@@ -253,7 +252,7 @@ pub(crate) fn tune(
     scenario: &Bound<'_, PyAny>,
 ) -> PyResult<(Option<Pid>, Option<Pid>)> {
     let scenario = scenario_of(scenario)?;
-    let (scheme, gains) = py.detach(|| hysteron::track::tune(&scenario)).raise()?;
+    let (scheme, gains) = detached(py, || hysteron::track::tune(&scenario)).raise()?;
     Ok((
         gains.map(Pid::of),
         scheme.inner.map(|inner| Pid::of(inner.gains)),
@@ -277,42 +276,6 @@ pub(crate) fn scenarios(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         all.set_item(name, Scenario::text(name))?;
     }
     Ok(all)
-}
-
-/// Where a series goes next, for 'anticipate'.
-///
-/// Parameters
-/// ----------
-/// series : array_like, shape (n,)
-/// band : float
-///     Reversals up to this size are noise.
-///
-/// Returns
-/// -------
-/// list of {None, 'rising', 'falling'}
-///
-/// Examples
-/// --------
-/// >>> hysteron.control.headings([0, 1, 2, 1])
-/// ['rising', 'rising', 'rising', 'falling']
-#[pyfunction]
-#[pyo3(signature = (series, band=0.0))]
-pub(crate) fn headings(
-    series: &Bound<'_, PyAny>,
-    band: f64,
-) -> PyResult<Vec<Option<&'static str>>> {
-    let series = crate::array::samples(series, "series")?;
-    let series = series.as_slice()?;
-    crate::error::finite("series", series)?;
-    let headings = hysteron::headings(series, crate::word::width(band)?);
-    let name = |heading| match heading {
-        hysteron::Direction::Rising => "rising",
-        hysteron::Direction::Falling => "falling",
-    };
-    Ok(headings
-        .into_iter()
-        .map(|heading| heading.map(name))
-        .collect())
 }
 
 fn scenario_of(scenario: &Bound<'_, PyAny>) -> PyResult<Scenario> {

@@ -1,8 +1,8 @@
-//! `branches` and `remembered`.
+//! Where a series turns: `branches`, `remembered` and `control.headings`.
 
 use crate::array::samples;
 use crate::error::finite;
-use hysteron::NOISE;
+use crate::word::{direction_name, width};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -35,12 +35,9 @@ pub(crate) fn branches<'py>(
     let input = samples(input, "input")?;
     let input = input.as_slice()?;
     finite("input", input)?;
-    let (low, high) = input.iter().fold((f64::MAX, f64::MIN), |(low, high), x| {
-        (low.min(*x), high.max(*x))
-    });
     let band = match band {
-        Some(band) => crate::word::width(band)?,
-        None => NOISE * (high - low),
+        Some(band) => width(band)?,
+        None => hysteron::noise_band(input),
     };
     let found = hysteron::branches(input, band);
     Ok(PyArray1::from_iter(py, found.iter().map(|b| *b as i64)))
@@ -73,4 +70,36 @@ pub(crate) fn remembered<'py>(
     finite("input", input)?;
     let found = hysteron::remembered(input);
     Ok(PyArray1::from_iter(py, found.iter().map(|n| *n as i64)))
+}
+
+/// Where a series goes next, for 'anticipate'.
+///
+/// Parameters
+/// ----------
+/// series : array_like, shape (n,)
+/// band : float
+///     Reversals up to this size are noise.
+///
+/// Returns
+/// -------
+/// list of {None, 'rising', 'falling'}
+///
+/// Examples
+/// --------
+/// >>> hysteron.control.headings([0, 1, 2, 1])
+/// ['rising', 'rising', 'rising', 'falling']
+#[pyfunction]
+#[pyo3(signature = (series, band=0.0))]
+pub(crate) fn headings(
+    series: &Bound<'_, PyAny>,
+    band: f64,
+) -> PyResult<Vec<Option<&'static str>>> {
+    let series = samples(series, "series")?;
+    let series = series.as_slice()?;
+    finite("series", series)?;
+    let headings = hysteron::headings(series, width(band)?);
+    let names = headings
+        .into_iter()
+        .map(|heading| heading.map(direction_name));
+    Ok(names.collect())
 }

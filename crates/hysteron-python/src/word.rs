@@ -1,7 +1,7 @@
-//! Words that stand for a choice.
+//! Arguments: words that stand for a choice, and values by their name.
 
 use hysteron::{Direction, Learner, Operator, Policy};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// The value that `word` stands for, of those that `argument` may be.
@@ -30,10 +30,7 @@ pub(crate) fn operator(word: &str) -> PyResult<Operator> {
 }
 
 pub(crate) fn operator_name(operator: Operator) -> &'static str {
-    OPERATORS
-        .iter()
-        .find(|(_, value)| *value == operator)
-        .map_or("mkp", |(name, _)| name)
+    name_of(operator, &OPERATORS)
 }
 
 /// What follows the error.
@@ -47,13 +44,24 @@ pub(crate) fn learner(word: &str) -> PyResult<Learner> {
     choice("method", word, &learners)
 }
 
+const HEADINGS: [(&str, Direction); 2] = [
+    ("rising", Direction::Rising),
+    ("falling", Direction::Falling),
+];
+
 /// Where a target goes next.
 pub(crate) fn direction(word: &str) -> PyResult<Direction> {
-    let headings = [
-        ("rising", Direction::Rising),
-        ("falling", Direction::Falling),
-    ];
-    choice("heading", word, &headings)
+    choice("heading", word, &HEADINGS)
+}
+
+pub(crate) fn direction_name(direction: Direction) -> &'static str {
+    name_of(direction, &HEADINGS)
+}
+
+/// The word that stands for a value.
+fn name_of<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> &'static str {
+    let found = words.iter().find(|(_, other)| *other == value);
+    found.map_or("", |(word, _)| word)
 }
 
 /// A band of noise around a target.
@@ -62,7 +70,7 @@ pub(crate) fn width(band: f64) -> PyResult<f64> {
         return Ok(band);
     }
     Err(PyValueError::new_err(format!(
-        "`band` is {band}: it is 0 or more, in the output's unit"
+        "`band` is {band}: a number from 0 on is needed"
     )))
 }
 
@@ -74,4 +82,23 @@ pub(crate) fn policy(heading: Option<&str>, band: f64) -> PyResult<Policy<f64>> 
     };
     let heading = direction(word)?;
     Ok(Policy::Anticipate { heading, tolerance })
+}
+
+/// The value of a keyword argument that is taken as it comes.
+pub(crate) fn named<T>(argument: &str, needed: &str, value: &Bound<'_, PyAny>) -> PyResult<T>
+where
+    T: for<'a, 'py> FromPyObject<'a, 'py>,
+{
+    let refused = |value: String| {
+        PyTypeError::new_err(format!("`{argument}` is {value}: {needed} is needed"))
+    };
+    match value.extract() {
+        Ok(value) => Ok(value),
+        Err(_) => Err(refused(value.repr()?.to_string())),
+    }
+}
+
+/// A keyword argument that there is none of.
+pub(crate) fn no_argument(name: &str) -> PyErr {
+    PyTypeError::new_err(format!("there is no argument `{name}`"))
 }

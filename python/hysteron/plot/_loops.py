@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ._style import MODELLED, RECORDED, figure, label, single, source, without_body
+from ._style import DASHED, DOTTED, MODELLED, RECORDED, figure, label, single, source, without_body
 
 
 @figure
@@ -93,12 +93,11 @@ def major_loops(model, loads=None, *, ax=None):
         loads = np.linspace(*model.load_range, 3) if loads is None else _numbers(loads)
         outputs = [model.at_load(load).simulate(path) for load in loads]
         ax = single(ax)
-        lines = ("-", (0, (5, 2)), (0, (1, 1.2)), "-.")
+        lines = ("-", DASHED, DOTTED, "-.")
         for k, (load, output) in enumerate(zip(loads, outputs)):
             shade = plt.get_cmap("viridis")(0.8 * k / max(len(loads) - 1, 1))
             ax.plot(path, output, color=shade, linestyle=lines[k % 4], linewidth=1.3, label=f"{load:g}")
-        told = model.summary()["load"]
-        ax.legend(title=label(f"{told['name']} [{told['unit']}]" if told["unit"] else told["name"]))
+        ax.legend(title=label(model.load_name))
     ax.set(xlabel=label(model.input), ylabel=label(model.output))
     return ax
 

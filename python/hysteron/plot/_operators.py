@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.patches import Rectangle
 
 from .._hysteron import Model
-from ._style import CONTRAST, MODELLED, figure, label, several, single, without_body
+from ._style import BLUE, CONTRAST, DASHED, DOTTED, MODELLED, figure, label, several, single, without_body
 
 
 def operators(*, axes=None):
@@ -44,13 +44,13 @@ def operators(*, axes=None):
     for ax, name in zip(axes, ("relay", "KP", "MKP")):
         one = Model(weights, (0, 4), operator=name.lower())
         there, back = np.split(one.simulate(np.concatenate([rising, rising[::-1]])), 2)
-        for input, output, text, dash in ((rising, there, "rising", "-"), (rising[::-1], back, "falling", (0, (5, 2)))):
+        for input, output, text, dash in ((rising, there, "rising", "-"), (rising[::-1], back, "falling", DASHED)):
             ax.plot(input, output, label=text, **dict(MODELLED, linewidth=1.4, linestyle=dash))
             _head(ax, input, output)
         if name != "relay":
             halfway = np.linspace(2.5, 0.5, 201)  # from the middle of one bounding curve to that of the other
             turned = one.simulate(np.append(rising[rising < 2.5], halfway))[-201:]
-            ax.plot(halfway, turned, label="turned back", **dict(CONTRAST, linewidth=1.6, linestyle=(0, (1, 1.2))))
+            ax.plot(halfway, turned, label="turned back", **dict(CONTRAST, linewidth=1.6, linestyle=DOTTED))
         ax.set(title=name, xlabel="input $T$", ylim=(-1.25, 1.25), yticks=(-1, 0, 1))
         ax.set_xticks(range(4), [r"$\alpha_{i-1}$", r"$\alpha_i$", r"$\beta_{j-1}$", r"$\beta_j$"])
     axes[0].set_ylabel(r"output $\gamma_{s_{ij}}$")
@@ -63,7 +63,7 @@ def _head(ax, input, output):
     above = output > (output.min() + output.max()) / 2
     passing = np.flatnonzero(np.diff(above))[0]
     ends = np.column_stack([input, output])[passing : passing + 2]
-    ax.annotate("", ends.mean(0), ends[0], arrowprops=dict(arrowstyle="-|>", color="#12355b", shrinkA=0, shrinkB=0, mutation_scale=14))
+    ax.annotate("", ends.mean(0), ends[0], arrowprops=dict(arrowstyle="-|>", color=BLUE, shrinkA=0, shrinkB=0, mutation_scale=14))
 
 
 @figure

@@ -8,9 +8,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 from .._hysteron import branches
-from ._style import amount, figure, one_of, several, single, unit, without_body
+from ._style import BLUE, ORANGE, amount, figure, one_of, several, single, unit, without_body
 
 _COLUMNS = 3
+#: An input on a level leaves each operator at 0 or 1, up to rounding of some 1e-13.
+_ROUNDING = 1e-9
 
 
 @figure
@@ -55,7 +57,7 @@ def grid(model, *, ax=None):
         (0.97, 0.36),
         textcoords="axes fraction",
         horizontalalignment="right",
-        arrowprops=dict(arrowstyle="->", color="#c8501e", shrinkB=3),
+        arrowprops=dict(arrowstyle="->", color=ORANGE, shrinkB=3),
     )
     sizes = f"$K$ = {count}\n$N$ = {len(i)}\n$\\Delta T$ = {amount(levels[1] - levels[0], model.input)}"
     ax.text(0.97, 0.04, sizes, transform=ax.transAxes, horizontalalignment="right", linespacing=1.5)
@@ -95,7 +97,7 @@ def excitation(model, input, *, ax=None):
     classes = model.excitation(input)
     ax = single(ax, square=True)
     labels = ("never moves", "moves on one branch", "not told from others", "weight follows")
-    shades = ("1", "0.86", "0.62", "#12355b")
+    shades = ("1", "0.86", "0.62", BLUE)
     colour_map(ax, model, classes, cmap=ListedColormap(shades), vmin=-0.5, vmax=3.5)
     patches = [
         Patch(facecolor=shade, edgecolor="0.6", label=f"{label} ({(classes == k).sum()})")
@@ -155,8 +157,10 @@ def plane(model, input, *, at=None, start="off", axes=None):
     histories = [input[: sample + 1] for sample in _samples(at, len(input))]
     own = axes is None
     axes = _panels(len(histories)) if own else several(axes, len(histories))
+    # The operators' states do not depend on the weights: any load will do.
+    steady = model if model.load_range is None else model.at_load(model.load_range[0])
     for ax, history in zip(axes, histories):
-        state = model.start(on=start == "on")
+        state = steady.start(on=start == "on")
         state.run(history)
         _states(ax, model, state.operators)
         _present(ax, model, history)
@@ -223,9 +227,9 @@ def _panels(count):
 def _states(ax, model, gamma):
     levels, size = model.plane, 0.6 * marker_size(model.levels)
     kinds = (
-        (gamma <= 1e-9, "o", "none", "γ = 0"),
-        ((gamma > 1e-9) & (gamma < 1 - 1e-9), "s", "0.55", "0 < γ < 1"),
-        (gamma >= 1 - 1e-9, "o", "0.1", "γ = 1"),
+        (gamma <= _ROUNDING, "o", "none", "γ = 0"),
+        ((gamma > _ROUNDING) & (gamma < 1 - _ROUNDING), "s", "0.55", "0 < γ < 1"),
+        (gamma >= 1 - _ROUNDING, "o", "0.1", "γ = 1"),
     )
     for chosen, marker, face, label in kinds:
         i, j = np.nonzero(chosen)
@@ -239,4 +243,4 @@ def _present(ax, model, history):
     moved = np.flatnonzero(history != history[-1])
     rising = not len(moved) or history[moved[-1]] < history[-1]
     line = ([edges[0], now], [now, now]) if rising else ([now, now], [now, edges[-1]])
-    ax.plot(*line, color="#c8501e", linestyle="--", linewidth=1.1, label="present input")
+    ax.plot(*line, color=ORANGE, linestyle="--", linewidth=1.1, label="present input")

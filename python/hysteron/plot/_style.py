@@ -10,9 +10,11 @@ from matplotlib.axes import Axes
 
 from .._hysteron import Model, Recording
 
+BLUE, ORANGE = "#12355b", "#c8501e"  # apart in grey too
+DASHED, DOTTED = (0, (5, 2)), (0, (1, 1.2))
 RECORDED = dict(color="0.68", linewidth=3.2, solid_capstyle="round", zorder=2)
-MODELLED = dict(color="#12355b", linewidth=1.1, zorder=3)
-CONTRAST = dict(color="#c8501e", linewidth=1.1, linestyle=(0, (5, 2)), zorder=4)
+MODELLED = dict(color=BLUE, linewidth=1.1, zorder=3)
+CONTRAST = dict(color=ORANGE, linewidth=1.1, linestyle=DASHED, zorder=4)
 
 _SIGNS = {"degC": "°C", "degF": "°F", "deg": "°", "um": "µm", "uC/cm2": "µC/cm²"}
 _KINDS = {"recording": (Recording, "a hysteron.Recording"), "model": (Model, "a hysteron.Model"), "ax": (Axes, "a matplotlib Axes")}
@@ -39,7 +41,7 @@ def of_kind(name, value, kind, needed):
 
 def one_of(name, value, *words):
     if value not in words:
-        raise ValueError(f"`{name}` is {value!r}: it must be {', '.join(map(repr, words[:-1]))} or {words[-1]!r}")
+        raise ValueError(f"`{name}` is {value!r}: one of {', '.join(map(repr, words))} is needed")
 
 
 def without_body(model):

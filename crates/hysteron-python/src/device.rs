@@ -1,0 +1,83 @@
+//! Control loops on a device that is a Python object, and what happens to a plant meanwhile.
+
+use crate::error::Raise;
+use crate::said::options;
+use crate::shared::Shared;
+use hysteron::Direction;
+use hysteron::control::{Controller, Reading, Target, Trace};
+use hysteron::track::Event;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The loop of `read`, `step`, `write`, one sample for each value of the reference.
+pub(crate) fn follow(
+    py: Python<'_>,
+    device: &Bound<'_, PyAny>,
+    controller: &Shared<Controller>,
+    reference: &[f64],
+    headings: &[Option<Direction>],
+) -> PyResult<Trace> {
+    if !(device.hasattr("read")? && device.hasattr("write")?) {
+        let device = device.repr()?;
+        let text =
+            format!("`device` is {device}: an object with read() and write(drive) is needed");
+        return Err(PyTypeError::new_err(text));
+    }
+    let dt_s = controller.with(py, |controller| controller.interval_s());
+    let (count, advance) = (reference.len(), device.getattr_opt("advance")?);
+    let mut trace = Trace::default();
+    for (&output, &heading) in reference.iter().zip(headings) {
+        py.check_signals()?;
+        let (target, reading) = (
+            Target { output, heading },
+            reading(&device.call_method0("read")?)?,
+        );
+        let step = |controller: &mut Controller| {
+            let action = controller.step(target, reading)?;
+            trace.record(count, output, (reading, reading), (controller, &action));
+            hysteron::Result::Ok(action.drive)
+        };
+        let drive = controller.with(py, step).raise()?;
+        device.call_method1("write", (drive,))?;
+        if let Some(advance) = &advance {
+            advance.call1((dt_s,))?;
+        }
+    }
+    Ok(trace)
+}
+
+/// What happens to a plant in a run.
+pub(crate) fn events_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<Event>> {
+    let given: Vec<Bound<'_, PyDict>> = given.extract().map_err(|_| {
+        PyTypeError::new_err("`events`: a sequence of dictionaries is needed, each with 'at_s'")
+    })?;
+    let events = given.iter().enumerate();
+    let events = events.map(|(n, event)| {
+        let of = format!("`events[{n}]`");
+        let event: Event = options(&of, event.as_any())?;
+        if event.at_s < 0.0 {
+            let text = format!("{of}: 'at_s' is {}: a time from 0 on is needed", event.at_s);
+            return Err(PyValueError::new_err(text));
+        }
+        Ok(event)
+    });
+    events.collect()
+}
+
+/// What a device's `read` returned.
+fn reading(read: &Bound<'_, PyAny>) -> PyResult<Reading> {
+    let (output, input): (Option<f64>, Option<f64>) = match read.extract() {
+        Ok(both) => both,
+        Err(_) => {
+            let output = read.extract::<Option<f64>>().map_err(|_| {
+                PyTypeError::new_err(format!("`device.read()` gave {read}: the output is needed, or a pair of output and input"))
+            })?;
+            (output, None)
+        }
+    };
+    Ok(Reading {
+        output: output.unwrap_or(f64::NAN),
+        input,
+    })
+}

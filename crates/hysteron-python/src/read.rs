@@ -1,0 +1,86 @@
+//! `read`.
+
+use crate::error::Raise;
+use crate::recording::Recording;
+use crate::said::warn;
+use hysteron::{Columns, Quantity, Repair};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Read a recording from a CSV, Parquet or MATLAB file.
+///
+/// Warns (`HysteronWarning`) of rows that were mended and of gaps in time.
+///
+/// Parameters
+/// ----------
+/// path : str or path-like
+/// input, output : str
+///     The columns; in a MATLAB file the variables, ``'M:2'`` being the second column of the matrix ``M``.
+/// time : str, optional
+///     The column of time in seconds.
+/// load : str, optional
+///     The column of the load or stress.
+/// input_name, output_name, load_name : str, optional
+///     What they are, with their unit in brackets; by default what the file says.
+/// repair : bool
+///     Drop rows without a number, sort times that go back, merge repeated ones. By default they are refused.
+///
+/// Returns
+/// -------
+/// Recording
+///
+/// Raises
+/// ------
+/// FileError
+/// RecordingError
+///     With line and column.
+///
+/// Examples
+/// --------
+/// >>> import os, tempfile
+/// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
+/// >>> _ = open(path, 'w').write('T [degC];lift\n20,5;0\n80;14\n')
+/// >>> hysteron.read(path, input='T [degC]', output='lift').input
+/// array([20.5, 80. ])
+#[pyfunction]
+#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    input: &str,
+    output: &str,
+    time: Option<&str>,
+    load: Option<&str>,
+    input_name: Option<&str>,
+    output_name: Option<&str>,
+    load_name: Option<&str>,
+    repair: bool,
+) -> PyResult<Recording> {
+    let columns = Columns {
+        input,
+        output,
+        time,
+        load,
+    };
+    let repair = match repair {
+        true => Repair::Mend,
+        false => Repair::Refuse,
+    };
+    let (mut recording, notes) =
+        py.detach(|| hysteron::Recording::read(&path, columns, repair).raise())?;
+    for note in notes {
+        warn(py, &format!("{}: {note}", path.display()))?;
+    }
+    let named = [
+        (input_name, &mut recording.input_quantity),
+        (output_name, &mut recording.output_quantity),
+        (load_name, &mut recording.load_quantity),
+    ];
+    for (name, quantity) in named {
+        if let Some(name) = name {
+            *quantity = Quantity::from_column(name);
+        }
+    }
+    Ok(recording.into())
+}
