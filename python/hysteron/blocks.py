@@ -8,8 +8,14 @@ off, and the functions have no other memory. A model's output follows its input 
 delay somewhere, as in any other loop of python-control.
 """
 
-import control
+import numbers
+
 import numpy as np
+
+try:
+    import control
+except ImportError as _missing:
+    raise ImportError("hysteron.blocks needs python-control: pip install 'hysteron[control]'") from _missing
 
 from ._hysteron import Adaptive, Model, State
 from .errors import CoreError
@@ -72,9 +78,16 @@ def _state(model: Model, vector: np.ndarray) -> State:
     return model.restore({"turning_points": vector[2 : 2 + count], "input": vector[1]})
 
 
-def _block(model, update, output, dt, kwargs, **usual):
-    names = {**usual, "states": [f"memory[{n}]" for n in range(len(memory(model)))]}
-    return control.NonlinearIOSystem(update, output, dt=dt, **{**names, **kwargs})
+def _block(update, output, dt, kwargs, **usual):
+    if dt is not True:
+        if not (isinstance(dt, numbers.Real) and 0 < dt < np.inf):
+            raise ValueError(f"`dt` is {dt!r}: a time above 0, or True, is needed")
+        dt = float(dt)
+    return control.NonlinearIOSystem(update, output, dt=dt, **{**usual, **kwargs})
+
+
+def _states(model):
+    return [f"memory[{n}]" for n in range(len(memory(model)))]
 
 
 def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
@@ -84,7 +97,7 @@ def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
     ----------
     model : Model
     dt : float
-        Time between samples, s.
+        Time between samples, s; True for discrete time without a length, as in python-control.
     **kwargs
         To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
 
@@ -111,7 +124,8 @@ def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
     def output(t, x, u, params):
         return np.array([_state(model, x).step(u[0])])
 
-    return _block(model, update, output, dt, kwargs, name="model", inputs=["input"], outputs=["output"])
+    usual = {"name": "model", "inputs": ["input"], "outputs": ["output"], "states": _states(model)}
+    return _block(update, output, dt, kwargs, **usual)
 
 
 def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float = 0.0, **kwargs) -> control.NonlinearIOSystem:
@@ -121,7 +135,7 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     ----------
     model : Model
     dt : float
-        Time between samples, s.
+        Time between samples, s; True for discrete time without a length, as in python-control.
     policy : {'hold', 'anticipate'}
         With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling, 0 not known.
     band : float
@@ -163,7 +177,8 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     def output(t, x, u, params):
         return np.array([solve(x, u)[1]])
 
-    return _block(model, update, output, dt, kwargs, name="inverse", inputs=inputs, outputs=["input"])
+    usual = {"name": "inverse", "inputs": inputs, "outputs": ["input"], "states": _states(model)}
+    return _block(update, output, dt, kwargs, **usual)
 
 
 def _heading(signal) -> str | None:
@@ -182,7 +197,7 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
     adaptive : Adaptive
         Where it begins. It stays as it is.
     dt : float
-        Time between samples, s.
+        Time between samples, s; True for discrete time without a length, as in python-control.
     band : float
         Reversals of the target up to this size are not followed, in the output's unit.
     **kwargs
@@ -232,4 +247,4 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
         return np.array([at(x).solve(u[0], band=band)[0]])
 
     usual = {"name": "adaptive", "inputs": ["target", "output", "input"], "outputs": ["command"], "states": ["estimator"]}
-    return control.NonlinearIOSystem(update, output, dt=dt, **{**usual, **kwargs})
+    return _block(update, output, dt, kwargs, **usual)

@@ -9,8 +9,12 @@ scores the wrong experiment; `BranchSplit` hands over what the operators remembe
 import numbers
 
 import numpy as np
-from sklearn.base import BaseEstimator, RegressorMixin
-from sklearn.utils.validation import check_array, check_is_fitted, validate_data
+
+try:
+    from sklearn.base import BaseEstimator, RegressorMixin
+    from sklearn.utils.validation import check_array, check_is_fitted, validate_data
+except ImportError as _missing:
+    raise ImportError("hysteron.sklearn needs scikit-learn 1.6 or newer: pip install 'hysteron[sklearn]'") from _missing
 
 from . import _hysteron
 
@@ -51,7 +55,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     Attributes
     ----------
     model_ : hysteron.Model
+        Its input and output have the names of the columns, where `X` and `y` are of pandas.
     n_features_in_ : int
+    feature_names_in_ : ndarray of str
+        Only where `X` has names for its columns.
 
     Examples
     --------
@@ -102,11 +109,22 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         -------
         HysteresisRegressor
             Itself.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hysteron.sklearn import HysteresisRegressor
+        >>> X = np.array([[0.0], [1.0], [2.0], [1.0], [0.0]])
+        >>> HysteresisRegressor(levels=2).fit(X, [0, 1, 3, 3, 0]).model_.levels
+        2
         """
+        named = {"output_name": y.name} if isinstance(getattr(y, "name", None), str) else {}
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64, ensure_min_samples=2)
         options = self.get_params()
-        del options["column"]
-        self.model_ = _hysteron.fit(_column(X, self.column), y, **options)
+        input = _column(X, options.pop("column"))
+        if hasattr(self, "feature_names_in_"):
+            named["input_name"] = self.feature_names_in_[self.column]
+        self.model_ = _hysteron.fit(_hysteron.Recording(input, y, **named), **options)
         return self
 
     def predict(self, X):
@@ -120,6 +138,15 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         Returns
         -------
         ndarray, shape (n,)
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hysteron.sklearn import HysteresisRegressor
+        >>> X = np.array([[0.0], [1.0], [2.0], [1.0], [0.0]])
+        >>> regressor = HysteresisRegressor(levels=2).fit(X, [0, 1, 3, 3, 0])
+        >>> regressor.predict([[2.0], [1.0]]).round(6)
+        array([3., 3.])
         """
         check_is_fitted(self)
         X = validate_data(self, X, reset=False, dtype=np.float64)
@@ -177,7 +204,23 @@ class BranchSplit:
         self.column = column
 
     def get_n_splits(self, X=None, y=None, groups=None):
-        """How many folds there are."""
+        """How many folds there are.
+
+        Parameters
+        ----------
+        X, y, groups : object, optional
+            Not looked at.
+
+        Returns
+        -------
+        int
+
+        Examples
+        --------
+        >>> from hysteron.sklearn import BranchSplit
+        >>> BranchSplit(4).get_n_splits()
+        4
+        """
         return self.n_splits
 
     def split(self, X, y=None, groups=None):
@@ -187,6 +230,8 @@ class BranchSplit:
         ----------
         X : array_like, shape (n, 1)
             The input, in the order in which it was sampled.
+        y, groups : object, optional
+            Not looked at.
 
         Yields
         ------
@@ -197,6 +242,17 @@ class BranchSplit:
         ------
         ValueError
             Where there are fewer branches than folds.
+
+        Examples
+        --------
+        The last fold begins with the turning points that no larger swing has wiped out: 0, 8 and 1, not 6 and 7.
+
+        >>> import numpy as np
+        >>> from hysteron.sklearn import BranchSplit
+        >>> X = np.array([0, 8, 6, 7, 1, 5, 3.0]).reshape(-1, 1)
+        >>> train, test = list(BranchSplit(3).split(X))[-1]
+        >>> X[test].ravel()
+        array([0., 8., 1., 5., 3.])
         """
         input = _column(check_array(X, dtype=np.float64), self.column)
         starts = _starts(_hysteron.branches(input, band=self.band), self.n_splits)

@@ -47,6 +47,20 @@ def test_inverse_and_model_return_the_reference(model, policy):
     assert np.array_equal(inputs, expected)
 
 
+@pytest.mark.parametrize("dt", [0, None, -0.1, np.nan, np.inf, False, "0.1"])
+def test_a_time_between_samples_that_cannot_be(model, dt):
+    for make in (blocks.model_block, blocks.inverse_block, lambda model, dt: blocks.adaptive_block(hysteron.Adaptive(model), dt)):
+        with pytest.raises(ValueError, match=f"`dt` is {dt!r}"):
+            make(model, dt)
+    assert blocks.model_block(model, True).dt is True
+
+
+@pytest.mark.parametrize("make", [blocks.model_block, blocks.inverse_block, blocks.adaptive_block, lambda m, dt: blocks.memory(m)])
+def test_what_is_no_model_is_refused(make):
+    with pytest.raises(TypeError, match=r"`(model|adaptive)` is 3: a hysteron\.(Model|Adaptive) is needed"):
+        make(3, DT)
+
+
 def test_the_functions_are_pure(model):
     block = blocks.model_block(model, DT)
     x = blocks.memory(model)

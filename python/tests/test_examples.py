@@ -21,6 +21,7 @@ for name, needed in {"blocks": "control", "plot": "matplotlib", "sklearn": "skle
 SHOWN_BY = {
     "hysteron.Adapted": "hysteron.adapt",
     "hysteron.Comparison": "hysteron.track",
+    "hysteron.Comparison.to_csv": "hysteron.track",
     "hysteron.Design": "hysteron.design",
     "hysteron.Learning": "hysteron.Adaptive.step",
     "hysteron.SimulatedPlant": "hysteron.SpringPlant",

@@ -109,10 +109,11 @@ def test_dead_band_shows_the_worst(recording, model):
     assert set(lines(lower)) >= {"measured", "inverse, hold", "inverse, anticipate"}
 
 
-def test_without_matplotlib_it_says_what_to_install():
-    code = "import sys; sys.modules['matplotlib'] = None\nimport hysteron\nimport hysteron.plot"
+@pytest.mark.parametrize("module, package, extra", [("plot", "matplotlib", "plot"), ("sklearn", "sklearn", "sklearn"), ("blocks", "control", "control")])
+def test_without_its_package_it_says_what_to_install(module, package, extra):
+    code = f"import sys; sys.modules[{package!r}] = None\nimport hysteron\nimport hysteron.{module}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert "ImportError: hysteron.plot needs matplotlib: pip install 'hysteron[plot]'" in done.stderr
+    assert f"ImportError: hysteron.{module} needs " in done.stderr and f"pip install 'hysteron[{extra}]'" in done.stderr
 
 
 @pytest.mark.parametrize("name", plot.__all__)
@@ -145,7 +146,7 @@ def test_what_is_no_recording_or_model_is_named(recording, model):
         (hysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.plane(m, [0.0, np.nan, 1.0])),
         (hysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.excitation(m, [0.0, np.nan, 1.0])),
         (TypeError, r"`input`", lambda m, r: plot.plane(m, "30 80 30")),
-        (ValueError, r"`input`", lambda m, r: plot.plane(m, r)),
+        (TypeError, r"`input` is a Recording", lambda m, r: plot.plane(m, r)),
         (ValueError, r"`input`.*shape", lambda m, r: plot.plane(m, [[1.0, 2.0]])),
         (ValueError, r"`axes` has 2: 3 are needed", lambda m, r: plot.plane(m, r.input, at=[1, 2, 3], axes=plt.subplots(2)[1])),
         (ValueError, r"`axes` has 1: 2 are needed", lambda m, r: plot.over_time(r, m, axes=plt.subplots()[1])),

@@ -115,3 +115,19 @@ def test_pipeline(data):
 def test_too_many_folds(data, splits, said):
     with pytest.raises(ValueError, match=said):
         next(BranchSplit(splits).split(data[0]))
+
+
+def test_names_of_a_frame(data):
+    pandas = pytest.importorskip("pandas")
+    X, y = data
+    frame = pandas.DataFrame({"room [degC]": 20.0, "wire [degC]": X[:, 0]})
+    regressor = HysteresisRegressor(levels=5, column=1).fit(frame, pandas.Series(y, name="lift [mm]"))
+    assert (regressor.model_.input, regressor.model_.output) == ("wire [degC]", "lift [mm]")
+
+
+@pytest.mark.parametrize("column, error", [(1.0, TypeError), ("a", TypeError), (-1, ValueError), (1, ValueError)])
+def test_a_column_that_is_not_there(data, column, error):
+    X, y = data
+    for use in (HysteresisRegressor(column=column).fit, lambda X, y: list(BranchSplit(column=column).split(X))):
+        with pytest.raises(error, match=f"`column` is {column!r}"):
+            use(X, y)

@@ -74,7 +74,7 @@ impl Adapted {
 ///     As for `fit`. Ctrl-C ends it in any case.
 /// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, load : optional
 ///     As for `Adaptive`; what is left out follows from model and recording. The noise is that of the output,
-///     and at least 2 % of its range for weights, 5 % for shares; the dead zone is twice the output's noise.
+///     and at least 2 % of its range or the model's, whichever is larger, for weights, 5 % for shares; the dead zone is twice the output's noise.
 ///
 /// Returns
 /// -------

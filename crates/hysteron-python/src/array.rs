@@ -1,5 +1,6 @@
 //! Samples from Python: arrays of float64 as they lie in memory, everything else converted to one.
 
+use crate::recording::Recording;
 use numpy::PyUntypedArrayMethods;
 use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray1, PyUntypedArray};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -13,6 +14,11 @@ pub(crate) fn samples<'py>(
     value: &Bound<'py, PyAny>,
     argument: &str,
 ) -> PyResult<PyReadonlyArray1<'py, f64>> {
+    if value.is_instance_of::<Recording>() {
+        let text =
+            format!("`{argument}` is a Recording: give one of its series, as `recording.input`");
+        return Err(PyTypeError::new_err(text));
+    }
     let numpy = value.py().import("numpy")?;
     // A masked array is one as well, and its mask counts.
     if let Ok(array) = value.cast::<PyArray1<f64>>()

@@ -71,8 +71,8 @@ impl Inverse {
     ///     What the input does while the target stands still: it rests, or crosses the dead band to where
     ///     the output starts to move the way that the target goes next.
     /// band : float, optional
-    ///     Reversals of the target up to this size are noise and not followed, in the output's unit: a peak of the
-    ///     target may be missed by as much. By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
+    ///     Reversals of the target up to this size are noise and not followed, in the output's unit: a
+    ///     target that wavers may be missed by up to twice as much. By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
     /// state : State, optional
     ///     Where to go on from; it is moved. By default every operator off.
     /// heading : sequence of {None, 'rising', 'falling'}, shape (n,), optional

@@ -90,6 +90,11 @@ impl Pid {
     /// -------
     /// Pid
     ///
+    /// Raises
+    /// ------
+    /// ControlError
+    ///     For numbers that no gains follow from.
+    ///
     /// Examples
     /// --------
     /// >>> hysteron.control.Pid.from_oscillation(3.2, 1.0)
@@ -120,7 +125,7 @@ impl Pid {
     /// Raises
     /// ------
     /// ValueError
-    ///     Where the output does not answer by more than its noise.
+    ///     Where the output does not answer by more than its noise, and for a `begin` or an `interval_s` that cannot be.
     ///
     /// Examples
     /// --------

@@ -274,8 +274,13 @@ impl Recording {
         self.inner.len()
     }
 
+    /// Whether samples, names and origin are the same, wherever they were read from.
     fn __eq__(&self, other: &Self) -> bool {
-        self.inner == other.inner
+        let unread = |recording: &hysteron::Recording| hysteron::Recording {
+            source: None,
+            ..recording.clone()
+        };
+        unread(&self.inner) == unread(&other.inner)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {

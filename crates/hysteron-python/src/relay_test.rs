@@ -97,6 +97,11 @@ impl RelayTest {
     /// -------
     /// tuple of float, or None
     ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For a time of zero and less.
+    ///
     /// Examples
     /// --------
     /// >>> hysteron.control.RelayTest((40, 110), 36.0).oscillation(0.01) is None  # not done

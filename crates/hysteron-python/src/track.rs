@@ -239,7 +239,8 @@ pub(crate) fn track(
 /// Raises
 /// ------
 /// ScenarioError
-///     For a plant that does not answer the test.
+///     Names the line or the field that cannot be; or the plant does not answer the test.
+/// FileError, RigError
 ///
 /// Examples
 /// --------

@@ -21,6 +21,13 @@ use pyo3::prelude::*;
 /// ndarray of int64, shape (n,)
 ///     Counted from 0.
 ///
+/// Raises
+/// ------
+/// CoreError
+///     For a sample that is NaN or infinite.
+/// ValueError
+///     For a band below zero.
+///
 /// Examples
 /// --------
 /// >>> hysteron.branches([0, 2, 4, 3.99, 4, 1, 3])
@@ -56,6 +63,11 @@ pub(crate) fn branches<'py>(
 /// ndarray of int64, shape (m,)
 ///     Indices into `input`, its last sample among them.
 ///
+/// Raises
+/// ------
+/// CoreError
+///     For a sample that is NaN or infinite.
+///
 /// Examples
 /// --------
 /// >>> hysteron.remembered([0, 5, 2, 4, 1, 3, 2.5])
@@ -83,6 +95,13 @@ pub(crate) fn remembered<'py>(
 /// Returns
 /// -------
 /// list of {None, 'rising', 'falling'}
+///
+/// Raises
+/// ------
+/// CoreError
+///     For a sample that is NaN or infinite.
+/// ValueError
+///     For a band below zero.
 ///
 /// Examples
 /// --------

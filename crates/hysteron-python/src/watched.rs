@@ -53,6 +53,7 @@ pub(crate) fn watched<T: Send>(
             result
         });
         let mut raised = None;
+        // Others may not use a receiver, which letting go of the interpreter's lock asks for.
         let finished = Mutex::new(finished);
         let pause = || {
             let finished = finished.lock().unwrap_or_else(PoisonError::into_inner);
