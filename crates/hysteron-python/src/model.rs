@@ -307,7 +307,7 @@ impl Model {
         let load = self.load_name().map(|name| format!(" under {name}"));
         let load = load.unwrap_or_default();
         format!(
-            "<Model {operator}, {levels} levels, {low:.6} to {high:.6}: {input}{load} → {output}{body}>"
+            "<Model {operator}, {levels} levels, {low} to {high}: {input}{load} → {output}{body}>"
         )
     }
 }
