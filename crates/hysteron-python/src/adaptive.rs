@@ -7,6 +7,7 @@ use crate::inverse::side_of;
 use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
+use crate::pool::detached;
 use crate::shared::Shared;
 use crate::watched::watched;
 use crate::word::policy;
@@ -118,7 +119,7 @@ impl Adaptive {
         }
         let options = adapt_options(method, start, options)?;
         let model = &model.inner;
-        Ok(py.detach(|| options.adaptive(model)).raise()?.into())
+        Ok(detached(py, || options.adaptive(model)).raise()?.into())
     }
 
     /// Move to `input`, tell the output expected there, and learn from the one `measured`.

@@ -3,6 +3,7 @@
 use crate::error::Raise;
 use crate::said::options;
 use crate::shared::Shared;
+use crate::word::another_kind;
 use hysteron::Direction;
 use hysteron::control::{Controller, Reading, Target, Trace};
 use hysteron::track::Event;
@@ -19,10 +20,8 @@ pub(crate) fn follow(
     headings: &[Option<Direction>],
 ) -> PyResult<Trace> {
     if !(device.hasattr("read")? && device.hasattr("write")?) {
-        let device = device.repr()?;
-        let text =
-            format!("`device` is {device}: an object with read() and write(drive) is needed");
-        return Err(PyTypeError::new_err(text));
+        let needed = "an object with read() and write(drive)";
+        return Err(another_kind("device", needed, device));
     }
     let dt_s = controller.with(py, |controller| controller.interval_s());
     let (count, advance) = (reference.len(), device.getattr_opt("advance")?);

@@ -3,6 +3,7 @@
 use hysteron::Error;
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The result of a function of the façade, for `?` in functions that return a [`PyResult`].
@@ -55,7 +56,13 @@ fn exception(error: &Error) -> PyErr {
     let class = match error {
         Error::Core(_) => "CoreError",
         Error::File { path, source } => match source.raw_os_error() {
-            Some(number) => return of_file(path, number, error.code()),
+            Some(number) => {
+                let class = match source.kind() {
+                    ErrorKind::NotFound => "FileMissingError",
+                    _ => "FileError",
+                };
+                return of_file(class, path, number, error.code());
+            }
             None => "FileError",
         },
         Error::ModelFile { .. } => "ModelFileError",
@@ -75,15 +82,13 @@ fn exception(error: &Error) -> PyErr {
 }
 
 /// An error of the system's, which Python says in its own words: with `errno` and `filename`.
-fn of_file(path: &Path, number: i32, code: i32) -> PyErr {
-    let arguments = Python::attach(|py| {
+fn of_file(class: &str, path: &Path, number: i32, code: i32) -> PyErr {
+    let said = Python::attach(|py| {
         let said = py.import("os")?.call_method1("strerror", (number,))?;
-        let missing = py.import("errno")?.getattr("ENOENT")?.eq(number)?;
-        Ok::<_, PyErr>(((number, said.unbind(), path.as_os_str()), missing))
+        Ok::<_, PyErr>(said.unbind())
     });
-    match arguments {
-        Ok((arguments, true)) => new("FileMissingError", arguments, code),
-        Ok((arguments, false)) => new("FileError", arguments, code),
+    match said {
+        Ok(said) => new(class, (number, said, path.as_os_str()), code),
         Err(error) => error,
     }
 }

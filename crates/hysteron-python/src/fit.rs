@@ -5,7 +5,7 @@ use crate::model::{Model, sign_of};
 use crate::said::warn;
 use crate::watched::watched;
 use crate::whole::Whole;
-use crate::word::{choice, named, no_argument, operator};
+use crate::word::{another_kind, choice, named, no_argument, operator};
 use hysteron::{Candidates, FitOptions, Open, Solver, Start};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -186,7 +186,7 @@ fn fit_options(given: Option<&Bound<'_, PyDict>>) -> PyResult<(FitOptions, Open)
             _ if value.is_none() => {}
             "levels" if is_auto(&value) => open.levels = true,
             "levels" if value.is_instance_of::<PyString>() => {
-                options.levels = named(&name, "a whole number or 'auto'", &value)?;
+                return Err(another_kind(&name, "a whole number or 'auto'", &value));
             }
             "levels" => options.levels = value.extract::<Whole>()?.of("levels")?,
             "range" => options.range = Some(named(&name, "a pair of numbers", &value)?),

@@ -4,8 +4,8 @@ use crate::given::recording_of;
 use crate::recording::Recording;
 use crate::said::told;
 use crate::watched::watched;
+use crate::word::another_kind;
 use hysteron::{PrepareOptions, RateDependence, Step};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -106,9 +106,6 @@ fn step(argument: &str, value: Option<&Bound<'_, PyAny>>, usual: Step) -> PyResu
         (Ok(value), _) => Ok(Step::Value(value)),
         (_, Some("auto")) => Ok(Step::Auto),
         (_, Some("off")) => Ok(Step::Off),
-        _ => Err(PyTypeError::new_err(format!(
-            "`{argument}` is {}: 'auto', 'off' or a number is needed",
-            value.repr()?
-        ))),
+        _ => Err(another_kind(argument, "'auto', 'off' or a number", value)),
     }
 }

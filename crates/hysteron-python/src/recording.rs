@@ -2,6 +2,7 @@
 
 use crate::error::Raise;
 use crate::given::{optional, series};
+use crate::pool::detached;
 use crate::said::told;
 use crate::whole::Whole;
 use hysteron::{FitOptions, Origin, Plane, Quantity};
@@ -266,7 +267,7 @@ impl Recording {
             Some((min, max)) => Plane::new(min, max, levels).raise()?,
             None => hysteron::plane_of(&self.inner, levels).raise()?,
         };
-        let summary = py.detach(|| hysteron::inspect_recording(&self.inner, plane).raise())?;
+        let summary = detached(py, || hysteron::inspect_recording(&self.inner, plane)).raise()?;
         told(py, &summary)
     }
 

@@ -60,14 +60,8 @@ impl Model {
             // Without a copy: straight into NumPy's array.
             return self.started(false).run(py, input);
         }
-        let input = samples(input, "input")?;
-        let input = input.as_slice()?;
-        let (time, load) = (optional(time, "time")?, optional(load, "load")?);
-        let around = Surroundings {
-            time: time.as_deref(),
-            load: load.as_deref(),
-        };
-        let output = detached(py, || model.predict(input, around)).raise_of("input", input)?;
+        let predict = |input: &_, around: Surroundings<'_>| model.predict(input, around);
+        let output = surrounded(py, input, time, load, predict)?;
         Ok(PyArray1::from_vec(py, output))
     }
 
@@ -105,16 +99,8 @@ impl Model {
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-        let input = samples(input, "input")?;
-        let input = input.as_slice()?;
-        let (time, load) = (optional(time, "time")?, optional(load, "load")?);
-        let around = Surroundings {
-            time: time.as_deref(),
-            load: load.as_deref(),
-        };
-        let model = &self.inner;
-        let ends = detached(py, || model.predict_band(input, around));
-        let (low, high) = ends.raise_of("input", input)?;
+        let predict = |input: &_, around: Surroundings<'_>| self.inner.predict_band(input, around);
+        let (low, high) = surrounded(py, input, time, load, predict)?;
         Ok((PyArray1::from_vec(py, low), PyArray1::from_vec(py, high)))
     }
 
@@ -317,4 +303,22 @@ impl Model {
         };
         State::new(self.clone(), state)
     }
+}
+
+/// Does `work` on an input and what goes with its samples, without the interpreter's lock.
+fn surrounded<T: Send>(
+    py: Python<'_>,
+    input: &Bound<'_, PyAny>,
+    time: Option<&Bound<'_, PyAny>>,
+    load: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&[f64], Surroundings<'_>) -> hysteron::Result<T> + Send,
+) -> PyResult<T> {
+    let input = samples(input, "input")?;
+    let input = input.as_slice()?;
+    let (time, load) = (optional(time, "time")?, optional(load, "load")?);
+    let around = Surroundings {
+        time: time.as_deref(),
+        load: load.as_deref(),
+    };
+    detached(py, || work(input, around)).raise_of("input", input)
 }

@@ -1,5 +1,6 @@
 //! What the façade tells as JSON, as dictionaries, and back.
 
+use crate::word::another_kind;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -28,9 +29,7 @@ pub(crate) fn arguments<'py>(
     {
         let text = name.to_string();
         if nested.contains(&text.as_str()) && !value.is_instance_of::<PyDict>() {
-            let value = value.repr()?;
-            let text = format!("`{text}` is {value}: a dictionary is needed");
-            return Err(PyTypeError::new_err(text));
+            return Err(another_kind(&text, "a dictionary", &value));
         }
         arguments.set_item(name, value)?;
     }

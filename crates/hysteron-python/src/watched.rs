@@ -2,8 +2,8 @@
 
 use crate::error::Raise;
 use crate::pool::in_pool;
+use crate::word::another_kind;
 use hysteron::{Error, Watch};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use std::panic::resume_unwind;
@@ -92,9 +92,6 @@ fn callback<'py>(
             false => Ok(None),
         },
         Some(call) if call.is_callable() => Ok(Some(call.clone())),
-        Some(other) => Err(PyTypeError::new_err(format!(
-            "`progress` is {}: a callable, True or None is needed",
-            other.repr()?
-        ))),
+        Some(other) => Err(another_kind("progress", "a callable, True or None", other)),
     }
 }

@@ -89,12 +89,16 @@ pub(crate) fn named<T>(argument: &str, needed: &str, value: &Bound<'_, PyAny>) -
 where
     T: for<'a, 'py> FromPyObject<'a, 'py>,
 {
-    let refused = |value: String| {
-        PyTypeError::new_err(format!("`{argument}` is {value}: {needed} is needed"))
-    };
-    match value.extract() {
-        Ok(value) => Ok(value),
-        Err(_) => Err(refused(value.repr()?.to_string())),
+    value
+        .extract()
+        .map_err(|_| another_kind(argument, needed, value))
+}
+
+/// `TypeError` for a value that is not what is needed.
+pub(crate) fn another_kind(argument: &str, needed: &str, value: &Bound<'_, PyAny>) -> PyErr {
+    match value.repr() {
+        Ok(value) => PyTypeError::new_err(format!("`{argument}` is {value}: {needed} is needed")),
+        Err(error) => error,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Whether an output goes with its input, as weights from zero on demand.
 
-use crate::turning::NOISE;
 use crate::turning::headings;
+use crate::turning::noise_band;
 use crate::{Direction, Recording, Result, Sign};
 
 /// From here on the output goes against the input on so much of its way that no monotone model can follow: an
@@ -27,9 +27,8 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// [`crate::Error::Recording`] for a recording that cannot be worked with.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    let ((x_low, x_high), (low, high)) = recording.ranges();
-    let band = NOISE * (high - low);
-    let headings = headings(&recording.input, NOISE * (x_high - x_low));
+    let band = noise_band(&recording.output);
+    let headings = headings(&recording.input, noise_band(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);
     let mut held = recording.output[0];
     for (&y, heading) in recording.output.iter().zip(headings) {

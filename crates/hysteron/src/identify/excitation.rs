@@ -6,8 +6,7 @@
 //! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
 
 use super::sparse::{Initial, SparseForm};
-use crate::recording::range;
-use crate::{Error, NOISE, Operator, Plane, Result, Turning};
+use crate::{Error, NOISE, Operator, Plane, Result, Turning, noise_band};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 use hysteron_core::{Definition, operator_index};
@@ -224,8 +223,7 @@ fn branches_moved(
 
 /// The input at the end of each branch.
 fn branch_ends(input: &[f64]) -> Vec<f64> {
-    let (low, high) = range(input);
-    let mut turning = Turning::new(NOISE * (high - low));
+    let mut turning = Turning::new(noise_band(input));
     let turns = input.iter().filter_map(|&t| turning.push(t));
     // The start counts as a turn, and begins the first branch.
     let mut ends: Vec<f64> = turns.skip(1).map(|(n, _)| input[n]).collect();
