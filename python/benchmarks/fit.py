@@ -1,4 +1,4 @@
-"""`hysteron.fit` against SciPy's non-negative least squares on the same data, at the same optimum.
+"""`pyhysteron.fit` against SciPy's non-negative least squares on the same data, at the same optimum.
 
     python python/benchmarks/fit.py
 
@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import nnls
 from timing import best
 
-import hysteron
+import pyhysteron
 
 SAMPLES = 10_000
 RANGE = (20.0, 80.0)
@@ -26,7 +26,7 @@ def experiment(levels):
     density = hill(0.3, 0.6, 0.1) + 0.4 * hill(0.5, 0.8, 0.07)
     density[density < 0.01] = 0
     density[np.tril_indices(levels, -1)] = np.nan
-    model = hysteron.Model(density / levels**2, RANGE, offset=1)
+    model = pyhysteron.Model(density / levels**2, RANGE, offset=1)
     bottom = RANGE[0] - (RANGE[1] - RANGE[0]) / (levels - 1)
     turns = [bottom]
     for level in model.plane:
@@ -42,7 +42,7 @@ def regressor(input, levels):
     count = levels * (levels + 1) // 2
     columns = np.empty((len(input), count + 2))
     for n in range(count):
-        columns[:, n] = hysteron.Model(np.eye(1, count, n)[0], RANGE).simulate(input)
+        columns[:, n] = pyhysteron.Model(np.eye(1, count, n)[0], RANGE).simulate(input)
     columns[:, -2:] = 1, -1
     return columns
 
@@ -52,13 +52,13 @@ def squares(model, input, output):
 
 
 def main():
-    warnings.simplefilter("ignore", hysteron.HysteronWarning)  # the noise goes against the input, and is meant to
+    warnings.simplefilter("ignore", pyhysteron.HysteronWarning)  # the noise goes against the input, and is meant to
     print(f"{SAMPLES} samples, noise of 1 %, sign given.\n")
     print("| levels | operators | hysteron | regressor | SciPy's nnls | ratio of the solutions | difference of squared errors |")
     print("| ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
     for levels in (10, 20, 40):
         input, output = experiment(levels)
-        fit = lambda: hysteron.fit(input, output, levels=levels, range=RANGE, sign=1, bootstrap=0)
+        fit = lambda: pyhysteron.fit(input, output, levels=levels, range=RANGE, sign=1, bootstrap=0)
         ours, model = best(fit, 7)
         making, columns = best(lambda: regressor(input, levels), 1)
         theirs, (_, norm) = best(lambda: nnls(columns, output, maxiter=100 * columns.shape[1]), 3 if levels < 40 else 1)

@@ -17,8 +17,8 @@ import zlib
 import numpy as np
 from timing import best
 
-import hysteron
-from hysteron import _hysteron
+import pyhysteron
+from pyhysteron import _hysteron
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = 1_000_000
@@ -50,10 +50,10 @@ def rust(model, input):
 
 
 def importing():
-    """Milliseconds that `import hysteron` takes, alone and with NumPy after it, median of several processes."""
+    """Milliseconds that `import pyhysteron` takes, alone and with NumPy after it, median of several processes."""
     alone, whole = [], []
     for _ in range(9):
-        code = "import time; a = time.perf_counter(); import hysteron; b = time.perf_counter(); import numpy; c = time.perf_counter(); print(b - a, c - a)"
+        code = "import time; a = time.perf_counter(); import pyhysteron; b = time.perf_counter(); import numpy; c = time.perf_counter(); print(b - a, c - a)"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         for times, text in zip((alone, whole), done.stdout.split()):
             times.append(1e3 * float(text))
@@ -65,7 +65,7 @@ def main():
     parser.add_argument("--most", type=float, help="fail where Python takes more than this many times Rust's time")
     most = parser.parse_args().most
     levels = 20
-    model = hysteron.Model(np.full(levels * (levels + 1) // 2, 0.01), (20, 80))
+    model = pyhysteron.Model(np.full(levels * (levels + 1) // 2, 0.01), (20, 80))
     print(f"{SAMPLES} samples, {levels} levels; best of {RUNS} runs.\n")
     print("| input | Rust, ns a sample | Python `simulate` | ratio | `State.step` in a loop |")
     print("| --- | ---: | ---: | ---: | ---: |")
@@ -87,7 +87,7 @@ def main():
         if most is not None and (ratio is None or ratio > most):
             sys.exit(f"{name}: the ratio is {ratio}, not {most} at most")
     alone, whole = importing()
-    print(f"\n`import hysteron` takes {alone:.0f} ms; NumPy, which comes with the first array, makes it {whole:.0f} ms.")
+    print(f"\n`import pyhysteron` takes {alone:.0f} ms; NumPy, which comes with the first array, makes it {whole:.0f} ms.")
     library = pathlib.Path(_hysteron.__file__).read_bytes()
     packed = len(zlib.compress(library, 9))
     print(f"The library is {len(library) / 2**20:.1f} MiB large, {packed / 2**20:.1f} MiB in a wheel.")

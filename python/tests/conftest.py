@@ -3,7 +3,7 @@ import os
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 os.environ["MPLBACKEND"] = "Agg"  # figures need no screen
 
@@ -15,7 +15,7 @@ def truth():
     for i in range(12):
         for j in range(i, 12):
             weights[i, j] = 0.1 * np.exp(-((j - i - 4) ** 2) / 8)
-    return hysteron.Model(weights, (25, 80), offset=3, input="temperature [degC]", output="lift [mm]")
+    return pyhysteron.Model(weights, (25, 80), offset=3, input="temperature [degC]", output="lift [mm]")
 
 
 @pytest.fixture(scope="session")
@@ -28,7 +28,7 @@ def swings():
 @pytest.fixture(scope="session")
 def recording(truth, swings):
     noise = 0.01 * np.random.default_rng(0).normal(size=len(swings))
-    return hysteron.Recording(
+    return pyhysteron.Recording(
         swings,
         truth.simulate(swings) + noise,
         time=0.1 * np.arange(len(swings)),
@@ -40,7 +40,7 @@ def recording(truth, swings):
 @pytest.fixture(scope="session")
 def model(recording):
     """Fitted to the recording, with a prediction band."""
-    return hysteron.fit(recording, levels=12, bootstrap=50)
+    return pyhysteron.fit(recording, levels=12, bootstrap=50)
 
 
 @pytest.fixture

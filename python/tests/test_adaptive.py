@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from common import together
 
-import hysteron
+import pyhysteron
 
 LEVELS = 8
 METHODS = ["gradient", "increments", "least-squares", "drift"]
@@ -16,7 +16,7 @@ TEMPERATURE = 50 - 40 * np.cos(0.05 * np.arange(2000)) * np.cos(0.003 * np.arang
 
 def model(factor=1.0, sign=1, **names):
     weights = np.random.default_rng(1).uniform(0.2, 1.0, LEVELS * (LEVELS + 1) // 2)
-    return hysteron.Model(factor * weights, (20, 80), offset=3.0, sign=sign, **names)
+    return pyhysteron.Model(factor * weights, (20, 80), offset=3.0, sign=sign, **names)
 
 
 @pytest.fixture(params=[1, -1])
@@ -27,7 +27,7 @@ def sign(request):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_prediction_gets_better(method, sign):
     measured = model(1.4, sign).simulate(TEMPERATURE)
-    adaptive = hysteron.Adaptive(model(1.0, sign), method=method)
+    adaptive = pyhysteron.Adaptive(model(1.0, sign), method=method)
     errors = np.abs(adaptive.run(TEMPERATURE, measured)["error"])
     assert errors[1500:].mean() < 0.3 * errors[:200].mean()
 
@@ -35,7 +35,7 @@ def test_the_prediction_gets_better(method, sign):
 @pytest.mark.parametrize("method", METHODS)
 def test_run_is_step_after_step(method):
     measured = model(1.4).simulate(TEMPERATURE)
-    one, other = (hysteron.Adaptive(model(), method=method) for _ in range(2))
+    one, other = (pyhysteron.Adaptive(model(), method=method) for _ in range(2))
     table = one.run(TEMPERATURE, measured)
     steps = [other.step(x, y) for x, y in zip(TEMPERATURE, measured, strict=True)]
     for name in ["output", "error", "outcome", "clipped"]:
@@ -45,7 +45,7 @@ def test_run_is_step_after_step(method):
 
 
 def test_a_step_says_what_it_did():
-    adaptive = hysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model())
     learning = adaptive.step(100.0, 50.0)
     assert learning.output == model().output_range[1]
     assert learning.error == 50.0 - learning.output
@@ -58,7 +58,7 @@ def test_a_step_says_what_it_did():
 
 def test_it_begins_as_its_model_is(sign):
     offline = model(1.0, sign, input="temperature [degC]", output="displacement [mm]")
-    adaptive = hysteron.Adaptive(offline)
+    adaptive = pyhysteron.Adaptive(offline)
     assert np.array_equal(adaptive.weights, offline.weights, equal_nan=True)
     assert np.isnan(adaptive.weights[np.tril_indices(LEVELS, -1)]).all()
     assert adaptive.offset == offline.offset and adaptive.offline == offline
@@ -71,19 +71,19 @@ def test_it_begins_as_its_model_is(sign):
     state = offline.start()
     state.run(TEMPERATURE)
     assert np.array_equal(adaptive.turning_points, state.turning_points)
-    started = hysteron.Adaptive(offline, start="on")
+    started = pyhysteron.Adaptive(offline, start="on")
     assert started.output == pytest.approx(offline.output_range[1], abs=1e-12)
 
 
 def test_the_inverse_is_that_of_the_weights_as_they_are(sign):
-    adaptive = hysteron.Adaptive(model(1.0, sign), method="least-squares")
+    adaptive = pyhysteron.Adaptive(model(1.0, sign), method="least-squares")
     adaptive.run(TEMPERATURE, model(1.4, sign).simulate(TEMPERATURE))
     now = adaptive.model()
     adaptive.reset()
     low, high = sorted(now.output_range)
     targets = np.linspace(low, high, 30)[1:-1]
     targets = np.concatenate([targets, targets[::-1]])
-    headings = hysteron.control.headings(targets)
+    headings = pyhysteron.control.headings(targets)
     inputs, status = zip(*(adaptive.solve(y, heading=h) for y, h in zip(targets, headings, strict=True)), strict=True)
     assert set(status) == {0}
     assert np.abs(now.simulate(inputs) - targets).max() < 1e-9
@@ -91,7 +91,7 @@ def test_the_inverse_is_that_of_the_weights_as_they_are(sign):
 
 
 def test_solve_has_a_memory_of_its_own():
-    adaptive = hysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model())
     adaptive.predict(75.0)
     first, _ = adaptive.solve(8.0)
     assert adaptive.input == 75.0, "the measured input has moved"
@@ -104,7 +104,7 @@ def test_solve_has_a_memory_of_its_own():
 
 
 def test_guards():
-    adaptive = hysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model())
     adaptive.freeze()
     measured = model(2.0).simulate(TEMPERATURE)
     assert set(adaptive.run(TEMPERATURE, measured)["outcome"]) <= {"frozen", "at-rest"}
@@ -123,14 +123,14 @@ def test_guards():
 
 
 def test_copies_go_their_own_ways():
-    one = hysteron.Adaptive(model())
+    one = pyhysteron.Adaptive(model())
     for other in [one.copy(), copy.copy(one), copy.deepcopy(one)]:
         other.step(70.0, 20.0)
         assert other.offset != one.offset and one.input != 70.0
 
 
 def test_it_cannot_be_pickled_but_its_model_can():
-    adaptive = hysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model())
     adaptive.step(70.0, 20.0)
     with pytest.raises(TypeError, match="cannot pickle"):
         pickle.dumps(adaptive)
@@ -140,20 +140,20 @@ def test_it_cannot_be_pickled_but_its_model_can():
 @pytest.mark.parametrize(
     ("options", "error", "text"),
     [
-        ({"gain": 2.0}, hysteron.CoreError, "`gain` must be above 0 and below 2"),
-        ({"gain": float("nan")}, hysteron.CoreError, "`gain` must be"),
-        ({"method": "increments", "span": 9}, hysteron.CoreError, "`span` must be from 1/8 to 8"),
-        ({"method": "least-squares", "forgetting": 1.5}, hysteron.CoreError, "`forgetting` must be above 0 and up to 1"),
-        ({"method": "least-squares", "noise": 0}, hysteron.CoreError, "`noise` must be above 0"),
-        ({"method": "least-squares", "spread": -1}, hysteron.CoreError, "`spread` must be above 0"),
-        ({"method": "least-squares", "correlation": -1}, hysteron.CoreError, "`correlation` must be a finite number from 0 on"),
-        ({"offset_share": -1}, hysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
-        ({"dead_zone": -1}, hysteron.CoreError, "`dead_zone` must be"),
-        ({"leakage": 1.1}, hysteron.CoreError, "`leakage` must be from 0 to 1"),
-        ({"movement": float("inf")}, hysteron.CoreError, "`movement` must be"),
-        ({"trial": 0}, hysteron.CoreError, "`trial` must be 1 or more"),
+        ({"gain": 2.0}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
+        ({"gain": float("nan")}, pyhysteron.CoreError, "`gain` must be"),
+        ({"method": "increments", "span": 9}, pyhysteron.CoreError, "`span` must be from 1/8 to 8"),
+        ({"method": "least-squares", "forgetting": 1.5}, pyhysteron.CoreError, "`forgetting` must be above 0 and up to 1"),
+        ({"method": "least-squares", "noise": 0}, pyhysteron.CoreError, "`noise` must be above 0"),
+        ({"method": "least-squares", "spread": -1}, pyhysteron.CoreError, "`spread` must be above 0"),
+        ({"method": "least-squares", "correlation": -1}, pyhysteron.CoreError, "`correlation` must be a finite number from 0 on"),
+        ({"offset_share": -1}, pyhysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
+        ({"dead_zone": -1}, pyhysteron.CoreError, "`dead_zone` must be"),
+        ({"leakage": 1.1}, pyhysteron.CoreError, "`leakage` must be from 0 to 1"),
+        ({"movement": float("inf")}, pyhysteron.CoreError, "`movement` must be"),
+        ({"trial": 0}, pyhysteron.CoreError, "`trial` must be 1 or more"),
         ({"trial": -1}, ValueError, "`trial` is -1: a whole number"),
-        ({"noise": 1.0}, hysteron.FitError, "`noise` means nothing to this method"),
+        ({"noise": 1.0}, pyhysteron.FitError, "`noise` means nothing to this method"),
         ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'gradient'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
@@ -162,32 +162,32 @@ def test_it_cannot_be_pickled_but_its_model_can():
 )
 def test_options_that_are_refused(options, error, text):
     with pytest.raises(error) as raised:
-        hysteron.Adaptive(model(), **options)
+        pyhysteron.Adaptive(model(), **options)
     assert text in str(raised.value)
 
 
 def test_samples_that_are_refused():
-    adaptive = hysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model())
     before = adaptive.copy()
     for bad in [np.nan, np.inf]:
-        with pytest.raises(hysteron.CoreError, match="`measured`"):
+        with pytest.raises(pyhysteron.CoreError, match="`measured`"):
             adaptive.step(50.0, bad)
-        with pytest.raises(hysteron.CoreError, match="`input`"):
+        with pytest.raises(pyhysteron.CoreError, match="`input`"):
             adaptive.predict(bad)
-        with pytest.raises(hysteron.CoreError, match=r"`measured\[1\]`"):
+        with pytest.raises(pyhysteron.CoreError, match=r"`measured\[1\]`"):
             adaptive.run([1.0, 2.0], [1.0, bad])
-        with pytest.raises(hysteron.CoreError, match="`target`"):
+        with pytest.raises(pyhysteron.CoreError, match="`target`"):
             adaptive.solve(bad)
     with pytest.raises(ValueError, match="`measured` has 1 samples, `input` 2"):
         adaptive.run([1.0, 2.0], [1.0])
-    with pytest.raises(hysteron.CoreError):
-        hysteron.Adaptive(hysteron.Model([1.0, -1.0, 1.0], (0, 1)))
+    with pytest.raises(pyhysteron.CoreError):
+        pyhysteron.Adaptive(pyhysteron.Model([1.0, -1.0, 1.0], (0, 1)))
     assert adaptive.input == before.input and adaptive.offset == before.offset
     assert len(adaptive.run([], [])["error"]) == 0
 
 
 def test_threads_may_share_one():
-    adaptive = hysteron.Adaptive(model(), gain=0.1)
+    adaptive = pyhysteron.Adaptive(model(), gain=0.1)
     measured = model(1.4).simulate(TEMPERATURE)
 
     def work(kind):
@@ -211,7 +211,7 @@ def test_threads_may_share_one():
 @pytest.mark.parametrize("method", METHODS)
 def test_adapt(method, sign):
     measured = model(1.4, sign).simulate(TEMPERATURE)
-    adapted = hysteron.adapt(model(1.0, sign), TEMPERATURE, measured, method=method, time=np.arange(2000.0))
+    adapted = pyhysteron.adapt(model(1.0, sign), TEMPERATURE, measured, method=method, time=np.arange(2000.0))
     last = adapted.comparison["thirds"][-1]
     assert last["adapting"]["rmse"] < 0.3 * last["fixed"]["rmse"]
     table = adapted.table
@@ -232,26 +232,26 @@ def test_adapt_takes_what_numpy_takes():
     pandas = pytest.importorskip("pandas")
     measured = model(1.4).simulate(TEMPERATURE)
     frame = pandas.DataFrame({"T": TEMPERATURE, "y": measured}, index=np.arange(2000) + 7)
-    found = hysteron.adapt(model(), frame["T"], frame["y"]).model
-    assert found == hysteron.adapt(model(), hysteron.Recording(TEMPERATURE, measured)).model
-    assert found == hysteron.adapt(model(), TEMPERATURE.tolist(), measured).model
+    found = pyhysteron.adapt(model(), frame["T"], frame["y"]).model
+    assert found == pyhysteron.adapt(model(), pyhysteron.Recording(TEMPERATURE, measured)).model
+    assert found == pyhysteron.adapt(model(), TEMPERATURE.tolist(), measured).model
 
 
 @pytest.mark.parametrize(
     ("arguments", "options", "error", "text"),
     [
-        (([1.0, 2.0], [1.0]), {}, hysteron.RecordingError, "1 samples, but 2 of the input"),
-        (([], []), {}, hysteron.RecordingError, "no samples"),
-        (([1.0, np.nan], [1.0, 2.0]), {}, hysteron.RecordingError, "sample 1"),
-        (([1.0, 2.0], [1.0, 2.0]), {"time": [1.0, 0.0]}, hysteron.RecordingError, "goes back after sample 0"),
+        (([1.0, 2.0], [1.0]), {}, pyhysteron.RecordingError, "1 samples, but 2 of the input"),
+        (([], []), {}, pyhysteron.RecordingError, "no samples"),
+        (([1.0, np.nan], [1.0, 2.0]), {}, pyhysteron.RecordingError, "sample 1"),
+        (([1.0, 2.0], [1.0, 2.0]), {"time": [1.0, 0.0]}, pyhysteron.RecordingError, "goes back after sample 0"),
         (([1.0, 2.0], [[1.0], [2.0]]), {}, ValueError, "`output`: one dimension"),
         (([1j, 2.0], [1.0, 2.0]), {}, TypeError, "`input`: real numbers"),
-        (([1.0, 2.0], [1.0, 2.0]), {"method": "gradient", "gain": 3}, hysteron.CoreError, "`gain` must be above 0 and below 2"),
-        (([1.0, 2.0], [1.0, 2.0]), {"load": 3.0}, hysteron.FitError, "`load` means nothing"),
+        (([1.0, 2.0], [1.0, 2.0]), {"method": "gradient", "gain": 3}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
+        (([1.0, 2.0], [1.0, 2.0]), {"load": 3.0}, pyhysteron.FitError, "`load` means nothing"),
         (([1.0, 2.0], [1.0, 2.0]), {"start": "hot"}, ValueError, "`start` is 'hot'"),
     ],
 )
 def test_what_adapt_refuses(arguments, options, error, text):
     with pytest.raises(error) as raised:
-        hysteron.adapt(model(), *arguments, **options)
+        pyhysteron.adapt(model(), *arguments, **options)
     assert text in str(raised.value)

@@ -7,26 +7,26 @@ import numpy as np
 import pytest
 from common import together
 
-import hysteron
+import pyhysteron
 
-MODEL = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+MODEL = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
 CALLS = {
     "simulate": lambda x: MODEL.simulate(x),
     "band": lambda x: MODEL.band(x),
     "run": lambda x: MODEL.start().run(x),
     "inverse": lambda x: MODEL.inverse().run(x),
-    "recording": lambda x: hysteron.Recording(x, [0.0, 1.0, 0.5]),
-    "output": lambda x: hysteron.Recording([0.0, 1.0, 0.5], x),
-    "time": lambda x: hysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5], time=x),
-    "load": lambda x: hysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5], load=x),
-    "fit": lambda x: hysteron.fit(x, [0.0, 1.0, 0.5], levels=2),
-    "left_out": lambda x: hysteron.left_out(x, [0.0, 1.0, 0.5], levels=2),
-    "prepare": lambda x: hysteron.prepare(x, [0.0, 1.0, 0.5]),
+    "recording": lambda x: pyhysteron.Recording(x, [0.0, 1.0, 0.5]),
+    "output": lambda x: pyhysteron.Recording([0.0, 1.0, 0.5], x),
+    "time": lambda x: pyhysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5], time=x),
+    "load": lambda x: pyhysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5], load=x),
+    "fit": lambda x: pyhysteron.fit(x, [0.0, 1.0, 0.5], levels=2),
+    "left_out": lambda x: pyhysteron.left_out(x, [0.0, 1.0, 0.5], levels=2),
+    "prepare": lambda x: pyhysteron.prepare(x, [0.0, 1.0, 0.5]),
     "evaluate": lambda x: MODEL.evaluate(x, [0.0, 1.0, 0.5]),
     "excitation": lambda x: MODEL.excitation(x),
-    "recorded": lambda x: hysteron.design((0, 1), 2, heating_rate=1, cooling_rate=1, recorded=x),
-    "branches": lambda x: hysteron.branches(x),
-    "remembered": lambda x: hysteron.remembered(x),
+    "recorded": lambda x: pyhysteron.design((0, 1), 2, heating_rate=1, cooling_rate=1, recorded=x),
+    "branches": lambda x: pyhysteron.branches(x),
+    "remembered": lambda x: pyhysteron.remembered(x),
 }
 BAD = {
     "NaN": np.array([0.0, np.nan, 0.5]),
@@ -63,7 +63,7 @@ def test_refused(call, what):
 @pytest.mark.parametrize("call", ["recording", "output", "time", "load", "fit", "prepare", "evaluate"])
 @pytest.mark.parametrize("values", [[], [0.0, 1.0], np.zeros(4)])
 def test_another_length_is_refused(call, values):
-    with pytest.raises(hysteron.HysteronError) as error:
+    with pytest.raises(pyhysteron.HysteronError) as error:
         CALLS[call](values)
     assert "samples" in str(error.value)
 
@@ -71,7 +71,7 @@ def test_another_length_is_refused(call, values):
 def test_nothing_in_nothing_out():
     assert MODEL.simulate([]).shape == (0,)
     assert [part.shape for part in MODEL.inverse().run([])] == [(0,), (0,)]
-    assert hysteron.branches([]).shape == hysteron.remembered([]).shape == (0,)
+    assert pyhysteron.branches([]).shape == pyhysteron.remembered([]).shape == (0,)
 
 
 SAMPLES = np.array([0.0, 1.0, 0.5, 0.75, 0.25])
@@ -109,7 +109,7 @@ def same(name):
 def test_the_same_samples_give_the_same(name):
     samples = same(name)
     np.testing.assert_array_equal(MODEL.simulate(samples), MODEL.simulate(SAMPLES))
-    np.testing.assert_array_equal(hysteron.Recording(samples, samples).output, SAMPLES)
+    np.testing.assert_array_equal(pyhysteron.Recording(samples, samples).output, SAMPLES)
     assert MODEL.excitation(samples).shape == (2, 2)
 
 
@@ -119,33 +119,33 @@ def test_integers():
 
 
 def test_messages_name_argument_index_and_value():
-    with pytest.raises(hysteron.CoreError, match=r"`input\[1\]` is NaN"):
+    with pytest.raises(pyhysteron.CoreError, match=r"`input\[1\]` is NaN"):
         MODEL.simulate([0, np.nan])
-    with pytest.raises(hysteron.RecordingError, match="column `lift`: sample 1 .from 0. is inf"):
-        hysteron.Recording([0, 1], [0, np.inf], output_name="lift [mm]")
-    with pytest.raises(hysteron.RecordingError, match="column `output`: 1 samples, but 2 of the input"):
-        hysteron.Recording([0, 1], [0])
-    with pytest.raises(hysteron.RecordingError, match="`time`: goes back after sample 0"):
-        hysteron.Recording([0, 1], [0, 1], time=[1, 0])
+    with pytest.raises(pyhysteron.RecordingError, match="column `lift`: sample 1 .from 0. is inf"):
+        pyhysteron.Recording([0, 1], [0, np.inf], output_name="lift [mm]")
+    with pytest.raises(pyhysteron.RecordingError, match="column `output`: 1 samples, but 2 of the input"):
+        pyhysteron.Recording([0, 1], [0])
+    with pytest.raises(pyhysteron.RecordingError, match="`time`: goes back after sample 0"):
+        pyhysteron.Recording([0, 1], [0, 1], time=[1, 0])
     with pytest.raises(TypeError, match="`time`: real numbers are needed, not datetime64"):
-        hysteron.Recording([0, 1], [0, 1], time=np.zeros(2, "datetime64[s]"))
+        pyhysteron.Recording([0, 1], [0, 1], time=np.zeros(2, "datetime64[s]"))
 
 
-RECORDING = hysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5])
+RECORDING = pyhysteron.Recording([0.0, 1.0, 0.5], [0.0, 1.0, 0.5])
 WHOLE = {
-    "levels": lambda n: hysteron.fit(RECORDING, levels=n),
-    "load_degree": lambda n: hysteron.fit(RECORDING, levels=2, load_degree=n),
-    "bootstrap": lambda n: hysteron.fit(RECORDING, levels=2, bootstrap=n),
-    "sign": lambda n: hysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=n),
-    "trial": lambda n: hysteron.Adaptive(MODEL, trial=n),
-    "seeds": lambda n: hysteron.track("sine", seeds=n),
-    "begin": lambda n: hysteron.control.Pid.from_step([0.0, 1.0], n, 1.0, 0.1),
+    "levels": lambda n: pyhysteron.fit(RECORDING, levels=n),
+    "load_degree": lambda n: pyhysteron.fit(RECORDING, levels=2, load_degree=n),
+    "bootstrap": lambda n: pyhysteron.fit(RECORDING, levels=2, bootstrap=n),
+    "sign": lambda n: pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=n),
+    "trial": lambda n: pyhysteron.Adaptive(MODEL, trial=n),
+    "seeds": lambda n: pyhysteron.track("sine", seeds=n),
+    "begin": lambda n: pyhysteron.control.Pid.from_step([0.0, 1.0], n, 1.0, 0.1),
     "fmi": lambda n: MODEL.export_fmu("never.fmu", fmi=n),
     **{
         f"levels of {of}": call
         for of, call in {
-            "a design": lambda n: hysteron.design((0, 1), n, heating_rate=1, cooling_rate=1),
-            "an excitation": lambda n: hysteron.excitation([0.0, 1.0], (0, 1), n),
+            "a design": lambda n: pyhysteron.design((0, 1), n, heating_rate=1, cooling_rate=1),
+            "an excitation": lambda n: pyhysteron.excitation([0.0, 1.0], (0, 1), n),
             "a summary": lambda n: RECORDING.summary(levels=n),
         }.items()
     },
@@ -168,19 +168,19 @@ def test_a_number_that_is_no_count_is_refused_by_name(name):
 @pytest.mark.parametrize(
     "call, error, text",
     [
-        (lambda: hysteron.SpringPlant().advance(np.nan), ValueError, "`dt_s` is NaN"),
-        (lambda: hysteron.SpringPlant().advance(-1), ValueError, "`dt_s` is -1"),
-        (lambda: hysteron.PreisachPlant().write(np.nan), hysteron.CoreError, "`drive` is NaN"),
-        (lambda: hysteron.SpringPlant(fatigue=[]), TypeError, "`fatigue` is []: a dictionary"),
-        (lambda: hysteron.PreisachPlant(output_sensor=(1, 2)), TypeError, "`output_sensor` is (1, 2)"),
-        (lambda: hysteron.control.Pid(1.0).step(np.nan, 0.1), hysteron.CoreError, "`error` is NaN"),
-        (lambda: hysteron.control.Pid(1.0).hold(bias=np.inf), hysteron.CoreError, "`bias` is inf"),
+        (lambda: pyhysteron.SpringPlant().advance(np.nan), ValueError, "`dt_s` is NaN"),
+        (lambda: pyhysteron.SpringPlant().advance(-1), ValueError, "`dt_s` is -1"),
+        (lambda: pyhysteron.PreisachPlant().write(np.nan), pyhysteron.CoreError, "`drive` is NaN"),
+        (lambda: pyhysteron.SpringPlant(fatigue=[]), TypeError, "`fatigue` is []: a dictionary"),
+        (lambda: pyhysteron.PreisachPlant(output_sensor=(1, 2)), TypeError, "`output_sensor` is (1, 2)"),
+        (lambda: pyhysteron.control.Pid(1.0).step(np.nan, 0.1), pyhysteron.CoreError, "`error` is NaN"),
+        (lambda: pyhysteron.control.Pid(1.0).hold(bias=np.inf), pyhysteron.CoreError, "`bias` is inf"),
         (lambda: MODEL.restore(np.ones(3)), TypeError, "`saved`: a dictionary"),
         (lambda: MODEL.restore({}), TypeError, "`saved`: a dictionary"),
-        (lambda: hysteron.fit(RECORDING, progress=3), TypeError, "`progress` is 3"),
-        (lambda: hysteron.Recording.from_frame([1, 2], input="a", output="b"), TypeError, "`frame` of"),
-        (lambda: hysteron.Recording.from_frame({"a": [1]}, input="a", output="b"), KeyError, "b"),
-        (lambda: MODEL.excitation([[0.0, 1.0], [0.0, np.nan]]), hysteron.CoreError, "`input[1][1]` is NaN"),
+        (lambda: pyhysteron.fit(RECORDING, progress=3), TypeError, "`progress` is 3"),
+        (lambda: pyhysteron.Recording.from_frame([1, 2], input="a", output="b"), TypeError, "`frame` of"),
+        (lambda: pyhysteron.Recording.from_frame({"a": [1]}, input="a", output="b"), KeyError, "b"),
+        (lambda: MODEL.excitation([[0.0, 1.0], [0.0, np.nan]]), pyhysteron.CoreError, "`input[1][1]` is NaN"),
     ],
 )
 def test_what_is_refused(call, error, text):
@@ -192,11 +192,11 @@ def test_what_is_refused(call, error, text):
 def test_a_missing_file_is_what_python_knows_as_one(tmp_path):
     path = tmp_path / "nowhere.json"
     with pytest.raises(FileNotFoundError) as raised:
-        hysteron.Model.load(path)
-    assert isinstance(raised.value, hysteron.FileError) and raised.value.code == 20
+        pyhysteron.Model.load(path)
+    assert isinstance(raised.value, pyhysteron.FileError) and raised.value.code == 20
     assert (raised.value.errno, raised.value.filename) == (errno.ENOENT, str(path))
-    with pytest.raises(hysteron.FileError) as raised:
-        hysteron.Model.load(tmp_path)
+    with pytest.raises(pyhysteron.FileError) as raised:
+        pyhysteron.Model.load(tmp_path)
     assert raised.value.errno == errno.EISDIR
 
 
@@ -206,10 +206,10 @@ def test_results_pickle():
     same = pickle.loads(pickle.dumps(state))
     assert same.save()["input"] == 0.6 and np.array_equal(same.turning_points, state.turning_points)
     assert pickle.loads(pickle.dumps(MODEL.inverse())).model == MODEL
-    learning = hysteron.Adaptive(MODEL).step(0.5, 3.0)
+    learning = pyhysteron.Adaptive(MODEL).step(0.5, 3.0)
     assert repr(pickle.loads(pickle.dumps(learning))) == repr(learning)
     input = np.linspace(0, 1, 50)
-    adapted = hysteron.adapt(MODEL, input, MODEL.simulate(input))
+    adapted = pyhysteron.adapt(MODEL, input, MODEL.simulate(input))
     again = pickle.loads(pickle.dumps(adapted))
     assert again.model == adapted.model and repr(again) == repr(adapted)
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 control = pytest.importorskip("control")
-from hysteron import blocks  # noqa: E402
+from pyhysteron import blocks  # noqa: E402
 
 DT = 0.1
 TIME = DT * np.arange(200)
@@ -15,7 +15,7 @@ TIME = DT * np.arange(200)
 @pytest.fixture(params=[1, -1])
 def model(request):
     weights = np.random.default_rng(5).uniform(0.1, 1.0, 36)
-    return hysteron.Model(weights, (20, 80), offset=2.0, sign=request.param)
+    return pyhysteron.Model(weights, (20, 80), offset=2.0, sign=request.param)
 
 
 def reference(model):
@@ -32,7 +32,7 @@ def test_model_is_simulate(model):
 @pytest.mark.parametrize("policy", ["hold", "anticipate"])
 def test_inverse_and_model_return_the_reference(model, policy):
     wanted = reference(model)
-    headings = hysteron.control.headings(wanted)
+    headings = pyhysteron.control.headings(wanted)
     signals = [wanted]
     if policy == "anticipate":
         signals.append([{None: 0, "rising": 1, "falling": -1}[h] for h in headings])
@@ -49,7 +49,7 @@ def test_inverse_and_model_return_the_reference(model, policy):
 
 @pytest.mark.parametrize("dt", [0, None, -0.1, np.nan, np.inf, False, "0.1"])
 def test_a_time_between_samples_that_cannot_be(model, dt):
-    for make in (blocks.model_block, blocks.inverse_block, lambda model, dt: blocks.adaptive_block(hysteron.Adaptive(model), dt)):
+    for make in (blocks.model_block, blocks.inverse_block, lambda model, dt: blocks.adaptive_block(pyhysteron.Adaptive(model), dt)):
         with pytest.raises(ValueError, match=f"`dt` is {dt!r}"):
             make(model, dt)
     assert blocks.model_block(model, True).dt is True
@@ -57,7 +57,7 @@ def test_a_time_between_samples_that_cannot_be(model, dt):
 
 @pytest.mark.parametrize("make", [blocks.model_block, blocks.inverse_block, blocks.adaptive_block, lambda m, dt: blocks.memory(m)])
 def test_what_is_no_model_is_refused(make):
-    with pytest.raises(TypeError, match=r"`(model|adaptive)` is 3: a hysteron\.(Model|Adaptive) is needed"):
+    with pytest.raises(TypeError, match=r"`(model|adaptive)` is 3: a pyhysteron\.(Model|Adaptive) is needed"):
         make(3, DT)
 
 
@@ -80,7 +80,7 @@ def test_memory_begins_where_a_state_is(model):
 
 
 def test_the_memory_has_room_for_every_turning_point():
-    model = hysteron.Model(np.full(6, 1.0), (20, 80))
+    model = pyhysteron.Model(np.full(6, 1.0), (20, 80))
     state, x, block = model.start(), blocks.memory(model), blocks.model_block(model, DT)
     # Loops that shrink within the cells: as many corners as can be.
     for n in range(400):
@@ -115,8 +115,8 @@ def test_a_closed_loop_with_a_pid(model):
 
 
 def test_an_adaptive_loop(model):
-    truth = hysteron.Model(1.4 * model.weights, model.range, offset=2.0, sign=model.sign)
-    offline = hysteron.Adaptive(model, method="gradient", gain=0.5)
+    truth = pyhysteron.Model(1.4 * model.weights, model.range, offset=2.0, sign=model.sign)
+    offline = pyhysteron.Adaptive(model, method="gradient", gain=0.5)
     wanted = reference(model)
     block = blocks.adaptive_block(offline, DT)
     plant = blocks.model_block(truth, DT, inputs=["command"], outputs=["output"])
@@ -140,22 +140,22 @@ def test_an_adaptive_loop(model):
 def test_what_is_refused(model):
     with pytest.raises(ValueError, match="`policy` is 'guess': one of 'hold', 'anticipate'"):
         blocks.inverse_block(model, DT, "guess")
-    negative = hysteron.Model([1.0, -1.0, 1.0], (0, 1))
-    with pytest.raises(hysteron.CoreError):
+    negative = pyhysteron.Model([1.0, -1.0, 1.0], (0, 1))
+    with pytest.raises(pyhysteron.CoreError):
         blocks.inverse_block(negative, DT)
     with pytest.raises(ValueError, match="not remembered"):
-        blocks.adaptive_block(hysteron.Adaptive(model), DT).output(0, [999], [3.0, 3.0, 30.0])
-    with pytest.raises(hysteron.CoreError, match="`input` is NaN"):
+        blocks.adaptive_block(pyhysteron.Adaptive(model), DT).output(0, [999], [3.0, 3.0, 30.0])
+    with pytest.raises(pyhysteron.CoreError, match="`input` is NaN"):
         blocks.model_block(model, DT).output(0, blocks.memory(model), [np.nan])
 
 
 @pytest.mark.parametrize("count", [3.7, 1e9, -3, np.nan])
 def test_a_memory_that_cannot_be_is_refused(count):
-    model = hysteron.Model(np.ones(36), (20, 80))
+    model = pyhysteron.Model(np.ones(36), (20, 80))
     block = blocks.model_block(model, 0.1)
     vector = blocks.memory(model)
     vector[0] = count
     with pytest.raises(ValueError, match=r"memory\[0\]"):
         control.input_output_response(block, np.array([0, 0.1]), [30.0, 40.0], vector)
-    with pytest.raises(hysteron.CoreError, match="another model"):
-        blocks.memory(model, hysteron.Model(np.ones(210), (0, 1)).start(on=True))
+    with pytest.raises(pyhysteron.CoreError, match="another model"):
+        blocks.memory(model, pyhysteron.Model(np.ones(210), (0, 1)).start(on=True))

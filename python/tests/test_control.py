@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from common import together
 
-import hysteron
-from hysteron.control import Controller, Pid, RelayTest
+import pyhysteron
+from pyhysteron.control import Controller, Pid, RelayTest
 
 INTERVAL = 0.01
 REFERENCE = 36 - 20 * np.cos(0.02 * np.arange(1500)) * np.cos(0.0031 * np.arange(1500))
@@ -30,18 +30,18 @@ class Stage:
 @pytest.fixture(scope="module")
 def identified():
     """A model of the simulated actuator, as good as a least-squares fit on a coarse plane makes it."""
-    plant, volts, output = hysteron.PreisachPlant(), [], []
+    plant, volts, output = pyhysteron.PreisachPlant(), [], []
     for n in range(4000):
         plant.write(75 - (75 - 0.015 * n) * np.cos(0.05 * n))
         plant.advance(INTERVAL)
         volts.append(plant.truth()[1])
         output.append(plant.truth()[0])
-    start = hysteron.Model(np.full(55, 2.0), (8, 150), offset=float(output[0]))
-    return hysteron.adapt(start, volts, output, method="least-squares", forgetting=1.0).model
+    start = pyhysteron.Model(np.full(55, 2.0), (8, 150), offset=float(output[0]))
+    return pyhysteron.adapt(start, volts, output, method="least-squares", forgetting=1.0).model
 
 
 def controller(model=None, **options):
-    plant = hysteron.PreisachPlant()
+    plant = pyhysteron.PreisachPlant()
     options = {"pid": Pid(0.2, integral_s=0.05), "filter_s": 0.01, "tolerance": 0.5, **options}
     return Controller(INTERVAL, plant.drives, model=model, **options)
 
@@ -57,18 +57,18 @@ def test_all_schemes_track(identified):
         "inverse": controller(identified, pid=None),
         "inverse-pid": controller(identified),
         "anticipate": controller(identified, rest="anticipate"),
-        "adaptive": controller(hysteron.Adaptive(identified, method="least-squares")),
+        "adaptive": controller(pyhysteron.Adaptive(identified, method="least-squares")),
     }
-    errors = {name: error(scheme.run(hysteron.PreisachPlant(), REFERENCE)) for name, scheme in schemes.items()}
+    errors = {name: error(scheme.run(pyhysteron.PreisachPlant(), REFERENCE)) for name, scheme in schemes.items()}
     assert errors["adaptive"] < errors["inverse-pid"] < errors["inverse"] < errors["pid"] < 10.0
     assert schemes["adaptive"].adaptive.model() != identified
     assert schemes["inverse-pid"].adaptive is None
 
 
 def test_run_is_the_loop_written_out(identified):
-    trace = controller(identified, rest="anticipate").run(hysteron.PreisachPlant(), REFERENCE)
-    plant, own = hysteron.PreisachPlant(), controller(identified, rest="anticipate")
-    headings = hysteron.control.headings(REFERENCE, 0.5)
+    trace = controller(identified, rest="anticipate").run(pyhysteron.PreisachPlant(), REFERENCE)
+    plant, own = pyhysteron.PreisachPlant(), controller(identified, rest="anticipate")
+    headings = pyhysteron.control.headings(REFERENCE, 0.5)
     for n, (target, heading) in enumerate(zip(REFERENCE, headings, strict=True)):
         assert plant.truth()[0] == trace.output[n]
         action = own.step(target, *plant.read(), heading=heading)
@@ -92,10 +92,10 @@ def test_a_device_of_ones_own_is_tracked():
 def test_a_device_that_is_a_wrapped_plant_gives_the_same_run(identified):
     class Wrapped:
         def __init__(self):
-            self.plant = hysteron.PreisachPlant()
+            self.plant = pyhysteron.PreisachPlant()
             self.read, self.write, self.advance = self.plant.read, self.plant.write, self.plant.advance
 
-    whole = controller(identified).run(hysteron.PreisachPlant(), REFERENCE)
+    whole = controller(identified).run(pyhysteron.PreisachPlant(), REFERENCE)
     wrapped = controller(identified).run(Wrapped(), REFERENCE)
     assert np.array_equal(whole.drive, wrapped.drive)
     assert np.array_equal(whole.measured, wrapped.measured)
@@ -140,28 +140,28 @@ def test_readings_that_are_refused():
 
 
 def test_events_reach_the_plant():
-    calm = controller().run(hysteron.PreisachPlant(), np.full(400, 40.0))
+    calm = controller().run(pyhysteron.PreisachPlant(), np.full(400, 40.0))
     events = [{"at_s": 2.0, "load_n": 10.0}, {"at_s": 1.0, "lost": True}, {"at_s": 1.5, "lost": False}]
-    moved = controller().run(hysteron.PreisachPlant(), np.full(400, 40.0), events=events)
+    moved = controller().run(pyhysteron.PreisachPlant(), np.full(400, 40.0), events=events)
     assert np.array_equal(calm.output[:100], moved.output[:100])
     assert np.isnan(moved.measured[100:150]).all() and moved.sensor_fault[100:150].all()
     assert not np.isnan(moved.measured[150:]).any()
     assert abs(moved.output[200] - moved.output[199]) > 5.0
     for events, error, text in [
-        ([{"at_s": 0, "room_degc": 30.0}], hysteron.RigError, "no room"),
-        ([{"at_s": 0, "load_n": 99.0}], hysteron.RigError, "load"),
+        ([{"at_s": 0, "room_degc": 30.0}], pyhysteron.RigError, "no room"),
+        ([{"at_s": 0, "load_n": 99.0}], pyhysteron.RigError, "load"),
         ([{"at_s": -1.0, "load_n": 9.0}], ValueError, "'at_s' is -1"),
         ([{"load_n": 9.0}], ValueError, "at_s"),
         ([{"at_s": 0, "weight": 9.0}], TypeError, "unknown field `weight`"),
     ]:
         with pytest.raises(error, match=text):
-            controller().run(hysteron.PreisachPlant(), [1.0], events=events)
+            controller().run(pyhysteron.PreisachPlant(), [1.0], events=events)
 
 
 def test_snapshots_of_what_was_learned(identified):
-    adaptive = hysteron.Adaptive(identified)
+    adaptive = pyhysteron.Adaptive(identified)
     loop = controller(adaptive)
-    trace = loop.run(hysteron.PreisachPlant(), REFERENCE)
+    trace = loop.run(pyhysteron.PreisachPlant(), REFERENCE)
     assert trace.adapted.any() and len(trace.snapshots) > 10
     last = trace.snapshots[-1]
     assert np.array_equal(last["weights"], loop.adaptive.weights, equal_nan=True)
@@ -171,7 +171,7 @@ def test_snapshots_of_what_was_learned(identified):
 
 def test_a_trace_becomes_a_frame_and_a_file(tmp_path):
     pandas = pytest.importorskip("pandas")
-    trace = controller().run(hysteron.PreisachPlant(), REFERENCE[:50])
+    trace = controller().run(pyhysteron.PreisachPlant(), REFERENCE[:50])
     frame = pandas.DataFrame(trace.to_dict())
     trace.to_csv(tmp_path / "run.csv")
     read = pandas.read_csv(tmp_path / "run.csv")
@@ -180,7 +180,7 @@ def test_a_trace_becomes_a_frame_and_a_file(tmp_path):
 
 
 def test_the_spring_with_a_loop_around_its_temperature():
-    plant = hysteron.SpringPlant()
+    plant = pyhysteron.SpringPlant()
     inner = Pid(0.1, integral_s=8.0)
     loop = Controller(0.2, (24, 92), drives=plant.drives, inner=inner, square_root=True, filter_s=0.6)
     for _ in range(600):
@@ -192,49 +192,49 @@ def test_the_spring_with_a_loop_around_its_temperature():
 
 
 def test_plants_are_labelled_and_repeat_themselves():
-    for plant in [hysteron.SpringPlant, hysteron.PreisachPlant]:
+    for plant in [pyhysteron.SpringPlant, pyhysteron.PreisachPlant]:
         assert plant().simulated is True and "simulated" in repr(plant())
-        assert isinstance(plant(), hysteron.SimulatedPlant)
+        assert isinstance(plant(), pyhysteron.SimulatedPlant)
         first, second, third = plant(seed=4), plant(seed=4), plant(seed=5)
         assert first.read() == second.read() != third.read()
         with pytest.raises(TypeError, match="cannot pickle"):
             pickle.dumps(first)
-    assert hysteron.PreisachPlant().read()[1] is None
-    assert hysteron.PreisachPlant(measure_input=True).read()[1] is not None
+    assert pyhysteron.PreisachPlant().read()[1] is None
+    assert pyhysteron.PreisachPlant(measure_input=True).read()[1] is not None
     with pytest.raises(TypeError):
-        hysteron.SimulatedPlant()
+        pyhysteron.SimulatedPlant()
 
 
 @pytest.mark.parametrize(
     ("make", "error", "text"),
     [
-        (lambda: hysteron.SpringPlant(load_n=12.0), hysteron.RigError, "load (N) is 12, but must lie between 0 and 11"),
-        (lambda: hysteron.SpringPlant(load=6.0), TypeError, "unknown field `load`"),
-        (lambda: hysteron.SpringPlant(load_n="six"), ValueError, "SpringPlant: invalid type"),
-        (lambda: hysteron.SpringPlant(load_n=np.nan), ValueError, "SpringPlant: every number must be finite"),
-        (lambda: hysteron.SpringPlant(load_n=object()), TypeError, "SpringPlant"),
-        (lambda: hysteron.SpringPlant(lvdt={"dropout": 2}), hysteron.RigError, "dropout"),
-        (lambda: hysteron.PreisachPlant(seed=-1), ValueError, "PreisachPlant: invalid value"),
-        (lambda: hysteron.PreisachPlant(levels=3), hysteron.RigError, "levels of the cloud"),
-        (lambda: hysteron.PreisachPlant().disturb(room_degc=3), hysteron.RigError, "no room"),
-        (lambda: hysteron.SpringPlant().disturb(weight=3), TypeError, "unknown field `weight`"),
-        (lambda: Pid(np.nan), hysteron.ControlError, "a finite gain"),
-        (lambda: Pid(1.0, integral_s=-1), hysteron.ControlError, "times from zero"),
+        (lambda: pyhysteron.SpringPlant(load_n=12.0), pyhysteron.RigError, "load (N) is 12, but must lie between 0 and 11"),
+        (lambda: pyhysteron.SpringPlant(load=6.0), TypeError, "unknown field `load`"),
+        (lambda: pyhysteron.SpringPlant(load_n="six"), ValueError, "SpringPlant: invalid type"),
+        (lambda: pyhysteron.SpringPlant(load_n=np.nan), ValueError, "SpringPlant: every number must be finite"),
+        (lambda: pyhysteron.SpringPlant(load_n=object()), TypeError, "SpringPlant"),
+        (lambda: pyhysteron.SpringPlant(lvdt={"dropout": 2}), pyhysteron.RigError, "dropout"),
+        (lambda: pyhysteron.PreisachPlant(seed=-1), ValueError, "PreisachPlant: invalid value"),
+        (lambda: pyhysteron.PreisachPlant(levels=3), pyhysteron.RigError, "levels of the cloud"),
+        (lambda: pyhysteron.PreisachPlant().disturb(room_degc=3), pyhysteron.RigError, "no room"),
+        (lambda: pyhysteron.SpringPlant().disturb(weight=3), TypeError, "unknown field `weight`"),
+        (lambda: Pid(np.nan), pyhysteron.ControlError, "a finite gain"),
+        (lambda: Pid(1.0, integral_s=-1), pyhysteron.ControlError, "times from zero"),
         (lambda: Pid(1.0).step(1.0, 0.0), ValueError, "`dt` is 0"),
         (lambda: Pid(1.0).step(1.0, 0.1, limits=(1, 0)), ValueError, "`limits` are 1 and 0"),
-        (lambda: Controller(0.0, (0, 1)), hysteron.ControlError, "`interval_s`"),
-        (lambda: Controller(0.1, (1, 0)), hysteron.ControlError, "`commands`"),
-        (lambda: Controller(0.1, (0, 1), drives=(0, np.inf)), hysteron.ControlError, "`drives`"),
-        (lambda: Controller(0.1, (0, 1), stuck_s=0), hysteron.ControlError, "`stuck_s`"),
+        (lambda: Controller(0.0, (0, 1)), pyhysteron.ControlError, "`interval_s`"),
+        (lambda: Controller(0.1, (1, 0)), pyhysteron.ControlError, "`commands`"),
+        (lambda: Controller(0.1, (0, 1), drives=(0, np.inf)), pyhysteron.ControlError, "`drives`"),
+        (lambda: Controller(0.1, (0, 1), stuck_s=0), pyhysteron.ControlError, "`stuck_s`"),
         (lambda: Controller(0.1, (0, 1), rest="sleep"), ValueError, "`rest` is 'sleep'"),
         (lambda: Controller(0.1, (0, 1), model=3), TypeError, "`model` is 3: a Model or an Adaptive"),
-        (lambda: Controller(0.1, (0, 1), model=hysteron.Model([1, -1, 1], (0, 1))), hysteron.CoreError, ""),
-        (lambda: controller().step(np.nan, 0.0), hysteron.CoreError, "`target`"),
+        (lambda: Controller(0.1, (0, 1), model=pyhysteron.Model([1, -1, 1], (0, 1))), pyhysteron.CoreError, ""),
+        (lambda: controller().step(np.nan, 0.0), pyhysteron.CoreError, "`target`"),
         (lambda: controller().step(1.0, 0.0, heading="up"), ValueError, "`heading` is 'up'"),
-        (lambda: controller().step_command(np.inf, 0.0), hysteron.CoreError, "`command`"),
-        (lambda: controller().run(Stage(), [1.0, np.nan]), hysteron.CoreError, "`reference[1]`"),
-        (lambda: RelayTest((1, 0), 0.5), hysteron.ControlError, "`commands`"),
-        (lambda: RelayTest((0, 1), 0.5, band=-1), hysteron.ControlError, "`band`"),
+        (lambda: controller().step_command(np.inf, 0.0), pyhysteron.CoreError, "`command`"),
+        (lambda: controller().run(Stage(), [1.0, np.nan]), pyhysteron.CoreError, "`reference[1]`"),
+        (lambda: RelayTest((1, 0), 0.5), pyhysteron.ControlError, "`commands`"),
+        (lambda: RelayTest((0, 1), 0.5, band=-1), pyhysteron.ControlError, "`band`"),
         (lambda: RelayTest((0, 1), 0.5).gains(0.1), ValueError, "not done"),
         (lambda: Pid.from_step(np.zeros(100), 50, 1.0, 0.1), ValueError, "does not answer"),
     ],
@@ -257,7 +257,7 @@ def test_pid_by_hand():
 
 
 def test_a_relay_test_tunes_a_loop_that_tracks():
-    plant, test = hysteron.PreisachPlant(), RelayTest((40, 110), 36.0, band=0.5)
+    plant, test = pyhysteron.PreisachPlant(), RelayTest((40, 110), 36.0, band=0.5)
     assert test.outputs is None and test.oscillation(INTERVAL) is None
     for _ in range(10_000):
         if test.done:
@@ -269,11 +269,11 @@ def test_a_relay_test_tunes_a_loop_that_tracks():
     pid = test.gains(INTERVAL)
     assert pid.gain == pytest.approx(gain / 3.2) and pid.integral_s == pytest.approx(2.2 * period)
     loop = Controller(INTERVAL, (0, 150), pid=pid, filter_s=0.01)
-    assert error(loop.run(hysteron.PreisachPlant(), REFERENCE)) < 2.0
+    assert error(loop.run(pyhysteron.PreisachPlant(), REFERENCE)) < 2.0
 
 
 def test_threads_may_share_a_controller_and_a_plant(identified):
-    loop, plant = controller(identified), hysteron.PreisachPlant(levels=60)
+    loop, plant = controller(identified), pyhysteron.PreisachPlant(levels=60)
 
     def work(_):
         for n in range(5):

@@ -12,8 +12,8 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 import pytest
 
-import hysteron
-from hysteron.control import Controller, Pid
+import pyhysteron
+from pyhysteron.control import Controller, Pid
 
 SECONDS = 60  # the slowest of it takes a few
 
@@ -34,17 +34,17 @@ def ends(work, name):
 
 
 def fitted():
-    return hysteron.fit(INPUT, 0.5 * INPUT, levels=LEVELS, bootstrap=5)
+    return pyhysteron.fit(INPUT, 0.5 * INPUT, levels=LEVELS, bootstrap=5)
 
 
 FORKED = {
     "fit": fitted,
-    "the choice of levels": lambda: hysteron.fit(INPUT, 0.5 * INPUT, levels="auto", bootstrap=0),
-    "excitation": lambda: hysteron.excitation(INPUT, (20, 80), LEVELS),
+    "the choice of levels": lambda: pyhysteron.fit(INPUT, 0.5 * INPUT, levels="auto", bootstrap=0),
+    "excitation": lambda: pyhysteron.excitation(INPUT, (20, 80), LEVELS),
     "Model.excitation": lambda: fitted().excitation(INPUT),
     "Model.evaluate": lambda: fitted().evaluate(INPUT, 0.5 * INPUT, start="unknown"),
     "Model.band": lambda: fitted().band(INPUT),
-    "design": lambda: hysteron.design((20, 80), LEVELS, heating_rate=1, cooling_rate=1),
+    "design": lambda: pyhysteron.design((20, 80), LEVELS, heating_rate=1, cooling_rate=1),
 }
 
 
@@ -67,12 +67,12 @@ def test_in_a_forked_process(name):
     ends(fork, name)
 
 
-MODEL = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+MODEL = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
 INVERSE, STATE = MODEL.inverse(), MODEL.start()
-STRANGE = hysteron.Model(np.ones(6), (0, 1)).start()  # of another model
-ADAPTIVE, PID = hysteron.Adaptive(MODEL), Pid(1.0, integral_s=1.0)
+STRANGE = pyhysteron.Model(np.ones(6), (0, 1)).start()  # of another model
+ADAPTIVE, PID = pyhysteron.Adaptive(MODEL), Pid(1.0, integral_s=1.0)
 CONTROLLER = Controller(0.1, (0, 1), model=MODEL, pid=PID)
-PLANT = hysteron.PreisachPlant(levels=60)
+PLANT = pyhysteron.PreisachPlant(levels=60)
 #: For each a call that returns, and one that fails: inside, where there is an error that is found there.
 COLLECTED = {
     "State.step": (lambda: STATE.step(0.5), lambda: STATE.step(np.nan)),
@@ -102,11 +102,11 @@ def collect(name):
     returns, fails = COLLECTED[name]
     looked = []
     gc.callbacks.append(lambda *_: looked.append(look()))
-    hysteron.HysteronError.__init__ = made
+    pyhysteron.HysteronError.__init__ = made
     gc.set_threshold(1)
     returns()
     looked.clear()
-    with pytest.raises(hysteron.HysteronError):
+    with pytest.raises(pyhysteron.HysteronError):
         fails()
     assert looked
 

@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 RATES = {"heating_rate": 2.0, "cooling_rate": 0.5}
 
 
 def test_the_profile_determines_every_operator(tmp_path):
-    profile = hysteron.design((20, 80), 10, **RATES)
+    profile = pyhysteron.design((20, 80), 10, **RATES)
     assert np.nanmin(profile.excitation) == 3
     assert profile.corners == 55
     assert profile.recorded is None
@@ -19,21 +19,21 @@ def test_the_profile_determines_every_operator(tmp_path):
     profile.to_csv(tmp_path / "profile.csv")
     read = np.loadtxt(tmp_path / "profile.csv", delimiter=",", skiprows=1)
     np.testing.assert_array_equal(read[:, 1], profile.input)
-    np.testing.assert_array_equal(hysteron.excitation(profile.input, (20, 80), 10), profile.excitation)
+    np.testing.assert_array_equal(pyhysteron.excitation(profile.input, (20, 80), 10), profile.excitation)
 
 
 def test_budget_recordings_step_and_operator():
-    full = hysteron.design((20, 80), 10, **RATES)
-    short = hysteron.design((20, 80), 10, budget=full.duration / 2, **RATES)
+    full = pyhysteron.design((20, 80), 10, **RATES)
+    short = pyhysteron.design((20, 80), 10, budget=full.duration / 2, **RATES)
     assert short.duration <= full.duration / 2 and short.corners < 55
     assert short.full_duration == full.duration
-    rest = hysteron.design((20, 80), 10, recorded=[short.input], **RATES)
+    rest = pyhysteron.design((20, 80), 10, recorded=[short.input], **RATES)
     assert np.nanmin(rest.excitation) == 3 and np.nanmin(rest.recorded) < 3
     assert rest.duration < full.duration
-    assert np.diff(hysteron.design((20, 80), 10, step=0.1, **RATES).time).max() <= 0.1 + 1e-9
-    relays = hysteron.design((20, 80), 10, operator="relay", **RATES)
+    assert np.diff(pyhysteron.design((20, 80), 10, step=0.1, **RATES).time).max() <= 0.1 + 1e-9
+    relays = pyhysteron.design((20, 80), 10, operator="relay", **RATES)
     assert np.nanmin(relays.excitation) == 3 and relays.input[0] > full.input[0]
-    nothing = hysteron.design((20, 80), 10, recorded=full.input, **RATES)
+    nothing = pyhysteron.design((20, 80), 10, recorded=full.input, **RATES)
     assert len(nothing) == 0 and nothing.duration == 0
 
 
@@ -52,4 +52,4 @@ def test_budget_recordings_step_and_operator():
 )
 def test_bad_options_are_named(options, said):
     with pytest.raises(ValueError, match=said):
-        hysteron.design(**{"range": (20, 80), "levels": 10, **RATES, **options})
+        pyhysteron.design(**{"range": (20, 80), "levels": 10, **RATES, **options})

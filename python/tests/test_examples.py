@@ -10,23 +10,23 @@ import re
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
-MODULES = [hysteron, hysteron.control]
+MODULES = [hysteron, pyhysteron.control]
 for name, needed in {"blocks": "control", "plot": "matplotlib", "sklearn": "sklearn"}.items():
     if importlib.util.find_spec(needed):
-        MODULES.append(importlib.import_module(f"hysteron.{name}"))
+        MODULES.append(importlib.import_module(f"pyhysteron.{name}"))
 
 #: What nobody makes, and whose example shows it: the call that gives it.
 SHOWN_BY = {
-    "hysteron.Adapted": "hysteron.adapt",
-    "hysteron.Comparison": "hysteron.track",
-    "hysteron.Comparison.to_csv": "hysteron.track",
-    "hysteron.Design": "hysteron.design",
-    "hysteron.Learning": "hysteron.Adaptive.step",
-    "hysteron.SimulatedPlant": "hysteron.SpringPlant",
-    "hysteron.control.Action": "hysteron.control.Controller.step",
-    "hysteron.control.Trace": "hysteron.control.Controller.run",
+    "pyhysteron.Adapted": "pyhysteron.adapt",
+    "pyhysteron.Comparison": "pyhysteron.track",
+    "pyhysteron.Comparison.to_csv": "pyhysteron.track",
+    "pyhysteron.Design": "pyhysteron.design",
+    "pyhysteron.Learning": "pyhysteron.Adaptive.step",
+    "pyhysteron.SimulatedPlant": "pyhysteron.SpringPlant",
+    "pyhysteron.control.Action": "pyhysteron.control.Controller.step",
+    "pyhysteron.control.Trace": "pyhysteron.control.Controller.run",
 }
 
 
@@ -68,7 +68,7 @@ def explained(name):
 
 def give_nothing():
     """Methods of which the stubs say that they return None."""
-    stubs = pathlib.Path(hysteron.__file__).with_name("_hysteron.pyi").read_text("utf-8")
+    stubs = pathlib.Path(pyhysteron.__file__).with_name("_hysteron.pyi").read_text("utf-8")
     for part in ast.parse(stubs).body:
         for method in part.body if isinstance(part, ast.ClassDef) else []:
             if isinstance(method, ast.FunctionDef) and ast.unparse(method.returns) == "None":
@@ -82,7 +82,7 @@ NOTHING = list(give_nothing())
 def test_docstring(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert text_of(name)
-    names = {"hysteron": hysteron, "np": np}
+    names = {"pyhysteron": pyhysteron, "np": np}
     example = doctest.DocTestParser().get_doctest(text_of(name), names, name, None, 0)
     assert doctest.DocTestRunner().run(example).failed == 0
 

@@ -5,9 +5,9 @@ import zipfile
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
-MODEL = hysteron.Model(np.full(15, 0.5), (20, 80), input="temperature [degC]", output="displacement [mm]")
+MODEL = pyhysteron.Model(np.full(15, 0.5), (20, 80), input="temperature [degC]", output="displacement [mm]")
 
 
 @pytest.mark.parametrize("real", ["float", "double"])
@@ -33,16 +33,16 @@ def test_fmu(tmp_path, fmi, inverse):
 
 
 def test_what_is_refused(tmp_path):
-    with pytest.raises(hysteron.ExportError, match="cannot be the model's name in C"):
+    with pytest.raises(pyhysteron.ExportError, match="cannot be the model's name in C"):
         MODEL.export_c(tmp_path, name="3d")
     with pytest.raises(ValueError, match="`real` is 'half': one of 'float', 'double'"):
         MODEL.export_c(tmp_path, real="half")
-    with pytest.raises(hysteron.ExportError, match="end with .fmu"):
+    with pytest.raises(pyhysteron.ExportError, match="end with .fmu"):
         MODEL.export_fmu(tmp_path / "wire.zip")
     with pytest.raises(ValueError, match="`fmi` is 1: 2 or 3"):
         MODEL.export_fmu(tmp_path / "wire.fmu", fmi=1)
-    with pytest.raises(hysteron.CoreError):
-        hysteron.Model([1.0, -1.0, 1.0], (0, 1)).export_fmu(tmp_path / "wire.fmu", inverse=True)
+    with pytest.raises(pyhysteron.CoreError):
+        pyhysteron.Model([1.0, -1.0, 1.0], (0, 1)).export_fmu(tmp_path / "wire.fmu", inverse=True)
     assert not list(tmp_path.glob("*.fmu"))
     with pytest.raises(OSError):
         MODEL.export_fmu(tmp_path / "nowhere" / "wire.fmu")

@@ -4,7 +4,7 @@ import time
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 
 def nrmse(model):
@@ -12,17 +12,17 @@ def nrmse(model):
 
 
 def test_recording_arrays_and_lists_are_the_same_experiment(recording):
-    one = hysteron.fit(recording, levels=8, bootstrap=0)
-    other = hysteron.fit(recording.input, recording.output, levels=8, bootstrap=0)
+    one = pyhysteron.fit(recording, levels=8, bootstrap=0)
+    other = pyhysteron.fit(recording.input, recording.output, levels=8, bootstrap=0)
     np.testing.assert_array_equal(one.weights, other.weights)
-    assert one == hysteron.fit([recording], levels=8, bootstrap=0)
+    assert one == pyhysteron.fit([recording], levels=8, bootstrap=0)
     assert one.input == "temperature [degC]" and other.input == "input"
-    several = hysteron.fit([recording, recording], levels=8, bootstrap=0)
+    several = pyhysteron.fit([recording, recording], levels=8, bootstrap=0)
     assert several.fit["samples"] == 2 * len(recording)
 
 
 def test_the_weights_are_those_behind_the_data(truth, swings):
-    model = hysteron.fit(swings, truth.simulate(swings), levels=12, range=(25, 80), bootstrap=0)
+    model = pyhysteron.fit(swings, truth.simulate(swings), levels=12, range=(25, 80), bootstrap=0)
     # Without noise all that is left is rounding.
     assert nrmse(model) < 1e-6
     assert abs(model.offset - 3) < 1e-6
@@ -46,7 +46,7 @@ def test_the_weights_are_those_behind_the_data(truth, swings):
     ],
 )
 def test_options_reach_the_fit(recording, options):
-    model = hysteron.fit(recording, **{"levels": 10, "bootstrap": 0, **options})
+    model = pyhysteron.fit(recording, **{"levels": 10, "bootstrap": 0, **options})
     told = model.fit
     for name in ("solver", "start"):
         assert told[name] == options.get(name, told[name])
@@ -59,7 +59,7 @@ def test_options_reach_the_fit(recording, options):
 
 
 def test_levels_are_20_and_replicates_200(recording):
-    model = hysteron.fit(recording)
+    model = pyhysteron.fit(recording)
     assert model.levels == 20
     assert model.confidence["replicates"] == 200
 
@@ -67,7 +67,7 @@ def test_levels_are_20_and_replicates_200(recording):
 def test_load(recording, swings):
     load = np.repeat([0.0, 1.0, 2.0], 1000)
     output = recording.output * (1 + 0.1 * load)
-    model = hysteron.fit(swings, output, load=load, levels=10, bootstrap=5)
+    model = pyhysteron.fit(swings, output, load=load, levels=10, bootstrap=5)
     assert model.load_range == (0, 2)
     modelled = model.simulate(swings, load=load)
     assert np.std(modelled - output) < 0.02 * np.ptp(output)
@@ -75,12 +75,12 @@ def test_load(recording, swings):
     assert (low < modelled).all() and (modelled < high).all()
     assert model.at_load(2).load_range is None
     for bad in ({}, {"load": load[:3]}, {"load": load + 5}, {"load": load * np.nan}):
-        with pytest.raises(hysteron.FitError, match="load"):
+        with pytest.raises(pyhysteron.FitError, match="load"):
             model.simulate(swings, **bad)
-    with pytest.raises(hysteron.FitError, match="load"):
+    with pytest.raises(pyhysteron.FitError, match="load"):
         model.at_load(1).simulate(swings, load=load)
-    with pytest.raises(hysteron.FitError, match="take `load_degree` 1 at most"):
-        hysteron.fit(swings, output, load=np.repeat([0.0, 1.0], 1500), load_degree=2, levels=5)
+    with pytest.raises(pyhysteron.FitError, match="take `load_degree` 1 at most"):
+        pyhysteron.fit(swings, output, load=np.repeat([0.0, 1.0], 1500), load_degree=2, levels=5)
 
 
 def test_thermal(truth):
@@ -91,18 +91,18 @@ def test_thermal(truth):
     for n in range(1, len(duty)):
         temperature[n] = duty[n - 1] + (temperature[n - 1] - duty[n - 1]) * np.exp(-0.1 / 2)
     output = truth.simulate(temperature)
-    model = hysteron.fit(duty, output, time=time, levels=8, thermal="first-order", bootstrap=0)
+    model = pyhysteron.fit(duty, output, time=time, levels=8, thermal="first-order", bootstrap=0)
     # Eight levels for a material of twelve.
     assert model.thermal["tau_heating"] == pytest.approx(2, rel=0.2)
     modelled = model.simulate(duty, time=time)
     assert np.std(modelled - output) < 0.03 * np.ptp(output)
     assert model.evaluate(duty, output, time=time)["inverse"] is None
-    with pytest.raises(hysteron.ThermalError, match="time"):
+    with pytest.raises(pyhysteron.ThermalError, match="time"):
         model.simulate(duty)
-    with pytest.raises(hysteron.ThermalError, match="times must not go back"):
+    with pytest.raises(pyhysteron.ThermalError, match="times must not go back"):
         model.simulate(duty, time=time[::-1])
-    with pytest.raises(hysteron.FitError, match="`levels` and `smooth`"):
-        hysteron.fit(duty, output, time=time, levels="auto", thermal="first-order")
+    with pytest.raises(pyhysteron.FitError, match="`levels` and `smooth`"):
+        pyhysteron.fit(duty, output, time=time, levels="auto", thermal="first-order")
 
 
 @pytest.mark.parametrize(
@@ -113,41 +113,41 @@ def test_thermal(truth):
         ({"levels": 10_000}, ValueError, "take fewer levels"),
         ({"range": (80, 20)}, ValueError, "range"),
         ({"range": (np.nan, 20)}, ValueError, "range"),
-        ({"range": (500, 600)}, hysteron.FitError, "moves no operator"),
+        ({"range": (500, 600)}, pyhysteron.FitError, "moves no operator"),
         ({"operator": "preisach"}, ValueError, "`operator` is 'preisach'.*'mkp', 'kp', 'relay'"),
         ({"solver": "lasso"}, ValueError, "`solver` is 'lasso'"),
-        ({"smooth": -1.0}, hysteron.FitError, "smoothness -1"),
-        ({"smooth": np.nan}, hysteron.FitError, "smoothness NaN"),
+        ({"smooth": -1.0}, pyhysteron.FitError, "smoothness -1"),
+        ({"smooth": np.nan}, pyhysteron.FitError, "smoothness NaN"),
         ({"start": "warm"}, ValueError, "`start` is 'warm'"),
         ({"sign": 2}, ValueError, "`sign` is 2"),
-        ({"offset": np.inf}, hysteron.FitError, "offset"),
-        ({"bootstrap": 20_000}, hysteron.FitError, "10000"),
+        ({"offset": np.inf}, pyhysteron.FitError, "offset"),
+        ({"bootstrap": 20_000}, pyhysteron.FitError, "10000"),
         ({"thermal": "second-order"}, ValueError, "`thermal` is 'second-order'"),
         ({"time": [0.0]}, TypeError, "own"),
     ],
 )
 def test_bad_options_are_named(recording, options, error, said):
     with pytest.raises(error, match=said):
-        hysteron.fit(recording, **options)
+        pyhysteron.fit(recording, **options)
 
 
 def test_doubts_are_warnings(recording):
-    with pytest.warns(hysteron.HysteronWarning, match="outside the active range.*widen `range`"):
-        hysteron.fit(recording, levels=5, range=(40, 60), bootstrap=0)
+    with pytest.warns(pyhysteron.HysteronWarning, match="outside the active range.*widen `range`"):
+        pyhysteron.fit(recording, levels=5, range=(40, 60), bootstrap=0)
 
 
 def test_progress_is_told(recording):
     told = []
-    hysteron.fit(recording, levels=20, bootstrap=1000, progress=lambda what, share: told.append((what, share)))
+    pyhysteron.fit(recording, levels=20, bootstrap=1000, progress=lambda what, share: told.append((what, share)))
     assert told and all(isinstance(what, str) for what, _ in told)
     assert all(share is None or 0 <= share <= 1 for _, share in told)
 
 
 def test_a_bar_from_tqdm(recording, capsys):
     pytest.importorskip("tqdm")
-    hysteron.fit(recording, levels=20, bootstrap=1000, progress=True)
+    pyhysteron.fit(recording, levels=20, bootstrap=1000, progress=True)
     assert "confidence" in capsys.readouterr().err
-    assert hysteron.fit(recording, levels=5, bootstrap=0, progress=False).levels == 5
+    assert pyhysteron.fit(recording, levels=5, bootstrap=0, progress=False).levels == 5
 
 
 def test_an_error_in_the_callback_ends_the_fit(recording):
@@ -156,7 +156,7 @@ def test_an_error_in_the_callback_ends_the_fit(recording):
 
     began = time.perf_counter()
     with pytest.raises(LookupError):
-        hysteron.fit(recording, levels=40, bootstrap=10_000, progress=fail)
+        pyhysteron.fit(recording, levels=40, bootstrap=10_000, progress=fail)
     assert time.perf_counter() - began < 10  # it would take minutes
 
 
@@ -170,33 +170,33 @@ def test_other_threads_go_on_during_a_fit(recording):
 
     thread = threading.Thread(target=count)
     thread.start()
-    hysteron.fit(recording, levels=20, bootstrap=2000)
+    pyhysteron.fit(recording, levels=20, bootstrap=2000)
     done.set()
     thread.join()
     assert len(counted) > 10
 
 
 def test_left_out(recording):
-    found = hysteron.left_out(recording, levels=10)
+    found = pyhysteron.left_out(recording, levels=10)
     assert found["predicted"].shape == found["fold"].shape == (len(recording),)
     assert set(found["fold"]) == set(range(5))
     error = found["predicted"] - recording.output
     rmse = 100 * np.sqrt(np.mean(error**2)) / np.ptp(recording.output)
     assert rmse == pytest.approx(found["nrmse_percent"])
     assert found["nrmse_percent"] > found["training_nrmse_percent"]
-    chosen = hysteron.left_out(recording, levels="auto", smooth=1e-6)["chosen"]
+    chosen = pyhysteron.left_out(recording, levels="auto", smooth=1e-6)["chosen"]
     assert len(chosen) == 5 and all(smooth == 1e-6 for _, smooth in chosen)
 
 
 def test_what_does_not_run_by_itself_has_no_state(recording, swings):
     load = np.repeat([1.0, 2.0, 3.0], 1000)
-    model = hysteron.fit(swings, load * recording.output, load=load, levels=5, bootstrap=0)
+    model = pyhysteron.fit(swings, load * recording.output, load=load, levels=5, bootstrap=0)
     for begin in (model.start, lambda: model.restore({"turning_points": [0.0], "input": 20.0})):
-        with pytest.raises(hysteron.FitError, match="take it at one load first, from 1 to 3"):
+        with pytest.raises(pyhysteron.FitError, match="take it at one load first, from 1 to 3"):
             begin()
     assert model.at_load(2.0).start().step(50.0) == model.at_load(2.0).simulate([50.0])[0]
     assert "under load" in repr(model)
     time = np.arange(len(swings)) * 0.1
-    body = hysteron.fit((swings / 100) ** 2, recording.output, time=time, levels=5, thermal="first-order", bootstrap=0)
-    with pytest.raises(hysteron.ThermalError, match="needs the time of each sample"):
+    body = pyhysteron.fit((swings / 100) ** 2, recording.output, time=time, levels=5, thermal="first-order", bootstrap=0)
+    with pytest.raises(pyhysteron.ThermalError, match="needs the time of each sample"):
         body.start()

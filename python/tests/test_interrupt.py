@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from common import SLOW_SCENARIO
 
-import hysteron
-from hysteron.control import Controller, Pid
+import pyhysteron
+from pyhysteron.control import Controller, Pid
 
 SECONDS = 10  # none of these would be done in that time, were it not ended
 
-MODEL = hysteron.Model(np.full(820, 0.01), (20, 80))
+MODEL = pyhysteron.Model(np.full(820, 0.01), (20, 80))
 SWINGS = np.tile(50 - 40 * np.cos(np.linspace(0, 60, 5000)), 400)
 
 
@@ -24,14 +24,14 @@ def loop():
 
 
 LONG = {
-    "fit": lambda recording: hysteron.fit(recording, levels=40, bootstrap=10_000),
-    "left_out": lambda recording: hysteron.left_out(recording, levels="auto", smooth="auto"),
-    "prepare": lambda recording: hysteron.prepare(SWINGS, SWINGS, time=1e-3 * np.arange(len(SWINGS)), lag="auto"),
-    "adapt": lambda recording: hysteron.adapt(MODEL, SWINGS, 1.1 * MODEL.simulate(SWINGS), method="least-squares"),
-    "Adaptive.run": lambda recording: hysteron.Adaptive(MODEL, method="least-squares").run(SWINGS, SWINGS),
-    "track": lambda recording: hysteron.track(SLOW_SCENARIO, seeds=1000),
-    "Controller.run": lambda recording: loop().run(hysteron.SpringPlant(), np.full(5_000_000, 10.0)),
-    "advance": lambda recording: hysteron.SpringPlant().advance(1e308),
+    "fit": lambda recording: pyhysteron.fit(recording, levels=40, bootstrap=10_000),
+    "left_out": lambda recording: pyhysteron.left_out(recording, levels="auto", smooth="auto"),
+    "prepare": lambda recording: pyhysteron.prepare(SWINGS, SWINGS, time=1e-3 * np.arange(len(SWINGS)), lag="auto"),
+    "adapt": lambda recording: pyhysteron.adapt(MODEL, SWINGS, 1.1 * MODEL.simulate(SWINGS), method="least-squares"),
+    "Adaptive.run": lambda recording: pyhysteron.Adaptive(MODEL, method="least-squares").run(SWINGS, SWINGS),
+    "track": lambda recording: pyhysteron.track(SLOW_SCENARIO, seeds=1000),
+    "Controller.run": lambda recording: loop().run(pyhysteron.SpringPlant(), np.full(5_000_000, 10.0)),
+    "advance": lambda recording: pyhysteron.SpringPlant().advance(1e308),
 }
 
 
@@ -42,7 +42,7 @@ def tasks():
 @pytest.mark.parametrize("name", LONG)
 @pytest.mark.parametrize("way", [lambda: signal.raise_signal(signal.SIGINT), _thread.interrupt_main], ids=["signal", "interrupt"])
 def test_ctrl_c_ends(name, way, recording):
-    hysteron.fit(recording, levels=5, bootstrap=10)  # so that the pool of threads is there
+    pyhysteron.fit(recording, levels=5, bootstrap=10)  # so that the pool of threads is there
     before = tasks()
     timer = threading.Timer(0.5, way)
     timer.start()

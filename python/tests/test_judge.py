@@ -5,7 +5,7 @@ import pickle
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 
 def test_confidence(model):
@@ -19,7 +19,7 @@ def test_confidence(model):
     assert 0 < found["rank"] <= found["unknowns"] == 78
     again = pickle.loads(pickle.dumps(model))
     np.testing.assert_array_equal(again.confidence["standard_error"], found["standard_error"])
-    assert hysteron.Model([1, 2, 4], (0, 1)).confidence is None
+    assert pyhysteron.Model([1, 2, 4], (0, 1)).confidence is None
 
 
 def test_band_holds_95_percent(model, recording):
@@ -27,8 +27,8 @@ def test_band_holds_95_percent(model, recording):
     inside = (low < recording.output) & (recording.output < high)
     assert 0.93 < inside.mean() <= 1
     np.testing.assert_allclose((low + high) / 2, model.simulate(recording.input), rtol=1e-12)
-    with pytest.raises(hysteron.FitError, match="fit it again with `bootstrap`"):
-        hysteron.Model([1, 2, 4], (0, 1)).band([0.5])
+    with pytest.raises(pyhysteron.FitError, match="fit it again with `bootstrap`"):
+        pyhysteron.Model([1, 2, 4], (0, 1)).band([0.5])
 
 
 def test_evaluate(model, recording):
@@ -47,7 +47,7 @@ def test_evaluate(model, recording):
 
 
 def test_evaluate_says_why_there_is_no_inverse(recording):
-    model = hysteron.Model([1.0, -2.0, 4.0], (30, 80))
+    model = pyhysteron.Model([1.0, -2.0, 4.0], (30, 80))
     found = model.evaluate(recording)
     assert found["inverse"] is None and "not negative" in found["inverse_refused"]
 
@@ -55,7 +55,7 @@ def test_evaluate_says_why_there_is_no_inverse(recording):
 def test_excitation(model, recording):
     one = model.excitation(recording)
     np.testing.assert_array_equal(one, model.excitation(recording.input))
-    np.testing.assert_array_equal(one, hysteron.excitation(recording, model.range, 12))
+    np.testing.assert_array_equal(one, pyhysteron.excitation(recording, model.range, 12))
     none = model.excitation(np.full(3, 10.0))
     assert np.nanmax(none) == 0
     both = model.excitation([recording, recording.input[:500]])
@@ -75,18 +75,18 @@ def test_what_is_remembered_leaves_the_same_state(truth, on):
         input = random.uniform(15, 90, random.integers(1, 100))
         whole, short = truth.start(on=on), truth.start(on=on)
         whole.run(input)
-        short.run(input[hysteron.remembered(input)])
+        short.run(input[pyhysteron.remembered(input)])
         # Output and all outputs to come.
         for probe in (input[-1], 60, 40, 70, 30, 90, 0):
             assert whole.step(probe) == pytest.approx(short.step(probe), abs=1e-12)
 
 
 def test_branches_are_numbered_from_turn_to_turn(swings):
-    branch = hysteron.branches(swings)
+    branch = pyhysteron.branches(swings)
     ends = np.flatnonzero(np.diff(branch))
     assert branch[0] == 0 and set(np.diff(branch)) == {0, 1}
     turns = np.flatnonzero(np.diff(np.sign(np.diff(swings)))) + 1
     # The last turn is within the band of noise.
     np.testing.assert_array_equal(ends, turns[:-1])
     with pytest.raises(ValueError, match="band"):
-        hysteron.branches(swings, band=-1)
+        pyhysteron.branches(swings, band=-1)

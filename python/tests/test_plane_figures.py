@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from common import lines
 
-import hysteron
+import pyhysteron
 
 plt = pytest.importorskip("matplotlib.pyplot")
-from hysteron import plot  # noqa: E402
+from pyhysteron import plot  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("drawn")
 
@@ -36,7 +36,7 @@ def test_grid(model):
 
 @pytest.mark.parametrize("levels", [2, 3, 60])
 def test_grid_points_at_an_operator_by_its_name(levels):
-    model = hysteron.Model(np.zeros(levels * (levels + 1) // 2), (0, 1))
+    model = pyhysteron.Model(np.zeros(levels * (levels + 1) // 2), (0, 1))
     note = plot.grid(model).texts[0]
     i, j = map(int, re.match(r"\$s_{(\d+),(\d+)}", note.get_text()).groups())
     assert note.xy == (model.plane[i - 1], model.plane[j - 1])
@@ -71,7 +71,7 @@ def test_structure(model):
         assert f"$\\gamma_{{{i},{j}}}$" in texts
         assert f"$\\mu_{{{i},{j}}}$ = {model.weights[i - 1, j - 1]:.3g}" in texts
     assert {"temperature [°C]", "lift [mm]", "Σ", "⋮", f"= {model.offset:.3g} + Σ"} <= set(texts)
-    small = hysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=-1, offset=5)
+    small = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=-1, offset=5)
     texts = [text.get_text() for text in plot.structure(small).texts]
     assert "⋮" not in texts and "= 5 − Σ" in texts
 
@@ -96,7 +96,7 @@ def by_definition(model, history, on):
 @pytest.mark.parametrize("start", ["off", "on"])
 def test_states_are_those_of_the_definition(operator, start):
     random = np.random.default_rng(5)
-    model = hysteron.Model(random.uniform(size=21), (20, 80), operator=operator)
+    model = pyhysteron.Model(random.uniform(size=21), (20, 80), operator=operator)
     input = random.uniform(0, 100, 40)
     at = [0, 3, 17, -1]
     for ax, sample in zip(plot.plane(model, input, at=at, start=start), at):
@@ -107,7 +107,7 @@ def test_states_are_those_of_the_definition(operator, start):
 
 
 def test_an_input_on_a_level_leaves_no_operator_between():
-    model = hysteron.Model(np.ones(210), (20, 80))
+    model = pyhysteron.Model(np.ones(210), (20, 80))
     for ax in plot.plane(model, np.append(90.0, model.plane[[15, 3]]), at=[1, 2]):
         assert not len(lines(ax)["0 < γ < 1"].get_xdata())
 
@@ -133,9 +133,9 @@ def test_the_present_input_crosses_the_plane_where_it_goes(truth):
 
 def test_the_plane_of_a_model_that_depends_on_a_load(truth, swings):
     load = np.repeat([1.0, 2.0, 3.0], len(swings) // 3)
-    model = hysteron.fit(swings, load * truth.simulate(swings), load=load, levels=8, bootstrap=0)
+    model = pyhysteron.fit(swings, load * truth.simulate(swings), load=load, levels=8, bootstrap=0)
     axes = plot.plane(model, swings, at=[400])
-    steady = hysteron.Model(np.ones(36), model.range).start()
+    steady = pyhysteron.Model(np.ones(36), model.range).start()
     steady.run(swings[:401])
     on = {tuple(point) for line in axes[0].get_lines() if line.get_label() == "γ = 1" for point in line.get_xydata()}
     i, j = np.nonzero(steady.operators == 1)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from common import lines
 
-import hysteron
+import pyhysteron
 
 plt = pytest.importorskip("matplotlib.pyplot")
-from hysteron import plot  # noqa: E402
+from pyhysteron import plot  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("drawn")
 
@@ -25,7 +25,7 @@ def test_loops(recording, model):
 
 
 def test_what_is_simulated_says_so(recording, model):
-    simulated = hysteron.Recording(recording.input, recording.output, simulated=True)
+    simulated = pyhysteron.Recording(recording.input, recording.output, simulated=True)
     assert "simulated" in lines(plot.loops(simulated))
     assert "simulated" in lines(plot.over_time(simulated, model)[0])
     assert "simulated" in plot.over_time(simulated, model)[1].get_ylabel()
@@ -46,7 +46,7 @@ def test_over_time(recording, model):
     np.testing.assert_array_equal(lower.get_lines()[1].get_ydata(), error)
     np.testing.assert_array_equal(lines(upper)["measured"].get_xdata(), recording.time)
     assert lower.get_xlabel() == "time [s]" and "[mm]" in lower.get_ylabel()
-    untimed = hysteron.Recording(recording.input, recording.output)
+    untimed = pyhysteron.Recording(recording.input, recording.output)
     assert plot.over_time(untimed, model)[1].get_xlabel() == "sample"
 
 
@@ -57,7 +57,7 @@ def test_the_inverse_over_time(recording, model):
     assert upper.patches, "dead bands are shaded"
     with pytest.raises(ValueError, match="`of` is 'both': one of 'output', 'input' is needed"):
         plot.over_time(recording, model, of="both")
-    no_inverse = hysteron.Model([1.0, -2.0, 4.0], (30, 80))
+    no_inverse = pyhysteron.Model([1.0, -2.0, 4.0], (30, 80))
     for draw in (lambda: plot.over_time(recording, no_inverse, of="input"), lambda: plot.dead_band(recording, no_inverse)):
         with pytest.raises(ValueError, match="no inverse"):
             draw()
@@ -73,19 +73,19 @@ def test_major_loops(model):
 def test_major_loops_at_loads(truth, swings):
     load = np.repeat([1.0, 2.0, 3.0], 1000)
     path = np.tile(swings[::3], 3)
-    model = hysteron.fit(path, load * truth.simulate(path), load=load, levels=8, bootstrap=0)
+    model = pyhysteron.fit(path, load * truth.simulate(path), load=load, levels=8, bootstrap=0)
     ax = plot.major_loops(model)
     assert list(lines(ax)) == ["1", "2", "3"]
     assert ax.get_legend().get_title().get_text() == "load"
     assert list(lines(plot.major_loops(model, 1.5))) == ["1.5"]
-    named = hysteron.Recording(path, load * truth.simulate(path), load=load, load_name="room [degC]")
-    ax = plot.major_loops(hysteron.fit(named, levels=8, bootstrap=0))
+    named = pyhysteron.Recording(path, load * truth.simulate(path), load=load, load_name="room [degC]")
+    ax = plot.major_loops(pyhysteron.fit(named, levels=8, bootstrap=0))
     assert ax.get_legend().get_title().get_text() == "room [°C]"
 
 
 def test_a_thermal_body_is_refused_where_it_would_be_left_out(truth, swings):
     time = 0.5 * np.arange(len(swings))
-    thermal = hysteron.fit(swings, truth.simulate(swings), time=time, thermal="first-order", levels=5, bootstrap=0)
+    thermal = pyhysteron.fit(swings, truth.simulate(swings), time=time, thermal="first-order", levels=5, bootstrap=0)
     for draw in (lambda: plot.plane(thermal, swings), lambda: plot.major_loops(thermal), lambda: plot.structure(thermal)):
         with pytest.raises(ValueError, match="thermal body"):
             draw()
@@ -95,8 +95,8 @@ def test_band(recording, model):
     ax = plot.band(recording, model)
     coverage = model.evaluate(recording)["band"]["coverage_percent"]
     assert f"{coverage:.1f} % inside" in list(lines(ax))[0]
-    with pytest.raises(hysteron.FitError, match="bootstrap"):
-        plot.band(recording, hysteron.Model([1.0, 2.0, 4.0], (30, 80)))
+    with pytest.raises(pyhysteron.FitError, match="bootstrap"):
+        plot.band(recording, pyhysteron.Model([1.0, 2.0, 4.0], (30, 80)))
 
 
 def test_dead_band_shows_the_worst(recording, model):
@@ -111,9 +111,9 @@ def test_dead_band_shows_the_worst(recording, model):
 
 @pytest.mark.parametrize("module, package, extra", [("plot", "matplotlib", "plot"), ("sklearn", "sklearn", "sklearn"), ("blocks", "control", "control")])
 def test_without_its_package_it_says_what_to_install(module, package, extra):
-    code = f"import sys; sys.modules[{package!r}] = None\nimport hysteron\nimport hysteron.{module}"
+    code = f"import sys; sys.modules[{package!r}] = None\nimport pyhysteron\nimport pyhysteron.{module}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert f"ImportError: hysteron.{module} needs " in done.stderr and f"pip install 'hysteron[{extra}]'" in done.stderr
+    assert f"ImportError: pyhysteron.{module} needs " in done.stderr and f"pip install 'pyhysteron[{extra}]'" in done.stderr
 
 
 @pytest.mark.parametrize("name", plot.__all__)
@@ -122,11 +122,11 @@ def test_every_figure_says_what_it_refuses(name):
 
 
 def test_what_is_no_recording_or_model_is_named(recording, model):
-    with pytest.raises(TypeError, match="`recording` is of type list: a hysteron.Recording"):
+    with pytest.raises(TypeError, match="`recording` is of type list: a pyhysteron.Recording"):
         plot.loops([1.0, 2.0])
     with pytest.raises(TypeError, match="`recording` is of type Model"):
         plot.over_time(model, recording)
-    with pytest.raises(TypeError, match="`model` is of type NoneType: a hysteron.Model"):
+    with pytest.raises(TypeError, match="`model` is of type NoneType: a pyhysteron.Model"):
         plot.weights(None)
     with pytest.raises(TypeError, match="`model` is of type str"):
         plot.loops(recording, model="spring.json")
@@ -143,8 +143,8 @@ def test_what_is_no_recording_or_model_is_named(recording, model):
         (ValueError, r"`at` is \[\]", lambda m, r: plot.plane(m, r.input, at=[])),
         (ValueError, r"`input` has no samples", lambda m, r: plot.plane(m, [])),
         (ValueError, r"`start` is 'unknown': one of 'off', 'on' is needed", lambda m, r: plot.plane(m, r.input, start="unknown")),
-        (hysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.plane(m, [0.0, np.nan, 1.0])),
-        (hysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.excitation(m, [0.0, np.nan, 1.0])),
+        (pyhysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.plane(m, [0.0, np.nan, 1.0])),
+        (pyhysteron.CoreError, r"input\[1\]` is NaN", lambda m, r: plot.excitation(m, [0.0, np.nan, 1.0])),
         (TypeError, r"`input`", lambda m, r: plot.plane(m, "30 80 30")),
         (TypeError, r"`input` is a Recording", lambda m, r: plot.plane(m, r)),
         (ValueError, r"`input`.*shape", lambda m, r: plot.plane(m, [[1.0, 2.0]])),
@@ -156,7 +156,7 @@ def test_what_is_no_recording_or_model_is_named(recording, model):
         (TypeError, r"`ax` is of type Figure: a matplotlib Axes", lambda m, r: plot.grid(m, ax=plt.figure())),
         (ValueError, r"`loads` is \[\]", lambda m, r: plot.major_loops(m, [])),
         (TypeError, r"`loads` is 'heavy'", lambda m, r: plot.major_loops(m, "heavy")),
-        (hysteron.FitError, r"load", lambda m, r: plot.major_loops(m, [1.0])),
+        (pyhysteron.FitError, r"load", lambda m, r: plot.major_loops(m, [1.0])),
         (ValueError, r"start", lambda m, r: plot.loops(r, m, start="of")),
     ],
 )

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 
 @pytest.fixture(scope="module")
@@ -10,11 +10,11 @@ def noisy(swings, truth):
     input = swings + 0.05 * random.normal(size=len(swings))
     input[700] = 500.0
     output = truth.simulate(swings) + 0.02 * random.normal(size=len(swings))
-    return hysteron.Recording(input, output, time=0.1 * np.arange(len(swings)))
+    return pyhysteron.Recording(input, output, time=0.1 * np.arange(len(swings)))
 
 
 def test_noise_and_spikes_go(noisy, swings):
-    prepared, report = hysteron.prepare(noisy)
+    prepared, report = pyhysteron.prepare(noisy)
     assert report["spikes"]["input"]["first"] == [701]
     assert np.std(prepared.input - swings) < 0.5 * 0.05
     assert report["samples"] == len(prepared) == len(noisy)
@@ -24,10 +24,10 @@ def test_noise_and_spikes_go(noisy, swings):
 
 def test_each_step_can_be_set(noisy):
     off = dict.fromkeys(["spikes", "resample", "low_pass", "lag", "band"], "off")
-    untouched, report = hysteron.prepare(noisy, **off)
+    untouched, report = pyhysteron.prepare(noisy, **off)
     assert untouched == noisy
     assert all(report[name] is None for name in ("spikes", "resampled", "low_pass", "lag", "band"))
-    one = lambda **step: hysteron.prepare(noisy, **{**off, **step})[1]
+    one = lambda **step: pyhysteron.prepare(noisy, **{**off, **step})[1]
     assert one(spikes=6)["spikes"]["deviations"] == 6
     assert one(resample=0.05)["resampled"] == 0.05
     assert one(low_pass=1)["low_pass"]["input"]["cutoff"] == 1
@@ -38,19 +38,19 @@ def test_each_step_can_be_set(noisy):
 @pytest.mark.parametrize(
     "step, error, said",
     [
-        ({"spikes": -1}, hysteron.PreparationError, "spike"),
+        ({"spikes": -1}, pyhysteron.PreparationError, "spike"),
         ({"band": "on"}, TypeError, "`band` is 'on': 'auto', 'off' or a number"),
         ({"lag": [1]}, TypeError, "`lag`"),
         ({"low_pass": 1e9}, ValueError, "the cut-off is 1000000000 Hz"),
-        ({"low_pass": np.nan}, hysteron.PreparationError, "cut-off"),
+        ({"low_pass": np.nan}, pyhysteron.PreparationError, "cut-off"),
     ],
 )
 def test_bad_steps_are_named(noisy, step, error, said):
     with pytest.raises(error, match=said):
-        hysteron.prepare(noisy, **step)
+        pyhysteron.prepare(noisy, **step)
 
 
 def test_without_time(swings):
-    prepared, report = hysteron.prepare(swings, 0.5 * swings)
+    prepared, report = pyhysteron.prepare(swings, 0.5 * swings)
     assert report["rate"] is None and report["rate_dependent"] is None
     np.testing.assert_allclose(prepared.input, swings, atol=0.02 * np.ptp(swings))

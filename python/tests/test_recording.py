@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 
 def test_series_names_and_length(recording, swings):
@@ -26,7 +26,7 @@ def test_what_it_gives_is_a_copy(recording):
 @pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda r: pickle.loads(pickle.dumps(r))])
 def test_copies_and_pickles(recording, again):
     assert again(recording) == recording
-    loaded = hysteron.Recording([1, 2], [3, 4], load=[5, 6], load_name="force [N]", simulated=True)
+    loaded = pyhysteron.Recording([1, 2], [3, 4], load=[5, 6], load_name="force [N]", simulated=True)
     assert again(loaded) == loaded
     assert again(loaded) != recording
 
@@ -34,11 +34,11 @@ def test_copies_and_pickles(recording, again):
 def test_csv_there_and_back(recording, tmp_path):
     path = tmp_path / "run.csv"
     recording.to_csv(path)
-    back = hysteron.read(path, input="temperature [degC]", output="lift [mm]", time="time [s]")
+    back = pyhysteron.read(path, input="temperature [degC]", output="lift [mm]", time="time [s]")
     np.testing.assert_array_equal(back.output, recording.output)
     np.testing.assert_array_equal(back.time, recording.time)
     assert back.path == path
-    named = hysteron.read(path, input="temperature [degC]", output="lift [mm]", output_name="strain [%]")
+    named = pyhysteron.read(path, input="temperature [degC]", output="lift [mm]", output_name="strain [%]")
     assert named.output_name == "strain [%]" and named.input_name == "temperature [degC]"
 
 
@@ -50,29 +50,29 @@ def test_parquet_and_mat(tmp_path):
     frame.to_parquet(tmp_path / "run.parquet")
     io.savemat(tmp_path / "run.mat", {name: frame[name].to_numpy() for name in frame})
     for file in ("run.parquet", "run.mat"):
-        recording = hysteron.read(tmp_path / file, input="T", output="y")
+        recording = pyhysteron.read(tmp_path / file, input="T", output="y")
         np.testing.assert_array_equal(recording.output, frame["y"])
 
 
 def test_rows_are_mended_only_when_asked_and_said(tmp_path):
     path = tmp_path / "run.csv"
     path.write_text("T,y\n20,0\n,1\n80,14\n")
-    with pytest.raises(hysteron.RecordingError, match="line 3, column `T`"):
-        hysteron.read(path, input="T", output="y")
-    with pytest.warns(hysteron.HysteronWarning, match="line 3 without a number: dropped"):
-        recording = hysteron.read(path, input="T", output="y", repair=True)
+    with pytest.raises(pyhysteron.RecordingError, match="line 3, column `T`"):
+        pyhysteron.read(path, input="T", output="y")
+    with pytest.warns(pyhysteron.HysteronWarning, match="line 3 without a number: dropped"):
+        recording = pyhysteron.read(path, input="T", output="y", repair=True)
     assert len(recording) == 2
 
 
 def test_from_frame():
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame({"t": [0, 1], "T [K]": np.float32([1.5, 2]), "y": [3, 4], "F": [5, 6]}, index=[7, 3])
-    recording = hysteron.Recording.from_frame(frame, input="T [K]", output="y", time="t", load="F")
-    assert recording == hysteron.Recording(
+    recording = pyhysteron.Recording.from_frame(frame, input="T [K]", output="y", time="t", load="F")
+    assert recording == pyhysteron.Recording(
         [1.5, 2], [3, 4], time=[0, 1], load=[5, 6], input_name="T [K]", output_name="y", load_name="F"
     )
     with pytest.raises(KeyError, match="missing"):
-        hysteron.Recording.from_frame(frame, input="missing", output="y")
+        pyhysteron.Recording.from_frame(frame, input="missing", output="y")
 
 
 def test_summary(recording):
@@ -87,8 +87,8 @@ def test_summary(recording):
 
 def test_the_path_in_a_message_is_the_path(tmp_path):
     path = tmp_path / "run--two.csv"
-    with pytest.raises(hysteron.FileError, match="No such file.*run--two.csv"):
-        hysteron.read(path, input="T", output="y")
+    with pytest.raises(pyhysteron.FileError, match="No such file.*run--two.csv"):
+        pyhysteron.read(path, input="T", output="y")
     path.write_text("T,y\n20,0\n,1\n")
-    with pytest.raises(hysteron.RecordingError, match="run--two.csv.*use `repair`"):
-        hysteron.read(path, input="T", output="y")
+    with pytest.raises(pyhysteron.RecordingError, match="run--two.csv.*use `repair`"):
+        pyhysteron.read(path, input="T", output="y")

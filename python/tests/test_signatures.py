@@ -5,15 +5,15 @@ import inspect
 import numpy as np
 import pytest
 
-import hysteron
-from hysteron.control import Pid
+import pyhysteron
+from pyhysteron.control import Pid
 
-MODEL = hysteron.Model(np.ones(15), (20, 80))
+MODEL = pyhysteron.Model(np.ones(15), (20, 80))
 #: From within the plane, so that the start counts.
 SERIES = 50 - 30 * np.cos(np.linspace(1, 21, 200))
 #: Of two loads, so that the order of the weights in the load counts.
 OUTPUT, LOAD = np.sqrt(SERIES) * np.repeat([1.0, 1.1], 100), np.repeat([0.0, 1.0], 100)
-RECORDING = hysteron.Recording(SERIES, np.sqrt(SERIES), time=np.arange(200.0) ** 1.1)  # not even
+RECORDING = pyhysteron.Recording(SERIES, np.sqrt(SERIES), time=np.arange(200.0) ** 1.1)  # not even
 METHODS = {
     "gain": "gradient",
     "span": "increments",
@@ -33,24 +33,24 @@ def driven(plant):
 
 
 def disturbed(**shown):
-    plant = hysteron.SpringPlant()
+    plant = pyhysteron.SpringPlant()
     plant.disturb(**shown)
     return driven(plant)
 
 
 #: What tells one call from another.
 DEFAULTS = {
-    hysteron.Model: lambda **shown: hysteron.Model(np.ones(15), (20, 80), **shown),
-    hysteron.Model.export_fmu: lambda **shown: MODEL.export_fmu("model.fmu", **shown),
-    hysteron.Recording.summary: lambda **shown: RECORDING.summary(**shown),
-    hysteron.fit: lambda **shown: hysteron.fit(SERIES, OUTPUT, **{**shown, "load": LOAD}),
-    hysteron.left_out: lambda **shown: hysteron.left_out(SERIES, OUTPUT, **{**shown, "load": LOAD}),
-    hysteron.prepare: lambda **shown: hysteron.prepare(RECORDING, **shown),
-    hysteron.adapt: lambda **shown: hysteron.adapt(MODEL, RECORDING, **shown).table,
-    hysteron.Adaptive: lambda **shown: hysteron.Adaptive(MODEL, **shown).run(SERIES, OUTPUT),
-    hysteron.SpringPlant: lambda **shown: driven(hysteron.SpringPlant(**shown)),
-    hysteron.PreisachPlant: lambda **shown: driven(hysteron.PreisachPlant(**shown)),
-    hysteron.SimulatedPlant.disturb: disturbed,
+    pyhysteron.Model: lambda **shown: pyhysteron.Model(np.ones(15), (20, 80), **shown),
+    pyhysteron.Model.export_fmu: lambda **shown: MODEL.export_fmu("model.fmu", **shown),
+    pyhysteron.Recording.summary: lambda **shown: RECORDING.summary(**shown),
+    pyhysteron.fit: lambda **shown: pyhysteron.fit(SERIES, OUTPUT, **{**shown, "load": LOAD}),
+    pyhysteron.left_out: lambda **shown: pyhysteron.left_out(SERIES, OUTPUT, **{**shown, "load": LOAD}),
+    pyhysteron.prepare: lambda **shown: pyhysteron.prepare(RECORDING, **shown),
+    pyhysteron.adapt: lambda **shown: pyhysteron.adapt(MODEL, RECORDING, **shown).table,
+    pyhysteron.Adaptive: lambda **shown: pyhysteron.Adaptive(MODEL, **shown).run(SERIES, OUTPUT),
+    pyhysteron.SpringPlant: lambda **shown: driven(pyhysteron.SpringPlant(**shown)),
+    pyhysteron.PreisachPlant: lambda **shown: driven(pyhysteron.PreisachPlant(**shown)),
+    pyhysteron.SimulatedPlant.disturb: disturbed,
     Pid.step: lambda **shown: Pid(1.0, integral_s=1.0).step(1.0, 0.1, **shown),
 }
 
@@ -59,7 +59,7 @@ def options(call):
     return [p for p in inspect.signature(call).parameters.values() if p.kind is p.KEYWORD_ONLY]
 
 
-@pytest.mark.filterwarnings("ignore::hysteron.HysteronWarning")
+@pytest.mark.filterwarnings("ignore::pyhysteron.HysteronWarning")
 @pytest.mark.parametrize("function", DEFAULTS, ids=lambda function: function.__qualname__)
 def test_the_defaults_are_those_that_are_shown(function, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -68,11 +68,11 @@ def test_the_defaults_are_those_that_are_shown(function, tmp_path, monkeypatch):
     np.testing.assert_equal(DEFAULTS[function](**shown), DEFAULTS[function]())
 
 
-@pytest.mark.parametrize("call", [hysteron.Adaptive, hysteron.adapt])
+@pytest.mark.parametrize("call", [pyhysteron.Adaptive, pyhysteron.adapt])
 def test_of_the_options_of_an_estimator(call):
-    arguments = [MODEL] if call is hysteron.Adaptive else [MODEL, SERIES, 0.1 * SERIES]
+    arguments = [MODEL] if call is pyhysteron.Adaptive else [MODEL, SERIES, 0.1 * SERIES]
     names = [option.name for option in options(call)]
-    assert len(names) == (16 if call is hysteron.adapt else 14)
+    assert len(names) == (16 if call is pyhysteron.adapt else 14)
     for name in set(names) - {"method", "start", "time", "progress"}:
         method = METHODS.get(name, "gradient")
         call(*arguments, method=method, **{name: None})
@@ -80,7 +80,7 @@ def test_of_the_options_of_an_estimator(call):
             call(*arguments, method=method, **{name: 1})
 
 
-@pytest.mark.parametrize("plant", [hysteron.SpringPlant, hysteron.PreisachPlant])
+@pytest.mark.parametrize("plant", [pyhysteron.SpringPlant, pyhysteron.PreisachPlant])
 def test_of_the_options_of_a_plant(plant):
     names = [option.name for option in options(plant) if option.default is ...]
     assert names

@@ -4,7 +4,7 @@ import warnings
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 pytest.importorskip("sklearn")
 
@@ -14,7 +14,7 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 from sklearn.utils.estimator_checks import check_estimator
 
-from hysteron.sklearn import EXPECTED_FAILED_CHECKS, BranchSplit, HysteresisRegressor
+from pyhysteron.sklearn import EXPECTED_FAILED_CHECKS, BranchSplit, HysteresisRegressor
 
 
 def test_check_estimator():
@@ -35,7 +35,7 @@ def test_fit_predict_score_clone_pickle(data, recording):
     X, y = data
     regressor = HysteresisRegressor(levels=12, operator="kp")
     assert regressor.fit(X, y) is regressor
-    model = hysteron.fit(recording.input, recording.output, levels=12, operator="kp", bootstrap=0)
+    model = pyhysteron.fit(recording.input, recording.output, levels=12, operator="kp", bootstrap=0)
     assert regressor.model_ == model
     np.testing.assert_array_equal(regressor.predict(X), model.simulate(recording.input))
     assert regressor.score(X, y) > 0.999
@@ -61,7 +61,7 @@ def test_bad_options_are_refused_at_fit(data):
 
 def test_folds_are_runs_of_whole_branches_after_what_is_remembered(data):
     X, _ = data
-    branch = hysteron.branches(X[:, 0])
+    branch = pyhysteron.branches(X[:, 0])
     folds = list(BranchSplit(5).split(X))
     assert len(folds) == BranchSplit(5).get_n_splits() == 5
     start = 0
@@ -97,7 +97,7 @@ def test_grid_search(data):
     X, y = data
     search = GridSearchCV(HysteresisRegressor(), {"levels": [3, 12], "solver": ["nnls", "ols"]}, cv=BranchSplit(4))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", hysteron.HysteronWarning)
+        warnings.simplefilter("ignore", pyhysteron.HysteronWarning)
         search.fit(X, y)
         scores = cross_val_score(HysteresisRegressor(levels=12), X, y, cv=BranchSplit(4))
     assert search.best_params_["levels"] == 12

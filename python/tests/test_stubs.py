@@ -12,6 +12,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 def test_stubs():
     pytest.importorskip("mypy")
     allowed = ROOT / "python/tests/stubtest.txt"  # what scikit-learn adds to every estimator
-    command = [sys.executable, "-m", "mypy.stubtest", "hysteron", "--mypy-config-file", ROOT / "pyproject.toml"]
+    command = [sys.executable, "-m", "mypy.stubtest", "pyhysteron", "--mypy-config-file", ROOT / "pyproject.toml"]
     done = subprocess.run([*command, "--allowlist", allowed], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

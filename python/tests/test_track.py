@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from common import SCENARIO, SLOW_SCENARIO
 
-import hysteron
+import pyhysteron
 
 
 @pytest.fixture(scope="module")
 def comparison():
-    return hysteron.track(SCENARIO)
+    return pyhysteron.track(SCENARIO)
 
 
 def test_scores_are_a_table(comparison):
@@ -39,21 +39,21 @@ def test_what_else_there_is(comparison, tmp_path):
     assert len(comparison.traces["adaptive-pid"].snapshots) > 10
     comparison.to_csv(tmp_path / "scores.csv")
     assert len((tmp_path / "scores.csv").read_text().splitlines()) == 13
-    pid, inner = hysteron.control.tune(SCENARIO)
+    pid, inner = pyhysteron.control.tune(SCENARIO)
     assert inner is None and repr(pid) == repr(comparison.pid)
 
 
 def test_a_file_is_its_text(comparison, tmp_path):
     (tmp_path / "sine.toml").write_text(SCENARIO)
     for path in [tmp_path / "sine.toml", str(tmp_path / "sine.toml")]:
-        found = hysteron.track(path, seeds=1)
+        found = pyhysteron.track(path, seeds=1)
         assert np.array_equal(found.scores["rmse"], comparison.scores["rmse"].reshape(3, 2, 2)[:, 0].ravel())
 
 
 def test_progress_is_told():
     told = []
     # It is told every 50 ms: this takes longer.
-    hysteron.track(SLOW_SCENARIO, seeds=30, progress=lambda what, share: told.append((what, share)))
+    pyhysteron.track(SLOW_SCENARIO, seeds=30, progress=lambda what, share: told.append((what, share)))
     assert told and {what for what, _ in told} == {"runs"}
     assert [share for _, share in told] == sorted(share for _, share in told)
 
@@ -63,27 +63,27 @@ def test_what_progress_raises_ends_it():
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        hysteron.track(SCENARIO, seeds=50, progress=refuse)
+        pyhysteron.track(SCENARIO, seeds=50, progress=refuse)
 
 
 def test_built_in_scenarios():
-    assert {"load-step", "sine"} <= set(hysteron.scenarios())
-    assert hysteron.scenarios()["sine"].startswith("# ")
+    assert {"load-step", "sine"} <= set(pyhysteron.scenarios())
+    assert pyhysteron.scenarios()["sine"].startswith("# ")
 
 
 @pytest.mark.parametrize(
     ("scenario", "error", "text"),
     [
-        ("nowhere", hysteron.ScenarioError, "no such built-in scenario: load-step"),
-        (SCENARIO.replace("0.01", "-1"), hysteron.ScenarioError, "interval_s"),
-        (SCENARIO + "colour = 3\n", hysteron.ScenarioError, "colour"),
+        ("nowhere", pyhysteron.ScenarioError, "no such built-in scenario: load-step"),
+        (SCENARIO.replace("0.01", "-1"), pyhysteron.ScenarioError, "interval_s"),
+        (SCENARIO + "colour = 3\n", pyhysteron.ScenarioError, "colour"),
         (3, TypeError, "`scenario` is 3: a name, a path or a text"),
     ],
 )
 def test_what_is_refused(scenario, error, text):
-    for call in [hysteron.track, hysteron.control.tune]:
+    for call in [pyhysteron.track, pyhysteron.control.tune]:
         with pytest.raises(error) as raised:
             call(scenario)
         assert text in str(raised.value)
-    with pytest.raises(hysteron.ScenarioError):
-        hysteron.track(SCENARIO, seeds=0)
+    with pytest.raises(pyhysteron.ScenarioError):
+        pyhysteron.track(SCENARIO, seeds=0)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 FOLDER = Path(__file__).parents[2] / "vectors"
 HEADINGS = {0: None, 1: "rising", -1: "falling"}
@@ -19,7 +19,7 @@ def vectors(kind):
     for file in files:
         vector = json.loads(file.read_text())
         assert vector["kind"] == kind and vector["version"] == 1
-        model = hysteron.Model.from_json(json.dumps(vector["model"]))
+        model = pyhysteron.Model.from_json(json.dumps(vector["model"]))
         cases += [pytest.param(model, vector["tolerance"], run, id=f"{file.stem}: {run['name']}") for run in vector["runs"]]
     return cases
 
@@ -85,7 +85,7 @@ def test_a_run_that_anticipates_is_its_steps():
         if run["tolerance"]:
             continue
         inverse, state = model.inverse(), model.start()
-        headings = hysteron.control.headings(run["target"], 0.01)
+        headings = pyhysteron.control.headings(run["target"], 0.01)
         steps = [inverse.step(state, y, heading=h, band=0.01) for y, h in zip(run["target"], headings, strict=True)]
         inputs, status = inverse.run(run["target"], policy="anticipate", band=0.01)
         assert steps == list(zip(inputs, status, strict=True))

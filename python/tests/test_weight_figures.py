@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import hysteron
+import pyhysteron
 
 plt = pytest.importorskip("matplotlib.pyplot")
-from hysteron import plot  # noqa: E402
+from pyhysteron import plot  # noqa: E402
 from mpl_toolkits.mplot3d import Axes3D  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("drawn")
@@ -27,12 +27,12 @@ def test_weights(model, kind):
 
 
 def test_negative_weights_bear_a_dash():
-    ax = plot.weights(hysteron.Model([1.0, -2.0, 4.0], (0, 1)), kind="map")
+    ax = plot.weights(pyhysteron.Model([1.0, -2.0, 4.0], (0, 1)), kind="map")
     dashes = ax.get_lines()[0]
     assert (dashes.get_xdata(), dashes.get_ydata()) == ([0], [1])
-    plot.weights(hysteron.Model([0.0, 0.0, 0.0], (0, 1)), kind="map")
+    plot.weights(pyhysteron.Model([0.0, 0.0, 0.0], (0, 1)), kind="map")
     with pytest.raises(ValueError, match="`kind` is 'surface': one of 'marks', 'map', 'bars' is needed"):
-        plot.weights(hysteron.Model([1.0, 2.0, 4.0], (0, 1)), kind="surface")
+        plot.weights(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), kind="surface")
 
 
 def test_bars_stand_on_their_operators_as_high_as_the_weights(model, monkeypatch):
@@ -54,7 +54,7 @@ def test_bars_stand_on_their_operators_as_high_as_the_weights(model, monkeypatch
 
 @pytest.mark.parametrize("weights, low, high", [([1.0, -2.0, 4.0], -2, 4), ([0.0, 0.0, 0.0], 0, 1), ([-1.0, -2.0, -1.0], -2, 0)])
 def test_bars_of_any_sign_are_within_the_axes(weights, low, high):
-    bottom, top = plot.weights(hysteron.Model(weights, (0, 1)), kind="bars").get_zlim()
+    bottom, top = plot.weights(pyhysteron.Model(weights, (0, 1)), kind="bars").get_zlim()
     assert bottom <= low and top >= high
 
 

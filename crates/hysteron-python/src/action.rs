@@ -4,7 +4,7 @@ use hysteron::control;
 use pyo3::prelude::*;
 
 /// What a `Controller` does with a sample.
-#[pyclass(frozen, get_all, module = "hysteron.control")]
+#[pyclass(frozen, get_all, module = "pyhysteron.control")]
 pub(crate) struct Action {
     /// The input asked for.
     command: f64,

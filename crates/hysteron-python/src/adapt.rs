@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 /// What came of an adaptation to a recording.
-#[pyclass(frozen, get_all, module = "hysteron")]
+#[pyclass(frozen, get_all, module = "pyhysteron")]
 pub(crate) struct Adapted {
     /// The model with the last weights; `model.fit` tells of them over the whole recording.
     model: Model,
@@ -90,10 +90,10 @@ impl Adapted {
 ///
 /// Examples
 /// --------
-/// >>> model = hysteron.Model(np.full(15, 1.0), (20, 80))
+/// >>> model = pyhysteron.Model(np.full(15, 1.0), (20, 80))
 /// >>> temperature = 50 - 40 * np.cos(0.05 * np.arange(1000))
-/// >>> measured = hysteron.Model(np.full(15, 1.5), (20, 80)).simulate(temperature)
-/// >>> adapted = hysteron.adapt(model, temperature, measured)
+/// >>> measured = pyhysteron.Model(np.full(15, 1.5), (20, 80)).simulate(temperature)
+/// >>> adapted = pyhysteron.adapt(model, temperature, measured)
 /// >>> last = adapted.comparison['thirds'][-1]
 /// >>> last['adapting']['rmse'] < 0.05 * last['fixed']['rmse']
 /// True

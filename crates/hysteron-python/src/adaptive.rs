@@ -69,9 +69,9 @@ use pyo3::types::PyDict;
 ///
 /// Examples
 /// --------
-/// >>> model = hysteron.Model(np.full(15, 1.0), (20, 80))
-/// >>> plant = hysteron.Model(np.full(15, 1.5), (20, 80)).start()
-/// >>> adaptive = hysteron.Adaptive(model, method='least-squares', noise=0.01)
+/// >>> model = pyhysteron.Model(np.full(15, 1.0), (20, 80))
+/// >>> plant = pyhysteron.Model(np.full(15, 1.5), (20, 80)).start()
+/// >>> adaptive = pyhysteron.Adaptive(model, method='least-squares', noise=0.01)
 /// >>> for n in range(1000):
 /// ...     temperature = 50 - 40 * np.cos(0.05 * n)
 /// ...     learning = adaptive.step(temperature, plant.step(temperature))
@@ -79,7 +79,7 @@ use pyo3::types::PyDict;
 /// True
 /// >>> round(adaptive.model().output_range[1], 1)
 /// 22.5
-#[pyclass(frozen, module = "hysteron")]
+#[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Adaptive {
     inner: Shared<hysteron::Adaptive>,
 }
@@ -139,7 +139,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.step(0.5, 4.5)
     /// Learning(output=4, error=0.5, outcome='learned', clipped=0)
     fn step(&self, py: Python<'_>, input: f64, measured: f64) -> PyResult<Learning> {
@@ -168,7 +168,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.run([0.5, 1.0], [4.5, 7.0])['outcome']
     /// array(['learned', 'learned'], dtype='<U11')
     fn run<'py>(
@@ -222,7 +222,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).predict(0.5)
+    /// >>> pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))).predict(0.5)
     /// 4.0
     fn predict(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
         let input = number("input", input)?;
@@ -253,7 +253,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.solve(4.0)
     /// (0.5, 0)
     #[pyo3(signature = (target, *, heading=None, band=0.0))]
@@ -277,7 +277,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> _ = adaptive.solve(7.0)  # the inverse goes to the top, the input does not
     /// >>> adaptive.align()
     /// >>> adaptive.solve(2.0)
@@ -336,7 +336,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1))).model().weights
+    /// >>> pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))).model().weights
     /// array([[ 1.,  2.],
     ///        [nan,  4.]])
     fn model(&self, py: Python<'_>) -> PyResult<Model> {
@@ -352,7 +352,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.reset(on=True)
     /// >>> adaptive.output
     /// 7.0
@@ -373,7 +373,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.freeze()
     /// >>> adaptive.step(0.5, 4.5).outcome
     /// 'frozen'
@@ -386,7 +386,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> _ = adaptive.step(0.5, 4.5)
     /// >>> adaptive.keep()
     fn keep(&self, py: Python<'_>) {
@@ -397,7 +397,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.keep()
     /// >>> _ = adaptive.step(0.5, 40.0)  # a reading that was wrong
     /// >>> adaptive.roll_back()
@@ -415,7 +415,7 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> adaptive = hysteron.Adaptive(hysteron.Model([1.0, 2.0, 4.0], (0, 1)))
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> other = adaptive.copy()
     /// >>> _ = adaptive.step(0.5, 4.5)
     /// >>> adaptive.output > 4 and other.predict(0.5) == 4

@@ -65,17 +65,17 @@ use pyo3::prelude::*;
 /// --------
 /// Inverse and PID on a simulated actuator, from a model identified on it:
 ///
-/// >>> model = hysteron.Model(np.full(15, 5.0), (10, 150), offset=0)
-/// >>> plant = hysteron.PreisachPlant()
-/// >>> pid = hysteron.control.Pid(0.2, integral_s=0.05)
-/// >>> controller = hysteron.control.Controller(0.01, plant.drives, model=model, pid=pid, filter_s=0.01)
+/// >>> model = pyhysteron.Model(np.full(15, 5.0), (10, 150), offset=0)
+/// >>> plant = pyhysteron.PreisachPlant()
+/// >>> pid = pyhysteron.control.Pid(0.2, integral_s=0.05)
+/// >>> controller = pyhysteron.control.Controller(0.01, plant.drives, model=model, pid=pid, filter_s=0.01)
 /// >>> for target in np.linspace(10, 40, 400):
 /// ...     action = controller.step(target, *plant.read())
 /// ...     plant.write(action.drive)
 /// ...     plant.advance(0.01)
 /// >>> abs(plant.truth()[0] - 40) < 2
 /// True
-#[pyclass(frozen, module = "hysteron.control")]
+#[pyclass(frozen, module = "pyhysteron.control")]
 pub(crate) struct Controller {
     inner: Shared<control::Controller>,
     tolerance: f64,
@@ -153,8 +153,8 @@ impl Controller {
     ///
     /// Examples
     /// --------
-    /// >>> pid = hysteron.control.Pid(2.0)
-    /// >>> controller = hysteron.control.Controller(0.01, (0, 10), pid=pid)
+    /// >>> pid = pyhysteron.control.Pid(2.0)
+    /// >>> controller = pyhysteron.control.Controller(0.01, (0, 10), pid=pid)
     /// >>> controller.step(3.0, 1.0)  # 3 wanted, 1 measured
     /// <Action: command 4, drive 4, prediction NaN>
     #[pyo3(signature = (target, output, input=None, *, heading=None))]
@@ -197,7 +197,7 @@ impl Controller {
     ///
     /// Examples
     /// --------
-    /// >>> controller = hysteron.control.Controller(0.01, (0, 10), pid=hysteron.control.Pid(2.0))
+    /// >>> controller = pyhysteron.control.Controller(0.01, (0, 10), pid=pyhysteron.control.Pid(2.0))
     /// >>> controller.step_command(12.0, 1.0).drive  # within the limits
     /// 10.0
     #[pyo3(signature = (command, output, input=None))]
@@ -268,8 +268,8 @@ impl Controller {
     /// ...         return self.mm
     /// ...     def write(self, volts):
     /// ...         self.mm += 0.1 * (0.5 * volts - self.mm)
-    /// >>> pid = hysteron.control.Pid(2.0, integral_s=0.1)
-    /// >>> trace = hysteron.control.Controller(0.01, (0, 10), pid=pid).run(Stage(), np.full(500, 3.0))
+    /// >>> pid = pyhysteron.control.Pid(2.0, integral_s=0.1)
+    /// >>> trace = pyhysteron.control.Controller(0.01, (0, 10), pid=pid).run(Stage(), np.full(500, 3.0))
     /// >>> bool(abs(trace.output[-1] - 3.0) < 1e-3)
     /// True
     #[pyo3(signature = (device, reference, *, events=None))]

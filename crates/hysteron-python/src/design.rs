@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 
 /// A profile of the input, and what is known once it has been recorded. Made by `design`.
-#[pyclass(frozen, module = "hysteron")]
+#[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Design {
     inner: hysteron::Design,
 }
@@ -83,7 +83,7 @@ impl Design {
     /// --------
     /// >>> import os, tempfile
     /// >>> path = os.path.join(tempfile.mkdtemp(), 'profile.csv')
-    /// >>> hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5).to_csv(path)
+    /// >>> pyhysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5).to_csv(path)
     /// >>> open(path).readline()
     /// 'time [s],input\n'
     fn to_csv(&self, path: PathBuf) -> PyResult<()> {
@@ -133,12 +133,12 @@ impl Design {
 ///
 /// Examples
 /// --------
-/// >>> profile = hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5)
+/// >>> profile = pyhysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5)
 /// >>> profile
 /// <Design, 20 branches, 5101 samples, 805.3 s>
 /// >>> bool(np.nanmin(profile.excitation) == 3)  # every operator is determined
 /// True
-/// >>> len(hysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
+/// >>> len(pyhysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
 /// 0
 #[pyfunction]
 #[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp"))]

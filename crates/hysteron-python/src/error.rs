@@ -1,4 +1,4 @@
-//! Errors of the façade as Python exceptions, one class for each kind: `hysteron.errors`.
+//! Errors of the façade as Python exceptions, one class for each kind: `pyhysteron.errors`.
 
 use hysteron::Error;
 use pyo3::call::PyCallArgs;
@@ -122,10 +122,10 @@ pub(crate) fn in_python(text: &str) -> String {
 /// Values of options that are texts in Python.
 const WORDS: [&str; 2] = ["unknown", "ols"];
 
-/// An exception of a class of `hysteron.errors`.
+/// An exception of a class of `pyhysteron.errors`.
 fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {
     let made = Python::attach(|py| {
-        let class = py.import("hysteron.errors")?.getattr(class)?;
+        let class = py.import("pyhysteron.errors")?.getattr(class)?;
         let error = class.call1(arguments)?;
         error.setattr("code", code)?;
         Ok(PyErr::from_value(error))

@@ -38,7 +38,7 @@ impl Model {
     /// Examples
     /// --------
     /// >>> import os, tempfile
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> with tempfile.TemporaryDirectory() as folder:
     /// ...     export = model.export_c(folder, name='wire')
     /// ...     sorted(os.path.basename(file) for file in export['files'])
@@ -105,7 +105,7 @@ impl Model {
     /// Examples
     /// --------
     /// >>> import os, tempfile
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> fmu = model.export_fmu(os.path.join(tempfile.mkdtemp(), 'inverse.fmu'), inverse=True)
     /// >>> fmu['name'], fmu['inputs'], fmu['outputs']
     /// ('sf_Inverse_MKP', ['target', 'heading'], ['input', 'status'])

@@ -65,8 +65,8 @@ use pyo3::types::{PyDict, PyString};
 /// --------
 /// >>> t = np.linspace(0, 20, 400)
 /// >>> input = 50 - 30 * np.cos(t) * np.exp(-t / 20)
-/// >>> truth = hysteron.Model(np.full(15, 0.2), (30, 80))
-/// >>> model = hysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0)
+/// >>> truth = pyhysteron.Model(np.full(15, 0.2), (30, 80))
+/// >>> model = pyhysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0)
 /// >>> model.fit['nrmse_percent'] < 1
 /// True
 #[pyfunction]
@@ -129,7 +129,7 @@ pub(crate) fn fit(
 /// Examples
 /// --------
 /// >>> input = 50 - 30 * np.cos(np.linspace(0, 20, 400))
-/// >>> found = hysteron.left_out(input, 0.5 * input, levels=5)
+/// >>> found = pyhysteron.left_out(input, 0.5 * input, levels=5)
 /// >>> found['branches'], found['nrmse_percent'] < 1
 /// (7, True)
 #[pyfunction]

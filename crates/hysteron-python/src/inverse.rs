@@ -16,13 +16,13 @@ use pyo3::types::PyTuple;
 ///
 /// Examples
 /// --------
-/// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+/// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
 /// >>> inputs, status = model.inverse().run([4.0, 6.0, 5.0, 9.0])
 /// >>> model.simulate(inputs)
 /// array([4., 6., 5., 7.])
 /// >>> status
 /// array([0, 0, 0, 1], dtype=int8)
-#[pyclass(frozen, module = "hysteron")]
+#[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Inverse {
     model: Model,
 }
@@ -94,7 +94,7 @@ impl Inverse {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> inverse, wanted = model.inverse(), [0.0, 6.0, 6.0, 3.0]
     /// >>> inverse.run(wanted)[0]
     /// array([-1.        ,  0.83333333,  0.83333333,  0.08333333])
@@ -175,7 +175,7 @@ impl Inverse {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> state = model.start()
     /// >>> model.inverse().step(state, 6.0)
     /// (0.8333333333333335, 0)

@@ -73,10 +73,10 @@ pub(crate) fn classes<'py>(
 ///
 /// Examples
 /// --------
-/// >>> hysteron.excitation([0, 1, 2], (1, 2), 2)
+/// >>> pyhysteron.excitation([0, 1, 2], (1, 2), 2)
 /// array([[ 3.,  1.],
 ///        [nan,  1.]])
-/// >>> hysteron.excitation([0, 1, 2, 1], (1, 2), 2)
+/// >>> pyhysteron.excitation([0, 1, 2, 1], (1, 2), 2)
 /// array([[ 3.,  3.],
 ///        [nan,  3.]])
 #[pyfunction]

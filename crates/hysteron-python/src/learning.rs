@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 /// What a sample taught an `Adaptive`.
-#[pyclass(frozen, get_all, module = "hysteron")]
+#[pyclass(frozen, get_all, module = "pyhysteron")]
 pub(crate) struct Learning {
     /// Output that was expected before anything was learned from the sample.
     output: f64,

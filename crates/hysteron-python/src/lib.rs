@@ -1,4 +1,4 @@
-//! The Python package `hysteron`: types and errors converted, no logic.
+//! The Python package `pyhysteron`: types and errors converted, no logic.
 
 mod action;
 mod adapt;

@@ -40,11 +40,11 @@ use std::sync::Arc;
 ///
 /// Examples
 /// --------
-/// >>> import hysteron
-/// >>> model = hysteron.Model([1.0, 0.5, 1.0, 0.0, 0.5, 1.0], (20, 80), offset=10)
+/// >>> import pyhysteron
+/// >>> model = pyhysteron.Model([1.0, 0.5, 1.0, 0.0, 0.5, 1.0], (20, 80), offset=10)
 /// >>> model.simulate([20, 80, 50])
 /// array([11., 14., 13.])
-#[pyclass(frozen, module = "hysteron", from_py_object)]
+#[pyclass(frozen, module = "pyhysteron", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Model {
     pub(crate) inner: Arc<hysteron::Model>,
@@ -104,9 +104,9 @@ impl Model {
     /// --------
     /// >>> import os, tempfile
     /// >>> path = os.path.join(tempfile.mkdtemp(), 'model.json')
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> model.save(path)
-    /// >>> hysteron.Model.load(path) == model
+    /// >>> pyhysteron.Model.load(path) == model
     /// True
     #[classmethod]
     fn load(_class: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
@@ -127,7 +127,7 @@ impl Model {
     /// --------
     /// >>> import os, tempfile
     /// >>> path = os.path.join(tempfile.mkdtemp(), 'model.json')
-    /// >>> hysteron.Model([1.0, 2.0, 4.0], (0, 1)).save(path)
+    /// >>> pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).save(path)
     fn save(&self, path: PathBuf) -> PyResult<()> {
         self.inner.write(&path).raise()
     }
@@ -148,8 +148,8 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    /// >>> hysteron.Model.from_json(model.to_json()) == model
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> pyhysteron.Model.from_json(model.to_json()) == model
     /// True
     #[classmethod]
     fn from_json(_class: &Bound<'_, PyType>, text: &str) -> PyResult<Self> {
@@ -164,7 +164,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.Model([1.0, 2.0, 4.0], (0, 1)).to_json()[:38]
+    /// >>> pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).to_json()[:38]
     /// '{"format":"hysteron-model","version":1'
     fn to_json(&self) -> String {
         self.inner.to_json()
@@ -281,7 +281,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.Model([1.0, 2.0, 4.0], (0, 1)).summary()['widest_loop']
+    /// >>> pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).summary()['widest_loop']
     /// 2.0
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         told(py, &hysteron::inspect_model(&self.inner).raise()?)

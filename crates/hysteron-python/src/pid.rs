@@ -47,12 +47,12 @@ fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
 ///
 /// Examples
 /// --------
-/// >>> pid = hysteron.control.Pid(2.0, integral_s=1.0)
+/// >>> pid = pyhysteron.control.Pid(2.0, integral_s=1.0)
 /// >>> pid.step(1.0, 0.1)
 /// 2.2
 /// >>> pid.step(100.0, 0.1, limits=(0, 10))
 /// 10.0
-#[pyclass(frozen, module = "hysteron.control")]
+#[pyclass(frozen, module = "pyhysteron.control")]
 pub(crate) struct Pid {
     pub(crate) gains: Gains,
     inner: Shared<control::Pid>,
@@ -97,7 +97,7 @@ impl Pid {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.control.Pid.from_oscillation(3.2, 1.0)
+    /// >>> pyhysteron.control.Pid.from_oscillation(3.2, 1.0)
     /// Pid(1, integral_s=2.2, derivative_s=0)
     #[staticmethod]
     pub(crate) fn from_oscillation(ultimate_gain: f64, period_s: f64) -> PyResult<Self> {
@@ -130,7 +130,7 @@ impl Pid {
     /// Examples
     /// --------
     /// >>> late = np.maximum(0.1 * (np.arange(400) - 55), 0)  # a lag of 2 s, 0.5 s late
-    /// >>> pid = hysteron.control.Pid.from_step(3 * (1 - np.exp(-late / 2)), 50, 1.0, 0.1)
+    /// >>> pid = pyhysteron.control.Pid.from_step(3 * (1 - np.exp(-late / 2)), 50, 1.0, 0.1)
     /// >>> round(pid.gain, 1)
     /// 0.7
     #[staticmethod]
@@ -197,7 +197,7 @@ impl Pid {
     ///
     /// Examples
     /// --------
-    /// >>> pid = hysteron.control.Pid(2.0, integral_s=4.0)
+    /// >>> pid = pyhysteron.control.Pid(2.0, integral_s=4.0)
     /// >>> pid.step(1.0, 0.5), pid.step(1.0, 0.5, limits=(0, 2))
     /// (2.25, 2.0)
     #[pyo3(signature = (error, dt, *, bias=0.0, limits=None, held=(false, false)),
@@ -230,7 +230,7 @@ impl Pid {
     ///
     /// Examples
     /// --------
-    /// >>> pid = hysteron.control.Pid(2.0)
+    /// >>> pid = pyhysteron.control.Pid(2.0)
     /// >>> _ = pid.step(1.0, 0.5)
     /// >>> pid.hold(bias=1.0)
     /// 3.0
@@ -244,7 +244,7 @@ impl Pid {
     ///
     /// Examples
     /// --------
-    /// >>> pid = hysteron.control.Pid(2.0, integral_s=4.0)
+    /// >>> pid = pyhysteron.control.Pid(2.0, integral_s=4.0)
     /// >>> _ = pid.step(1.0, 0.5)
     /// >>> pid.reset()
     /// >>> pid.step(1.0, 0.5)

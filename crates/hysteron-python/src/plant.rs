@@ -18,7 +18,7 @@ type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
 ///
 /// Once a sample: `read`, `write`, `advance`. Several threads may share one. It cannot be pickled: one made with the same options and
 /// seed does the same.
-#[pyclass(frozen, subclass, module = "hysteron")]
+#[pyclass(frozen, subclass, module = "pyhysteron")]
 pub(crate) struct SimulatedPlant {
     pub(crate) inner: Shared<Boxed>,
     options: PlantOptions,
@@ -57,7 +57,7 @@ impl SimulatedPlant {
     ///
     /// Examples
     /// --------
-    /// >>> output, temperature = hysteron.SpringPlant().read()
+    /// >>> output, temperature = pyhysteron.SpringPlant().read()
     /// >>> 21 < temperature < 23  # the room's
     /// True
     fn read(&self, py: Python<'_>) -> (f64, Option<f64>) {
@@ -78,7 +78,7 @@ impl SimulatedPlant {
     ///
     /// Examples
     /// --------
-    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant = pyhysteron.PreisachPlant()
     /// >>> plant.write(1000)
     /// >>> plant.advance(1.0)
     /// >>> round(plant.truth()[1])  # its limit
@@ -103,7 +103,7 @@ impl SimulatedPlant {
     ///
     /// Examples
     /// --------
-    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant = pyhysteron.PreisachPlant()
     /// >>> plant.write(150)
     /// >>> plant.advance(1.0)
     /// >>> plant.truth()[1] > 149  # the amplifier has followed
@@ -131,7 +131,7 @@ impl SimulatedPlant {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.PreisachPlant().truth()
+    /// >>> pyhysteron.PreisachPlant().truth()
     /// (0.0, 0.0)
     fn truth(&self, py: Python<'_>) -> (f64, Option<f64>) {
         let truth = self.inner.with(py, |plant| plant.truth());
@@ -158,7 +158,7 @@ impl SimulatedPlant {
     ///
     /// Examples
     /// --------
-    /// >>> plant = hysteron.PreisachPlant()
+    /// >>> plant = pyhysteron.PreisachPlant()
     /// >>> plant.disturb(lost=True)
     /// >>> plant.read()[0]
     /// nan
@@ -204,14 +204,14 @@ impl SimulatedPlant {
 ///
 /// Examples
 /// --------
-/// >>> plant = hysteron.SpringPlant(load_n=6, seed=3)
+/// >>> plant = pyhysteron.SpringPlant(load_n=6, seed=3)
 /// >>> plant.write(2.0)
 /// >>> plant.advance(30.0)
 /// >>> lifted, temperature = plant.truth()
 /// >>> plant.disturb(load_n=10.0)
 /// >>> plant.truth()[0] < lifted - 1
 /// True
-#[pyclass(frozen, extends = SimulatedPlant, module = "hysteron")]
+#[pyclass(frozen, extends = SimulatedPlant, module = "pyhysteron")]
 pub(crate) struct SpringPlant;
 
 #[pymethods]
@@ -266,7 +266,7 @@ impl SpringPlant {
 ///
 /// Examples
 /// --------
-/// >>> plant = hysteron.PreisachPlant()
+/// >>> plant = pyhysteron.PreisachPlant()
 /// >>> reached = []
 /// >>> for drive in (0, 75, 150, 75):
 /// ...     plant.write(drive)
@@ -274,7 +274,7 @@ impl SpringPlant {
 /// ...     reached.append(plant.truth()[0])
 /// >>> reached[3] > reached[1] + 10
 /// True
-#[pyclass(frozen, extends = SimulatedPlant, module = "hysteron")]
+#[pyclass(frozen, extends = SimulatedPlant, module = "pyhysteron")]
 pub(crate) struct PreisachPlant;
 
 #[pymethods]

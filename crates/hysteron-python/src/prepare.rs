@@ -50,7 +50,7 @@ use pyo3::types::PyString;
 /// >>> input = 40 * np.sin(0.05 * np.arange(300))
 /// >>> output = 0.5 * input
 /// >>> input[100] = 0  # a reading that was lost
-/// >>> prepared, report = hysteron.prepare(input, output)
+/// >>> prepared, report = pyhysteron.prepare(input, output)
 /// >>> report['spikes']['input']['first']  # counted from 1
 /// [101]
 /// >>> bool(abs(prepared.input[100] + 38.36) < 0.1)

@@ -40,7 +40,7 @@ use std::path::PathBuf;
 /// >>> import os, tempfile
 /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
 /// >>> _ = open(path, 'w').write('T [degC];lift\n20,5;0\n80;14\n')
-/// >>> hysteron.read(path, input='T [degC]', output='lift').input
+/// >>> pyhysteron.read(path, input='T [degC]', output='lift').input
 /// array([20.5, 80. ])
 #[pyfunction]
 #[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false))]

@@ -34,12 +34,12 @@ use std::sync::Arc;
 ///
 /// Examples
 /// --------
-/// >>> recording = hysteron.Recording([20, 80, 50], [0, 14, 11], input_name='temperature [degC]')
+/// >>> recording = pyhysteron.Recording([20, 80, 50], [0, 14, 11], input_name='temperature [degC]')
 /// >>> recording
 /// <Recording, 3 samples: temperature [degC] → output>
 /// >>> recording.output
 /// array([ 0., 14., 11.])
-#[pyclass(frozen, module = "hysteron", from_py_object)]
+#[pyclass(frozen, module = "pyhysteron", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Recording {
     pub(crate) inner: Arc<hysteron::Recording>,
@@ -117,7 +117,7 @@ impl Recording {
     /// Examples
     /// --------
     /// >>> frame = {'T [degC]': [20, 80], 'lift': [0, 14]}
-    /// >>> hysteron.Recording.from_frame(frame, input='T [degC]', output='lift')
+    /// >>> pyhysteron.Recording.from_frame(frame, input='T [degC]', output='lift')
     /// <Recording, 2 samples: T [degC] → lift>
     #[classmethod]
     #[pyo3(signature = (frame, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None))]
@@ -230,7 +230,7 @@ impl Recording {
     /// --------
     /// >>> import os, tempfile
     /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
-    /// >>> hysteron.Recording([20, 80], [0, 14], input_name='T [degC]').to_csv(path)
+    /// >>> pyhysteron.Recording([20, 80], [0, 14], input_name='T [degC]').to_csv(path)
     /// >>> open(path).read()
     /// 'T [degC],output\n20,0\n80,14\n'
     fn to_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
@@ -252,7 +252,7 @@ impl Recording {
     ///
     /// Examples
     /// --------
-    /// >>> summary = hysteron.Recording([20, 80, 50], [0, 14, 11]).summary(levels=5)
+    /// >>> summary = pyhysteron.Recording([20, 80, 50], [0, 14, 11]).summary(levels=5)
     /// >>> summary['samples'], summary['operators'], summary['excited']
     /// (3, 15, 15)
     #[pyo3(signature = (*, levels=None, range=None), text_signature = "($self, *, levels=20, range=None)")]

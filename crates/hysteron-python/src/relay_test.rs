@@ -27,8 +27,8 @@ use pyo3::prelude::*;
 ///
 /// Examples
 /// --------
-/// >>> plant = hysteron.PreisachPlant()
-/// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+/// >>> plant = pyhysteron.PreisachPlant()
+/// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
 /// >>> while not test.done:
 /// ...     plant.write(test.command)
 /// ...     plant.advance(0.01)
@@ -36,7 +36,7 @@ use pyo3::prelude::*;
 /// >>> pid = test.gains(0.01)
 /// >>> pid.gain > 0 and pid.integral_s > 0
 /// True
-#[pyclass(frozen, module = "hysteron.control")]
+#[pyclass(frozen, module = "pyhysteron.control")]
 pub(crate) struct RelayTest {
     inner: Shared<control::RelayTest>,
 }
@@ -77,7 +77,7 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> test = hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
     /// >>> before = test.command
     /// >>> test.push(40.0)  # beyond the middle and the band
     /// >>> before, test.command
@@ -104,7 +104,7 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> hysteron.control.RelayTest((40, 110), 36.0).oscillation(0.01) is None  # not done
+    /// >>> pyhysteron.control.RelayTest((40, 110), 36.0).oscillation(0.01) is None  # not done
     /// True
     fn oscillation(&self, py: Python<'_>, interval_s: f64) -> PyResult<Option<(f64, f64)>> {
         let interval_s = interval("interval_s", interval_s)?;
@@ -130,7 +130,7 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> plant, test = hysteron.PreisachPlant(), hysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> plant, test = pyhysteron.PreisachPlant(), pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
     /// >>> while not test.done:
     /// ...     plant.write(test.command)
     /// ...     plant.advance(0.01)

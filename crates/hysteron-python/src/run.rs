@@ -44,7 +44,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> model.simulate([0.5, 1.0, 0.5])
     /// array([4., 7., 5.])
     #[pyo3(signature = (input, *, time=None, load=None))]
@@ -86,7 +86,7 @@ impl Model {
     /// --------
     /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 40, 800))
     /// >>> lift = 0.1 * temperature + 0.01 * np.sin(np.arange(800))
-    /// >>> model = hysteron.fit(temperature, lift, levels=6)
+    /// >>> model = pyhysteron.fit(temperature, lift, levels=6)
     /// >>> lower, upper = model.band(temperature)
     /// >>> bool(np.mean((lower <= lift) & (lift <= upper)) > 0.9)
     /// True
@@ -131,7 +131,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> found = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5])
     /// >>> found['forward']['max_abs']
     /// 0.5
@@ -150,7 +150,7 @@ impl Model {
         judge::evaluate(py, &self.inner, &recording, start_of(start)?)
     }
 
-    /// What an input, or several, say about each operator of this model's plane: `hysteron.excitation`.
+    /// What an input, or several, say about each operator of this model's plane: `pyhysteron.excitation`.
     ///
     /// Parameters
     /// ----------
@@ -159,11 +159,11 @@ impl Model {
     /// Returns
     /// -------
     /// ndarray, shape (K, K)
-    ///     As `hysteron.excitation`.
+    ///     As `pyhysteron.excitation`.
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> model.excitation([0.0, 1.0, 0.0])
     /// array([[ 0.,  3.],
     ///        [nan,  3.]])
@@ -192,7 +192,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> model.start(on=True).step(0.5)
     /// 5.0
     #[pyo3(signature = (*, on=false))]
@@ -221,7 +221,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> state = model.start()
     /// >>> _ = state.run([1.0, 0.2, 0.6])
     /// >>> again = model.restore(state.save())
@@ -256,7 +256,7 @@ impl Model {
     ///
     /// Examples
     /// --------
-    /// >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> inputs, status = model.inverse().run([4.0, 7.0, 5.0])
     /// >>> inputs
     /// array([0.5, 1. , 0.5])
@@ -282,8 +282,8 @@ impl Model {
     /// Examples
     /// --------
     /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 20, 400))
-    /// >>> runs = [hysteron.Recording(temperature, (9 - load) * temperature, load=np.full(400, load)) for load in (3.0, 6.0)]
-    /// >>> model = hysteron.fit(runs, levels=6, bootstrap=0)
+    /// >>> runs = [pyhysteron.Recording(temperature, (9 - load) * temperature, load=np.full(400, load)) for load in (3.0, 6.0)]
+    /// >>> model = pyhysteron.fit(runs, levels=6, bootstrap=0)
     /// >>> model.load_range
     /// (3.0, 6.0)
     /// >>> low, high = model.at_load(4.5).output_range

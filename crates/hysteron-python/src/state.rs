@@ -15,12 +15,12 @@ use pyo3::types::{PyDict, PyTuple};
 ///
 /// Examples
 /// --------
-/// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+/// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
 /// >>> [state.step(x) for x in (0.5, 1.0, 0.5)]
 /// [4.0, 7.0, 5.0]
 /// >>> state.turning_points
 /// array([2. , 1.5])
-#[pyclass(frozen, module = "hysteron")]
+#[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct State {
     model: Model,
     pub(crate) inner: Shared<hysteron::State>,
@@ -58,7 +58,7 @@ impl State {
     ///
     /// Examples
     /// --------
-    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.step(0.5)
     /// 4.0
     fn step(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
@@ -84,7 +84,7 @@ impl State {
     ///
     /// Examples
     /// --------
-    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.run([0.5, 1.0]), state.run([0.5])
     /// (array([4., 7.]), array([5.]))
     pub(crate) fn run<'py>(
@@ -111,7 +111,7 @@ impl State {
     ///
     /// Examples
     /// --------
-    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.reset(on=True)
     /// >>> state.operators
     /// array([[ 1.,  1.],
@@ -132,7 +132,7 @@ impl State {
     ///
     /// Examples
     /// --------
-    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> _ = state.run([1.0, 0.5])
     /// >>> state.save()
     /// {'turning_points': array([2. , 1.5]), 'input': 0.5}
@@ -172,7 +172,7 @@ impl State {
     ///
     /// Examples
     /// --------
-    /// >>> state = hysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
+    /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> other = state.copy()
     /// >>> state.step(1.0), other.step(0.5)
     /// (7.0, 4.0)

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 
 /// A run of a control loop: arrays of shape (n,), a value for each sample.
-#[pyclass(frozen, module = "hysteron.control", from_py_object)]
+#[pyclass(frozen, module = "pyhysteron.control", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Trace {
     inner: std::sync::Arc<control::Trace>,
@@ -132,8 +132,8 @@ impl Trace {
     ///
     /// Examples
     /// --------
-    /// >>> controller = hysteron.control.Controller(0.01, (0, 150), pid=hysteron.control.Pid(0.2))
-    /// >>> trace = controller.run(hysteron.PreisachPlant(), np.full(100, 20.0))
+    /// >>> controller = pyhysteron.control.Controller(0.01, (0, 150), pid=pyhysteron.control.Pid(0.2))
+    /// >>> trace = controller.run(pyhysteron.PreisachPlant(), np.full(100, 20.0))
     /// >>> {name: len(series) for name, series in trace.to_dict().items()}['drive']
     /// 100
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -167,8 +167,8 @@ impl Trace {
     /// --------
     /// >>> import os, tempfile
     /// >>> path = os.path.join(tempfile.mkdtemp(), 'run.csv')
-    /// >>> controller = hysteron.control.Controller(0.01, (0, 150), pid=hysteron.control.Pid(0.2))
-    /// >>> trace = controller.run(hysteron.PreisachPlant(), np.full(100, 20.0))
+    /// >>> controller = pyhysteron.control.Controller(0.01, (0, 150), pid=pyhysteron.control.Pid(0.2))
+    /// >>> trace = controller.run(pyhysteron.PreisachPlant(), np.full(100, 20.0))
     /// >>> trace.to_csv(path)
     /// >>> open(path).readline()[:29]
     /// 'time_s,reference,output,measu'

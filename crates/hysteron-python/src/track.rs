@@ -16,7 +16,7 @@ use pyo3::types::{PyDict, PyList};
 use std::path::{Path, PathBuf};
 
 /// Controllers compared on a simulated plant: what `track` found.
-#[pyclass(frozen, module = "hysteron")]
+#[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Comparison {
     inner: Found,
 }
@@ -183,7 +183,7 @@ impl Comparison {
 ///
 /// Examples
 /// --------
-/// >>> comparison = hysteron.track('''
+/// >>> comparison = pyhysteron.track('''
 /// ... title = "A sine on a simulated piezo-like actuator"
 /// ... duration_s = 8
 /// ... interval_s = 0.01
@@ -227,7 +227,7 @@ pub(crate) fn track(
 /// Parameters
 /// ----------
 /// scenario : str or path-like
-///     As for `hysteron.track`.
+///     As for `pyhysteron.track`.
 ///
 /// Returns
 /// -------
@@ -244,7 +244,7 @@ pub(crate) fn track(
 ///
 /// Examples
 /// --------
-/// >>> outer, inner = hysteron.control.tune('sine')  # a spring, heated by a current
+/// >>> outer, inner = pyhysteron.control.tune('sine')  # a spring, heated by a current
 /// >>> outer.gain > 0 and inner.gain > 0
 /// True
 #[pyfunction]
@@ -268,7 +268,7 @@ pub(crate) fn tune(
 ///
 /// Examples
 /// --------
-/// >>> sorted(hysteron.scenarios())
+/// >>> sorted(pyhysteron.scenarios())
 /// ['drift', 'faults', 'load-step', 'load-step-preisach', 'sine', 'staircase']
 #[pyfunction]
 pub(crate) fn scenarios(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

@@ -30,7 +30,7 @@ use pyo3::prelude::*;
 ///
 /// Examples
 /// --------
-/// >>> hysteron.branches([0, 2, 4, 3.99, 4, 1, 3])
+/// >>> pyhysteron.branches([0, 2, 4, 3.99, 4, 1, 3])
 /// array([0, 0, 0, 1, 1, 1, 2])
 #[pyfunction]
 #[pyo3(signature = (input, *, band=None))]
@@ -70,7 +70,7 @@ pub(crate) fn branches<'py>(
 ///
 /// Examples
 /// --------
-/// >>> hysteron.remembered([0, 5, 2, 4, 1, 3, 2.5])
+/// >>> pyhysteron.remembered([0, 5, 2, 4, 1, 3, 2.5])
 /// array([0, 1, 4, 5, 6])
 #[pyfunction]
 pub(crate) fn remembered<'py>(
@@ -105,7 +105,7 @@ pub(crate) fn remembered<'py>(
 ///
 /// Examples
 /// --------
-/// >>> hysteron.control.headings([0, 1, 2, 1])
+/// >>> pyhysteron.control.headings([0, 1, 2, 1])
 /// ['rising', 'rising', 'rising', 'falling']
 #[pyfunction]
 #[pyo3(signature = (series, band=0.0))]

@@ -86,7 +86,7 @@ fn callback<'py>(
         None => Ok(None),
         Some(flag) if flag.is_instance_of::<PyBool>() => match flag.extract()? {
             true => py
-                .import("hysteron.progress")?
+                .import("pyhysteron.progress")?
                 .call_method0("Bar")
                 .map(Some),
             false => Ok(None),

@@ -14,7 +14,7 @@ try:
     from sklearn.base import BaseEstimator, RegressorMixin
     from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 except ImportError as _missing:
-    raise ImportError("hysteron.sklearn needs scikit-learn 1.6 or newer: pip install 'hysteron[sklearn]'") from _missing
+    raise ImportError("pyhysteron.sklearn needs scikit-learn 1.6 or newer: pip install 'pyhysteron[sklearn]'") from _missing
 
 from . import _hysteron
 
@@ -30,7 +30,7 @@ EXPECTED_FAILED_CHECKS = {
 
 
 class HysteresisRegressor(RegressorMixin, BaseEstimator):
-    """A hysteresis model as a regressor: `hysteron.fit` and `Model.simulate`.
+    """A hysteresis model as a regressor: `pyhysteron.fit` and `Model.simulate`.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
 
     Attributes
     ----------
-    model_ : hysteron.Model
+    model_ : pyhysteron.Model
         Its input and output have the names of the columns, where `X` and `y` are of pandas.
     n_features_in_ : int
     feature_names_in_ : ndarray of str
@@ -63,7 +63,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     Examples
     --------
     >>> import numpy as np
-    >>> from hysteron.sklearn import HysteresisRegressor
+    >>> from pyhysteron.sklearn import HysteresisRegressor
     >>> t = np.linspace(0, 20, 400)
     >>> X = (50 - 30 * np.cos(t) * np.exp(-t / 20)).reshape(-1, 1)
     >>> y = 0.5 * X.ravel()
@@ -113,7 +113,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         Examples
         --------
         >>> import numpy as np
-        >>> from hysteron.sklearn import HysteresisRegressor
+        >>> from pyhysteron.sklearn import HysteresisRegressor
         >>> X = np.array([[0.0], [1.0], [2.0], [1.0], [0.0]])
         >>> HysteresisRegressor(levels=2).fit(X, [0, 1, 3, 3, 0]).model_.levels
         2
@@ -142,7 +142,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         Examples
         --------
         >>> import numpy as np
-        >>> from hysteron.sklearn import HysteresisRegressor
+        >>> from pyhysteron.sklearn import HysteresisRegressor
         >>> X = np.array([[0.0], [1.0], [2.0], [1.0], [0.0]])
         >>> regressor = HysteresisRegressor(levels=2).fit(X, [0, 1, 3, 3, 0])
         >>> regressor.predict([[2.0], [1.0]]).round(6)
@@ -171,12 +171,12 @@ class BranchSplit:
 
     The samples of one branch are so alike that leaving out some of them tests nothing; so a fold is a run of whole
     branches, about as many samples in each fold. What a hysteresis operator does depends on the past, but only on the few turning points that nothing
-    since has wiped out (`hysteron.remembered`). These samples, some two to a few dozen, go before the fold in the test
+    since has wiped out (`pyhysteron.remembered`). These samples, some two to a few dozen, go before the fold in the test
     set, and before what follows the fold in the training set. Thus each operator stands after any fold exactly where it
     stands in the whole recording, and the model is fitted and scored on the material's own path.
 
     The price: those few samples are in both sets, so that the folds are no partition (`cross_val_score`, `cross_validate` and
-    `GridSearchCV` take that, `cross_val_predict` does not). `hysteron.left_out` does without.
+    `GridSearchCV` take that, `cross_val_predict` does not). `pyhysteron.left_out` does without.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ class BranchSplit:
     Examples
     --------
     >>> import numpy as np
-    >>> from hysteron.sklearn import BranchSplit
+    >>> from pyhysteron.sklearn import BranchSplit
     >>> X = np.array([0, 4, 8, 5, 2, 5, 8, 4, 0.0]).reshape(-1, 1)
     >>> for train, test in BranchSplit(2).split(X):
     ...     print(train, test)
@@ -217,7 +217,7 @@ class BranchSplit:
 
         Examples
         --------
-        >>> from hysteron.sklearn import BranchSplit
+        >>> from pyhysteron.sklearn import BranchSplit
         >>> BranchSplit(4).get_n_splits()
         4
         """
@@ -248,7 +248,7 @@ class BranchSplit:
         The last fold begins with the turning points that no larger swing has wiped out: 0, 8 and 1, not 6 and 7.
 
         >>> import numpy as np
-        >>> from hysteron.sklearn import BranchSplit
+        >>> from pyhysteron.sklearn import BranchSplit
         >>> X = np.array([0, 8, 6, 7, 1, 5, 3.0]).reshape(-1, 1)
         >>> train, test = list(BranchSplit(3).split(X))[-1]
         >>> X[test].ravel()

@@ -32,9 +32,9 @@ def loops(recording, model=None, *, start="off", ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1), output="lift [mm]")
-    >>> ax = plot.loops(hysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]), model)
+    >>> from pyhysteron import plot
+    >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), output="lift [mm]")
+    >>> ax = plot.loops(pyhysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]), model)
     >>> [line.get_label() for line in ax.get_lines()]
     ['measured', 'modelled']
     """
@@ -74,8 +74,8 @@ def major_loops(model, loads=None, *, ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> ax = plot.major_loops(hysteron.Model([1.0, 2.0, 4.0], (20, 80), output="lift [mm]"))
+    >>> from pyhysteron import plot
+    >>> ax = plot.major_loops(pyhysteron.Model([1.0, 2.0, 4.0], (20, 80), output="lift [mm]"))
     >>> ax.get_ylabel()
     'lift [mm]'
     >>> float(ax.get_lines()[0].get_ydata().max())

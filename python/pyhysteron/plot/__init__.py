@@ -4,11 +4,11 @@ Each function draws into axes of a new figure, or into those it is given, and re
 well as in colour, so that they can be told apart in grey. Where a recording comes from a simulation, the legend says so.
 
 >>> import numpy as np
->>> import hysteron
->>> from hysteron import plot
+>>> import pyhysteron
+>>> from pyhysteron import plot
 >>> temperature = 50 - 30 * np.cos(np.linspace(0, 20, 400))
->>> model = hysteron.Model(np.full(15, 0.2), (20, 80), input="temperature [degC]", output="lift [mm]")
->>> recording = hysteron.Recording(temperature, model.simulate(temperature), simulated=True)
+>>> model = pyhysteron.Model(np.full(15, 0.2), (20, 80), input="temperature [degC]", output="lift [mm]")
+>>> recording = pyhysteron.Recording(temperature, model.simulate(temperature), simulated=True)
 >>> ax = plot.loops(recording, model)
 >>> ax.figure.savefig("loops.png")
 
@@ -35,7 +35,7 @@ Only Fig. 9 is not among them: it shows the windows of another program, Simulink
 try:
     import matplotlib as _matplotlib  # noqa: F401
 except ImportError as _missing:
-    raise ImportError("hysteron.plot needs matplotlib: pip install 'hysteron[plot]'") from _missing
+    raise ImportError("pyhysteron.plot needs matplotlib: pip install 'pyhysteron[plot]'") from _missing
 
 from ._loops import loops, major_loops
 from ._operators import operators, structure

@@ -1,4 +1,4 @@
-"""Discrete blocks for python-control (``pip install hysteron[control]``).
+"""Discrete blocks for python-control (``pip install pyhysteron[control]``).
 
 A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and simulated there.
 
@@ -15,7 +15,7 @@ import numpy as np
 try:
     import control
 except ImportError as _missing:
-    raise ImportError("hysteron.blocks needs python-control: pip install 'hysteron[control]'") from _missing
+    raise ImportError("pyhysteron.blocks needs python-control: pip install 'pyhysteron[control]'") from _missing
 
 from ._hysteron import Adaptive, Model, State
 from .errors import CoreError
@@ -47,8 +47,8 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
 
     Examples
     --------
-    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    >>> hysteron.blocks.memory(model, model.start(on=True))[:4]
+    >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> pyhysteron.blocks.memory(model, model.start(on=True))[:4]
     array([1., 1., 2., 0.])
     """
     _needed("model", model, Model)
@@ -66,7 +66,7 @@ def memory(model: Model, state: State | None = None) -> np.ndarray:
 
 def _needed(name: str, value: object, kind: type) -> None:
     if not isinstance(value, kind):
-        raise TypeError(f"`{name}` is {value!r}: a hysteron.{kind.__name__} is needed")
+        raise TypeError(f"`{name}` is {value!r}: a pyhysteron.{kind.__name__} is needed")
 
 
 def _state(model: Model, vector: np.ndarray) -> State:
@@ -109,7 +109,7 @@ def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
     Examples
     --------
     >>> import control
-    >>> block = hysteron.blocks.model_block(hysteron.Model([1.0, 2.0, 4.0], (0, 1)), 0.1)
+    >>> block = pyhysteron.blocks.model_block(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), 0.1)
     >>> control.input_output_response(block, np.array([0, 0.1, 0.2]), [0.5, 1.0, 0.5]).y
     array([[4., 7., 5.]])
     """
@@ -156,8 +156,8 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     Examples
     --------
     >>> import control
-    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    >>> inverse, plant = hysteron.blocks.inverse_block(model, 0.1), hysteron.blocks.model_block(model, 0.1)
+    >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> inverse, plant = pyhysteron.blocks.inverse_block(model, 0.1), pyhysteron.blocks.model_block(model, 0.1)
     >>> control.input_output_response(control.series(inverse, plant), np.array([0, 0.1, 0.2]), [4.0, 6.0, 5.0]).y
     array([[4., 6., 5.]])
     """
@@ -211,8 +211,8 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
     Examples
     --------
     >>> import control
-    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    >>> block = hysteron.blocks.adaptive_block(hysteron.Adaptive(model), 0.1)
+    >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> block = pyhysteron.blocks.adaptive_block(pyhysteron.Adaptive(model), 0.1)
     >>> control.input_output_response(block, np.array([0, 0.1]), [[4.0, 4.0], [4.0, 4.0], [0.5, 0.5]]).y
     array([[0.5, 0.5]])
     """

@@ -36,8 +36,8 @@ def grid(model, *, ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> ax = plot.grid(hysteron.Model([1.0, 2.0, 4.0], (20, 80)))
+    >>> from pyhysteron import plot
+    >>> ax = plot.grid(pyhysteron.Model([1.0, 2.0, 4.0], (20, 80)))
     >>> ax.get_lines()[0].get_xydata().tolist()
     [[20.0, 20.0], [20.0, 80.0], [80.0, 80.0]]
     """
@@ -89,8 +89,8 @@ def excitation(model, input, *, ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> ax = plot.excitation(hysteron.Model([1.0, 2.0, 4.0], (0, 1)), [0.0, 1.0])
+    >>> from pyhysteron import plot
+    >>> ax = plot.excitation(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), [0.0, 1.0])
     >>> ax.get_legend().get_texts()[0].get_text()
     'never moves (1)'
     """
@@ -141,8 +141,8 @@ def plane(model, input, *, at=None, start="off", axes=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> axes = plot.plane(hysteron.Model([1.0, 2.0, 4.0], (0, 1)), [0.0, 1.0, 0.5], at=[1, 2])
+    >>> from pyhysteron import plot
+    >>> axes = plot.plane(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), [0.0, 1.0, 0.5], at=[1, 2])
     >>> [len(line.get_xdata()) for line in axes[1].get_lines()[:3]]  # at 0, between, at 1
     [0, 1, 2]
     """

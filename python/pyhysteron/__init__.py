@@ -4,9 +4,9 @@ From a recording of input and output (temperature and displacement, say) to an M
 (modified Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
 
 Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse` and `Model.start`.
-`design` plans a recording. Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `hysteron.control` and
-`track`, figures in `hysteron.plot`, a regressor in `hysteron.sklearn`, blocks for python-control in `hysteron.blocks`.
-What can go wrong is a `HysteronError`; its kinds, of which many are ValueErrors too, are in `hysteron.errors`.
+`design` plans a recording. Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `pyhysteron.control` and
+`track`, figures in `pyhysteron.plot`, a regressor in `pyhysteron.sklearn`, blocks for python-control in `pyhysteron.blocks`.
+What can go wrong is a `HysteronError`; its kinds, of which many are ValueErrors too, are in `pyhysteron.errors`.
 """
 
 from . import control

@@ -33,8 +33,8 @@ def weights(model, *, kind="marks", ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> ax = plot.weights(hysteron.Model([1.0, 0.0, 4.0], (20, 80)))
+    >>> from pyhysteron import plot
+    >>> ax = plot.weights(pyhysteron.Model([1.0, 0.0, 4.0], (20, 80)))
     >>> [line.get_label() for line in ax.get_lines()]
     ['zero (1)', 'not zero (2)']
     """

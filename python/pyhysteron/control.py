@@ -1,9 +1,9 @@
 """Control loops on a hysteresis model and its inverse.
 
 A `Controller` is an inverse as feedforward, a `Pid`, or both, fixed or adapting. It follows a reference on a simulated plant
-(`hysteron.SpringPlant`, `hysteron.PreisachPlant`) or on any object with ``read`` and ``write``; or it is stepped in a loop of one's
+(`pyhysteron.SpringPlant`, `pyhysteron.PreisachPlant`) or on any object with ``read`` and ``write``; or it is stepped in a loop of one's
 own. Gains come from a `RelayTest`, from a step test (`Pid.from_step`), or from a scenario's own test (`tune`).
-`hysteron.track` compares controllers. Times are in seconds.
+`pyhysteron.track` compares controllers. Times are in seconds.
 """
 
 from ._hysteron import Action, Controller, Pid, RelayTest, Trace, headings, tune

@@ -31,7 +31,7 @@ def operators(*, axes=None):
 
     Examples
     --------
-    >>> from hysteron import plot
+    >>> from pyhysteron import plot
     >>> [ax.get_title() for ax in plot.operators()]
     ['relay', 'KP', 'MKP']
     """
@@ -88,8 +88,8 @@ def structure(model, *, ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> ax = plot.structure(hysteron.Model([1.0, 2.0, 4.0], (20, 80), input="temperature [degC]"))
+    >>> from pyhysteron import plot
+    >>> ax = plot.structure(pyhysteron.Model([1.0, 2.0, 4.0], (20, 80), input="temperature [degC]"))
     >>> ax.texts[0].get_text()
     'temperature [°C]'
     """

@@ -35,9 +35,9 @@ def over_time(recording, model, *, of="output", start="off", axes=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> model = hysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    >>> series, difference = plot.over_time(hysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]), model)
+    >>> from pyhysteron import plot
+    >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+    >>> series, difference = plot.over_time(pyhysteron.Recording([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]), model)
     >>> difference.get_lines()[-1].get_ydata()
     array([ 0. ,  0. , -0.5])
     """
@@ -89,11 +89,11 @@ def band(recording, model, *, ax=None):
 
     Examples
     --------
-    >>> from hysteron import plot
+    >>> from pyhysteron import plot
     >>> input = 50 - 30 * np.cos(np.linspace(0, 20, 200))
     >>> noise = 0.01 * np.random.default_rng(1).normal(size=200)
-    >>> recording = hysteron.Recording(input, np.sqrt(input) + noise)
-    >>> plot.band(recording, hysteron.fit(recording, levels=5, bootstrap=30)).get_xlabel()
+    >>> recording = pyhysteron.Recording(input, np.sqrt(input) + noise)
+    >>> plot.band(recording, pyhysteron.fit(recording, levels=5, bootstrap=30)).get_xlabel()
     'sample'
     """
     of = {} if model.thermal is None else {"time": recording.time}
@@ -140,10 +140,10 @@ def dead_band(recording, model, *, start="off", axes=None):
 
     Examples
     --------
-    >>> from hysteron import plot
-    >>> model = hysteron.Model([0.0, 1.0, 0.0], (0, 1))
+    >>> from pyhysteron import plot
+    >>> model = pyhysteron.Model([0.0, 1.0, 0.0], (0, 1))
     >>> input = 1.5 * np.sin(np.linspace(0, 12, 100))
-    >>> output, input = plot.dead_band(hysteron.Recording(input, model.simulate(input)), model)
+    >>> output, input = plot.dead_band(pyhysteron.Recording(input, model.simulate(input)), model)
     >>> [line.get_label() for line in input.get_lines()[1:]]
     ['measured', 'inverse, hold', 'inverse, anticipate']
     """
