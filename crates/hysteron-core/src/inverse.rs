@@ -95,6 +95,12 @@ impl Status {
         }
     }
 
+    /// Whether the target lies beyond the model's range of outputs, and the policy's tolerance.
+    #[must_use]
+    pub fn is_out_of_reach(self) -> bool {
+        matches!(self, Status::Low | Status::High)
+    }
+
     /// The status of an output with the opposite sign.
     #[must_use]
     pub fn mirrored(self) -> Self {
