@@ -85,5 +85,5 @@ pub type Plane = hysteron_core::Plane<f64>;
 
 /// The README's code, run as a test.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 pub struct Readme;
