@@ -9,7 +9,6 @@ use hysteron_core::{
 };
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
-use std::ffi::c_void;
 use std::ptr::null_mut;
 
 const ROOMS: usize = 4;
@@ -330,7 +329,7 @@ fn core_method(options: &HysteronAdaptation) -> Method<f64> {
 
 #[test]
 fn an_object_works_as_in_the_core_or_is_refused() {
-    for seed in 0..300 {
+    for seed in 0..4000 {
         let mut world = World::new(seed);
         for _ in 0..200 {
             match world.rng.random_range(0..12) {
