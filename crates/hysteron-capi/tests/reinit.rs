@@ -30,6 +30,20 @@ enum Twin {
     Estimator(Estimator<f64, Vec<f64>>),
 }
 
+impl Twin {
+    fn is_model(&self) -> bool {
+        matches!(self, Self::Model(_))
+    }
+
+    fn is_state(&self) -> bool {
+        matches!(self, Self::State(_))
+    }
+
+    fn is_estimator(&self) -> bool {
+        matches!(self, Self::Estimator(_))
+    }
+}
+
 struct World {
     memory: Vec<u64>,
     twins: [Twin; ROOMS],
@@ -47,6 +61,17 @@ impl World {
 
     fn room(&mut self) -> usize {
         self.rng.random_range(0..ROOMS)
+    }
+
+    /// Mostly one that holds such an object, where there is one.
+    fn room_of(&mut self, wanted: fn(&Twin) -> bool) -> usize {
+        let any = self.room();
+        let mut from = (0..ROOMS).map(|n| (any + n) % ROOMS);
+        let found = from.find(|&room| wanted(&self.twins[room]));
+        if self.rng.random_ratio(1, 8) {
+            return any;
+        }
+        found.unwrap_or(any)
     }
 
     fn at<T>(&mut self, room: usize) -> *mut T {
@@ -137,7 +162,7 @@ impl World {
     }
 
     fn make_state(&mut self) {
-        let (room, of) = (self.room(), self.room());
+        let (room, of) = (self.room(), self.room_of(Twin::is_model));
         let short = usize::from(self.rng.random_ratio(1, 4));
         let (memory, model, mut state) = (self.at(room), self.at(of), null_mut());
         let Twin::Model(twin) = self.twins[of].clone() else {
@@ -157,7 +182,7 @@ impl World {
     }
 
     fn make_estimator(&mut self) {
-        let (room, of) = (self.room(), self.room());
+        let (room, of) = (self.room(), self.room_of(Twin::is_model));
         let (offset, method) = (self.number(), METHODS[self.rng.random_range(0..3)]);
         // SAFETY: all fields are numbers.
         let mut options = unsafe { std::mem::zeroed() };
@@ -205,7 +230,8 @@ impl World {
 
     /// A step of the model in one room, or of its inverse, with the state in another.
     fn step(&mut self) {
-        let (of, with, number) = (self.room(), self.room(), self.number());
+        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
+        let number = self.number();
         let (model, state) = (self.at(of), self.at(with));
         let (mut result, mut status) = (0.0, 0);
         let forward = self.rng.random();
@@ -245,7 +271,8 @@ impl World {
     }
 
     fn learn(&mut self) {
-        let (by, of, with) = (self.room(), self.room(), self.room());
+        let by = self.room_of(Twin::is_estimator);
+        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
         let (input, measured) = (self.number(), self.number());
         let (estimator, model, state) = (self.at(by), self.at(of), self.at(with));
         // SAFETY: all fields are numbers.
@@ -275,7 +302,7 @@ impl World {
     }
 
     fn rebase(&mut self) {
-        let (of, with) = (self.room(), self.room());
+        let (of, with) = (self.room_of(Twin::is_model), self.room_of(Twin::is_state));
         // SAFETY: live memory, of whatever content.
         let found = unsafe { hysteron_core_state_rebase(self.at(of), self.at(with)) };
         let (Twin::Model(model), Twin::State(mut state)) =
@@ -290,11 +317,7 @@ impl World {
     fn every_room_has_its_twin(&mut self) {
         for room in 0..ROOMS {
             let twin = &self.twins[room];
-            let kinds = [
-                matches!(twin, Twin::Model(_)),
-                matches!(twin, Twin::State(_)),
-                matches!(twin, Twin::Estimator(_)),
-            ];
+            let kinds = [twin.is_model(), twin.is_state(), twin.is_estimator()];
             assert_eq!(self.found(room), kinds);
         }
     }
