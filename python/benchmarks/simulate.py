@@ -53,7 +53,10 @@ def importing():
     """Milliseconds that `import pyhysteron` takes, alone and with NumPy after it, median of several processes."""
     alone, whole = [], []
     for _ in range(9):
-        code = "import time; a = time.perf_counter(); import pyhysteron; b = time.perf_counter(); import numpy; c = time.perf_counter(); print(b - a, c - a)"
+        code = (
+            "import time; a = time.perf_counter(); import pyhysteron; b = time.perf_counter(); "
+            "import numpy; c = time.perf_counter(); print(b - a, c - a)"
+        )
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         for times, text in zip((alone, whole), done.stdout.split()):
             times.append(1e3 * float(text))

@@ -13,7 +13,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 
 HERE = Path(__file__).resolve().parent
 
-project = "hysteron"
+project = "pyhysteron"
 copyright = "the authors of hysteron"
 extensions = [
     "myst_nb",
@@ -21,7 +21,7 @@ extensions = [
     "sphinx.ext.napoleon",
 ]
 html_theme = "furo"
-html_title = "hysteron"
+html_title = "pyhysteron"
 html_theme_options = {"light_css_variables": {"code-font-size": "var(--font-size--small--2)"}}
 html_static_path = ["static"]
 html_css_files = ["site.css"]

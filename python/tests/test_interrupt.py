@@ -39,6 +39,14 @@ def tasks():
     return len(os.listdir("/proc/self/task")) if os.path.isdir("/proc/self/task") else 0
 
 
+@pytest.fixture(autouse=True)
+def disposition():
+    """Python's own: where the run was started with `nohup` or `&`, Ctrl-C is ignored, and nothing would end."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize("name", LONG)
 @pytest.mark.parametrize("way", [lambda: signal.raise_signal(signal.SIGINT), _thread.interrupt_main], ids=["signal", "interrupt"])
 def test_ctrl_c_ends(name, way, recording):

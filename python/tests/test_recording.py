@@ -85,10 +85,18 @@ def test_summary(recording):
     assert summary["time"]["gaps"] == 0
 
 
-def test_the_path_in_a_message_is_the_path(tmp_path):
-    path = tmp_path / "run--two.csv"
-    with pytest.raises(pyhysteron.FileError, match="No such file.*run--two.csv"):
+@pytest.mark.parametrize("name", ["run--two.csv", "run --old/m.csv", "--start unknown.csv", "`--repair`.csv"])
+def test_the_path_in_a_message_is_the_path(tmp_path, name):
+    path = tmp_path / name
+    with pytest.raises(pyhysteron.FileError) as raised:
         pyhysteron.read(path, input="T", output="y")
+    assert str(path) in str(raised.value)
+    path.parent.mkdir(exist_ok=True)
     path.write_text("T,y\n20,0\n,1\n")
-    with pytest.raises(pyhysteron.RecordingError, match="run--two.csv.*use `repair`"):
+    with pytest.raises(pyhysteron.RecordingError) as raised:
         pyhysteron.read(path, input="T", output="y")
+    assert f"recording {path}, line 3" in str(raised.value)
+    assert str(raised.value).endswith("or use `repair=True`")
+    with pytest.warns(pyhysteron.HysteronWarning) as warned:
+        pyhysteron.read(path, input="T", output="y", repair=True)
+    assert str(warned[0].message).startswith(f"{path}: ")

@@ -3,7 +3,7 @@
 use crate::fault::{Result, guard};
 use crate::handles::Table;
 use crate::model::MODELS;
-use crate::pointer::{Out, check};
+use crate::pointer::Arguments;
 use crate::types::{HysteronAdaptation, HysteronLearning, policy, status as status_constant};
 use hysteron::{Adaptation, Adaptive};
 use std::sync::{Mutex, PoisonError};
@@ -24,14 +24,14 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
     adaptive: *mut u64,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let out = unsafe { Out::new(adaptive, "adaptive")? };
+        let out = unsafe { arguments.out(adaptive, "adaptive")? };
         let options = if options.is_null() {
             Adaptation::default()
         } else {
-            check(options, "options")?;
             // SAFETY: the contract of the crate; every bit pattern is a value of each field.
-            unsafe { options.read() }.adaptation()?
+            unsafe { arguments.value(options, "options")? }.adaptation()?
         };
         let model = MODELS.get(model, "model")?;
         let adaptive = Adaptive::new(&model, options)?;
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn hysteron_adaptive_step(
 ) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let learning = unsafe { Out::new(learning, "learning")? };
+        let learning = unsafe { Arguments::default().out(learning, "learning")? };
         with(adaptive, |learner| {
             learning.set(learner.step(input, measured)?.into());
             Ok(())
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn hysteron_adaptive_predict(
 ) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let output = unsafe { Out::new(output, "output")? };
+        let output = unsafe { Arguments::default().out(output, "output")? };
         with(adaptive, |learner| {
             output.set(learner.predict(input)?);
             Ok(())
@@ -93,8 +93,14 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
     status: *mut i32,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
+        let (input, status) = unsafe {
+            (
+                arguments.out(input, "input")?,
+                arguments.out(status, "status")?,
+            )
+        };
         let policy = policy(heading, tolerance)?;
         with(adaptive, |learner| {
             let solution = learner.solve(target, policy)?;
@@ -110,7 +116,7 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
 pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let model = unsafe { Out::new(model, "model")? };
+        let model = unsafe { Arguments::default().out(model, "model")? };
         with(adaptive, |learner| {
             model.set(MODELS.insert(learner.model()?)?);
             Ok(())

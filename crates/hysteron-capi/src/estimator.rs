@@ -1,27 +1,19 @@
 //! Adaptation over memory that the caller owns.
 
-use crate::fault::{Result, guard_plain};
+use crate::fault::guard_plain;
 use crate::memory::{HysteronCoreModel, HysteronCoreState};
-use crate::pointer::{Out, array, check};
-use crate::room::{Marked, Room, marked, object, object_ref, size};
+use crate::pointer::Arguments;
+use crate::room::{Kind, size};
 use crate::types::{HysteronAdaptation, HysteronLearning};
-use hysteron_core::{Adaptation, Estimator, MAX_LEVELS, estimator_len};
+use hysteron_core::{Estimator, MAX_LEVELS, estimator_len};
 use std::ffi::c_void;
 
 /// An estimator in the caller's memory.
-pub struct HysteronCoreEstimator {
-    mark: u64,
-    estimator: Estimator<f64, &'static mut [f64]>,
-}
+pub struct HysteronCoreEstimator(());
 
-marked!(HysteronCoreEstimator, 0x6879_7374_6573_7469);
-
-/// # Safety
-/// `options` is null or valid for a read.
-unsafe fn taken(options: *const HysteronAdaptation) -> Result<Adaptation<f64>> {
-    check(options, "options")?;
-    // SAFETY: the caller's promise; every bit pattern is a value of each field.
-    unsafe { options.read() }.adaptation()
+impl Kind for HysteronCoreEstimator {
+    const MARK: u64 = 0x6879_7374_6573_7469;
+    type Content = Estimator<f64, &'static mut [f64]>;
 }
 
 /// Bytes for an estimator of a model of `levels` levels; 0 where there is none. Aligned as a `uint64_t` is.
@@ -30,8 +22,9 @@ pub unsafe extern "C" fn hysteron_core_estimator_size(
     levels: usize,
     options: *const HysteronAdaptation,
 ) -> usize {
-    // SAFETY: the contract of the crate.
-    match unsafe { taken(options) } {
+    // SAFETY: the contract of the crate; every bit pattern is a value of each field.
+    let options = unsafe { Arguments::default().value(options, "options") };
+    match options.and_then(|options| options.adaptation()) {
         Ok(options) if (2..=MAX_LEVELS).contains(&levels) => {
             let count = estimator_len(levels, options.method);
             size::<HysteronCoreEstimator, f64>(count).unwrap_or(0)
@@ -54,22 +47,22 @@ pub unsafe extern "C" fn hysteron_core_estimator_init(
     estimator: *mut *mut HysteronCoreEstimator,
 ) -> i32 {
     guard_plain(|| {
-        // SAFETY: the contract of the crate.
-        let (model, options) = unsafe { (&mut object(model, "model")?.model, taken(options)?) };
-        // SAFETY: the contract of the crate.
-        let (weights, out) = unsafe {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate; every bit pattern is a value of each field of the options.
+        let (model, options, weights, room, out) = unsafe {
             (
-                array(weights, count, "weights")?,
-                Out::new(estimator, "estimator")?,
+                arguments.object(model, "model")?,
+                arguments.value(options, "options")?,
+                arguments.array(weights, count, "weights")?,
+                arguments.room(memory, bytes)?,
+                arguments.out(estimator, "estimator")?,
             )
         };
+        let options = options.adaptation()?;
         let numbers = estimator_len(model.plane().levels(), options.method);
-        // SAFETY: the contract of the crate.
-        let (room, numbers) = unsafe { Room::cut(memory, bytes, numbers)? };
-        let estimator = Estimator::new(options, model, weights, offset, numbers)?;
-        let mark = HysteronCoreEstimator::MARK;
-        room.finish(HysteronCoreEstimator { mark, estimator }, &out);
-        Ok(())
+        room.fill(numbers, &out, |numbers| {
+            Ok(Estimator::new(options, model, weights, offset, numbers)?)
+        })
     })
 }
 
@@ -85,19 +78,17 @@ pub unsafe extern "C" fn hysteron_core_estimator_step(
     learning: *mut HysteronLearning,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (estimator, model) =
-            unsafe { (object(estimator, "estimator")?, object(model, "model")?) };
-        // SAFETY: the contract of the crate.
-        let (state, learning) =
-            unsafe { (object(state, "state")?, Out::new(learning, "learning")?) };
-        let (model, state) = (&mut model.model, &mut state.state);
-        learning.set(
-            estimator
-                .estimator
-                .step(model, state, input, measured)?
-                .into(),
-        );
+        let (estimator, model, state, learning) = unsafe {
+            (
+                arguments.object(estimator, "estimator")?,
+                arguments.object(model, "model")?,
+                arguments.object(state, "state")?,
+                arguments.out(learning, "learning")?,
+            )
+        };
+        learning.set(estimator.step(model, state, input, measured)?.into());
         Ok(())
     })
 }
@@ -109,14 +100,15 @@ pub unsafe extern "C" fn hysteron_core_estimator_offset(
     offset: *mut f64,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
         let (estimator, offset) = unsafe {
             (
-                object_ref(estimator, "estimator")?,
-                Out::new(offset, "offset")?,
+                arguments.object_ref(estimator, "estimator")?,
+                arguments.out(offset, "offset")?,
             )
         };
-        offset.set(estimator.estimator.offset());
+        offset.set(estimator.offset());
         Ok(())
     })
 }
@@ -129,9 +121,7 @@ pub unsafe extern "C" fn hysteron_core_estimator_freeze(
 ) -> i32 {
     guard_plain(|| {
         // SAFETY: the contract of the crate.
-        unsafe { object(estimator, "estimator")? }
-            .estimator
-            .freeze(frozen != 0);
+        unsafe { Arguments::default().object(estimator, "estimator")? }.freeze(frozen != 0);
         Ok(())
     })
 }
@@ -144,8 +134,14 @@ pub unsafe extern "C" fn hysteron_core_state_rebase(
     state: *mut HysteronCoreState,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        Ok(model.model.rebase(&mut state.state)?)
+        let (model, state) = unsafe {
+            (
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+            )
+        };
+        Ok(model.rebase(state)?)
     })
 }

@@ -1,7 +1,7 @@
 //! From results to status codes, and the detail of the last failure.
 
 use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
-use crate::pointer::copy_text;
+use crate::pointer::Arguments;
 #[cfg(feature = "handles")]
 use hysteron::Error;
 #[cfg(not(feature = "handles"))]
@@ -80,9 +80,14 @@ pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
 /// takes with that zero. With a null pointer it only tells the size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_last_error(text: *mut c_char, size: usize) -> usize {
+    let size = if text.is_null() { 0 } else { size };
     // SAFETY: `text` has `size` bytes by contract.
-    let copy = |last: &RefCell<String>| unsafe { copy_text(&last.borrow(), text, size) };
-    LAST.try_with(copy).unwrap_or(0)
+    match unsafe { Arguments::default().array_out(text, size, "text") } {
+        Ok(text) => LAST
+            .try_with(|last| text.write_text(&last.borrow()))
+            .unwrap_or(0),
+        Err(_) => 0,
+    }
 }
 
 #[cfg(test)]

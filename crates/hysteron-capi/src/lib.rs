@@ -7,8 +7,8 @@
 //!
 //! # Safety
 //! One contract for all functions: a pointer is null or points to as many elements as the count beside it says (one where
-//! there is no count), valid for the call; texts end with a zero byte. Null, wrong alignment, and arrays that overlap
-//! are refused; whether other memory is valid nobody can tell. Handles need no care: whatever number is passed, it is
+//! there is no count), valid for the call; texts end with a zero byte. Null, wrong alignment, and two pointers of a call that
+//! share memory are refused; whether other memory is valid nobody can tell. Handles need no care: whatever number is passed, it is
 //! one that lives or it is refused.
 // The contract above is that of each function; C has no better way to pass many things than many arguments.
 #![allow(clippy::missing_safety_doc, clippy::too_many_arguments)]

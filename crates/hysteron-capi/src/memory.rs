@@ -1,30 +1,32 @@
 //! Model and state over memory that the caller owns: nothing is allocated.
 //!
 //! An object lies at the beginning of its memory, with its numbers behind it. It must not be moved, and ends with the
-//! memory. Outputs are `Σ μ γ` of the operators, without offset and sign. One thread at a time for each object
+//! memory. Where an initialisation fails in memory that holds an object, that object is as it was, or refused from then on
+//! (`HYSTERON_HANDLE`). Outputs are `Σ μ γ` of the operators, without offset and sign. One thread at a time for each object
 //! that is written to (a state; model and estimator while weights are learned).
 
 use crate::fault::guard_plain;
-use crate::pointer::{Out, apart, array, array_out, optional};
-use crate::room::{Marked, Room, marked, object, object_ref, size};
+use crate::pointer::Arguments;
+use crate::room::{Kind, size};
 use crate::types::{clipped as clipped_constant, operator, policy, status as status_constant};
-use hysteron_core::{Error, MAX_LEVELS, Model, Plane, State, Turn, table_len, turn_capacity};
+use hysteron_core::{MAX_LEVELS, Model, Plane, State, Turn, table_len, turn_capacity};
 use std::ffi::c_void;
 
 /// A model in the caller's memory.
-pub struct HysteronCoreModel {
-    mark: u64,
-    pub(crate) model: Model<f64, &'static mut [f64]>,
-}
+pub struct HysteronCoreModel(());
 
 /// A state in the caller's memory.
-pub struct HysteronCoreState {
-    mark: u64,
-    pub(crate) state: State<f64, &'static mut [Turn<f64>]>,
+pub struct HysteronCoreState(());
+
+impl Kind for HysteronCoreModel {
+    const MARK: u64 = 0x6879_7374_6d6f_646c;
+    type Content = Model<f64, &'static mut [f64]>;
 }
 
-marked!(HysteronCoreModel, 0x6879_7374_6d6f_646c);
-marked!(HysteronCoreState, 0x6879_7374_7374_6174);
+impl Kind for HysteronCoreState {
+    const MARK: u64 = 0x6879_7374_7374_6174;
+    type Content = State<f64, &'static mut [Turn<f64>]>;
+}
 
 /// Bytes for a model of `levels` levels with 1 table, or with the 2 that adaptation by increments needs; 0 where there is no
 /// such model. The memory has to be aligned as a `uint64_t` is.
@@ -50,18 +52,21 @@ pub unsafe extern "C" fn hysteron_core_model_init(
     model: *mut *mut HysteronCoreModel,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (weights, out) =
-            unsafe { (array(weights, count, "weights")?, Out::new(model, "model")?) };
+        let (room, weights, out) = unsafe {
+            (
+                arguments.room(memory, bytes)?,
+                arguments.array(weights, count, "weights")?,
+                arguments.out(model, "model")?,
+            )
+        };
         let (plane, operator) = (Plane::new(min, max, levels)?, operator(operator_kind)?);
         let two = hysteron_core_model_size(levels, 2);
         let tables = if two != 0 && bytes >= two { 2 } else { 1 };
-        // SAFETY: the contract of the crate.
-        let (room, table) = unsafe { Room::cut(memory, bytes, tables * table_len(levels))? };
-        let model = Model::new(plane, operator, weights, table)?;
-        let mark = HysteronCoreModel::MARK;
-        room.finish(HysteronCoreModel { mark, model }, &out);
-        Ok(())
+        room.fill(tables * table_len(levels), &out, |table| {
+            Ok(Model::new(plane, operator, weights, table)?)
+        })
     })
 }
 
@@ -83,20 +88,18 @@ pub unsafe extern "C" fn hysteron_core_state_init(
     state: *mut *mut HysteronCoreState,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, out) = unsafe {
+        let (model, room, out) = unsafe {
             (
-                &object_ref(model, "model")?.model,
-                Out::new(state, "state")?,
+                arguments.object_ref(model, "model")?,
+                arguments.room(memory, bytes)?,
+                arguments.out(state, "state")?,
             )
         };
-        // SAFETY: the contract of the crate.
-        let (room, turns) =
-            unsafe { Room::cut(memory, bytes, turn_capacity(model.plane().levels()))? };
-        let state = model.state(turns)?;
-        let mark = HysteronCoreState::MARK;
-        room.finish(HysteronCoreState { mark, state }, &out);
-        Ok(())
+        room.fill(turn_capacity(model.plane().levels()), &out, |turns| {
+            Ok(model.state(turns)?)
+        })
     })
 }
 
@@ -107,9 +110,15 @@ pub unsafe extern "C" fn hysteron_core_state_reset(
     state: *mut HysteronCoreState,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        Ok(model.model.reset_off(&mut state.state)?)
+        let (model, state) = unsafe {
+            (
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+            )
+        };
+        Ok(model.reset_off(state)?)
     })
 }
 
@@ -123,12 +132,17 @@ pub unsafe extern "C" fn hysteron_core_step(
     clipped: *mut i32,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        // SAFETY: the contract of the crate.
-        let (output, clipped) =
-            unsafe { (Out::new(output, "output")?, optional(clipped, "clipped")?) };
-        let step = model.model.step(&mut state.state, input)?;
+        let (model, state, output, clipped) = unsafe {
+            (
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+                arguments.out(output, "output")?,
+                arguments.optional(clipped, "clipped")?,
+            )
+        };
+        let step = model.step(state, input)?;
         output.set(step.output);
         if let Some(clipped) = clipped {
             clipped.set(clipped_constant(step.clipped));
@@ -147,19 +161,17 @@ pub unsafe extern "C" fn hysteron_core_run(
     count: usize,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        if count > 0 {
-            apart(input, output, count, "output")?;
-        }
-        // SAFETY: the contract of the crate, and apart as checked.
-        let (input, output) = unsafe {
+        let (model, state, input, mut output) = unsafe {
             (
-                array(input, count, "input")?,
-                array_out(output, count, "output")?,
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+                arguments.array(input, count, "input")?,
+                arguments.array_out(output, count, "output")?,
             )
         };
-        model.model.run(&mut state.state, input, output)?;
+        model.run(state, input, output.zeros())?;
         Ok(())
     })
 }
@@ -176,15 +188,18 @@ pub unsafe extern "C" fn hysteron_core_inverse_step(
     status: *mut i32,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        // SAFETY: the contract of the crate.
-        let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
+        let (model, state, input, status) = unsafe {
+            (
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+                arguments.out(input, "input")?,
+                arguments.out(status, "status")?,
+            )
+        };
         let policy = policy(heading, tolerance)?;
-        let solution = model
-            .model
-            .inverse()?
-            .step(&mut state.state, target, policy)?;
+        let solution = model.inverse()?.step(state, target, policy)?;
         input.set(solution.input);
         status.set(status_constant(solution.status));
         Ok(())
@@ -201,25 +216,17 @@ pub unsafe extern "C" fn hysteron_core_state_save(
     input: *mut f64,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (count, input) = unsafe { (Out::new(count, "count")?, Out::new(input, "input")?) };
-        // SAFETY: the contract of the crate.
-        let state = unsafe { &object_ref(state, "state")?.state };
-        let needed = state.held() + 1;
-        count.set(needed);
-        if capacity < needed {
-            return Err(Error::MemoryTooSmall {
-                needed,
-                found: capacity,
-            }
-            .into());
-        }
-        // SAFETY: the contract of the crate, and no more than the capacity.
-        let points = unsafe { array_out(points, needed, "points")? };
-        points
-            .iter_mut()
-            .zip(state.turning_points())
-            .for_each(|(to, x)| *to = x);
+        let (state, points, count, input) = unsafe {
+            (
+                arguments.object_ref(state, "state")?,
+                arguments.array_out(points, capacity, "points")?,
+                arguments.out(count, "count")?,
+                arguments.out(input, "input")?,
+            )
+        };
+        points.write_all(state.turning_points(), state.held() + 1, &count)?;
         input.set(state.input());
         Ok(())
     })
@@ -235,10 +242,15 @@ pub unsafe extern "C" fn hysteron_core_state_restore(
     input: f64,
 ) -> i32 {
     guard_plain(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, state) = unsafe { (object_ref(model, "model")?, object(state, "state")?) };
-        // SAFETY: the contract of the crate.
-        let points = unsafe { array(points, count, "points")? };
-        Ok(model.model.restore(&mut state.state, points, input)?)
+        let (model, state, points) = unsafe {
+            (
+                arguments.object_ref(model, "model")?,
+                arguments.object(state, "state")?,
+                arguments.array(points, count, "points")?,
+            )
+        };
+        Ok(model.restore(state, points, input)?)
     })
 }

@@ -3,7 +3,7 @@
 use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, guard};
 use crate::handles::Table;
-use crate::pointer::{Out, array, copy_out, copy_text, text};
+use crate::pointer::Arguments;
 use crate::types::{HysteronModelInfo, operator, operator_kind as kind_of, sign as sign_of};
 use hysteron::{Model, Plane};
 use std::ffi::c_char;
@@ -15,8 +15,14 @@ pub(crate) static MODELS: Table<Model> = Table::new(1);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u64) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (path, model) = unsafe { (text(path, "path")?, Out::new(model, "model")?) };
+        let (path, model) = unsafe {
+            (
+                arguments.text(path, "path")?,
+                arguments.out(model, "model")?,
+            )
+        };
         model.set(MODELS.insert(Model::read(Path::new(path))?)?);
         Ok(())
     })
@@ -26,8 +32,14 @@ pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u6
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u64) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (json, model) = unsafe { (text(json, "json")?, Out::new(model, "model")?) };
+        let (json, model) = unsafe {
+            (
+                arguments.text(json, "json")?,
+                arguments.out(model, "model")?,
+            )
+        };
         model.set(MODELS.insert(Model::from_json(json)?)?);
         Ok(())
     })
@@ -38,7 +50,7 @@ pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u
 pub unsafe extern "C" fn hysteron_model_write(model: u64, path: *const c_char) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let path = unsafe { text(path, "path")? };
+        let path = unsafe { Arguments::default().text(path, "path")? };
         Ok(MODELS.get(model, "model")?.write(Path::new(path))?)
     })
 }
@@ -58,9 +70,14 @@ pub unsafe extern "C" fn hysteron_model_new(
     model: *mut u64,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (weights, model) =
-            unsafe { (array(weights, count, "weights")?, Out::new(model, "model")?) };
+        let (weights, model) = unsafe {
+            (
+                arguments.array(weights, count, "weights")?,
+                arguments.out(model, "model")?,
+            )
+        };
         let plane = Plane::new(min, max, levels)?;
         let (operator, sign) = (operator(operator_kind)?, sign_of(sign)?);
         model.set(MODELS.insert(Model::new(operator, plane, weights.to_vec(), offset, sign)?)?);
@@ -73,7 +90,7 @@ pub unsafe extern "C" fn hysteron_model_new(
 pub unsafe extern "C" fn hysteron_model_at_load(model: u64, load: f64, at_load: *mut u64) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let at_load = unsafe { Out::new(at_load, "at_load")? };
+        let at_load = unsafe { Arguments::default().out(at_load, "at_load")? };
         at_load.set(MODELS.insert(MODELS.get(model, "model")?.at_load(load)?)?);
         Ok(())
     })
@@ -90,7 +107,7 @@ pub extern "C" fn hysteron_model_free(model: u64) -> i32 {
 pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronModelInfo) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let info = unsafe { Out::new(info, "info")? };
+        let info = unsafe { Arguments::default().out(info, "info")? };
         let model = MODELS.get(model, "model")?;
         let (plane, (output_off, output_on)) = (model.plane(), model.output_range());
         info.set(HysteronModelInfo {
@@ -119,10 +136,17 @@ pub unsafe extern "C" fn hysteron_model_weights(
     count: *mut usize,
 ) -> i32 {
     guard(|| {
-        let model = MODELS.get(model, "model")?;
-        let values = model.weights().iter().copied();
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        unsafe { copy_out(values, (weights, capacity), &Out::new(count, "count")?) }
+        let (weights, count) = unsafe {
+            (
+                arguments.array_out(weights, capacity, "weights")?,
+                arguments.out(count, "count")?,
+            )
+        };
+        let model = MODELS.get(model, "model")?;
+        let values = model.weights();
+        weights.write_all(values.iter().copied(), values.len(), &count)
     })
 }
 
@@ -138,16 +162,21 @@ pub unsafe extern "C" fn hysteron_model_quantity(
     needed: *mut usize,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let needed = unsafe { Out::new(needed, "needed")? };
+        let (text, needed) = unsafe {
+            (
+                arguments.array_out(text, size, "text")?,
+                arguments.out(needed, "needed")?,
+            )
+        };
         let model = MODELS.get(model, "model")?;
         let quantity = match quantity {
             0 => &model.input,
             1 => &model.output,
             _ => return Err(Fault::Call(HYSTERON_VALUE, "quantity")),
         };
-        // SAFETY: the contract of the crate.
-        needed.set(unsafe { copy_text(&quantity.to_column(), text, size) });
+        needed.set(text.write_text(&quantity.to_column()));
         Ok(())
     })
 }

@@ -1,38 +1,138 @@
 //! Pointers from C: checked as far as they can be, once, here.
 
 use crate::codes::{
-    HYSTERON_ALIGNMENT, HYSTERON_NULL, HYSTERON_OVERLAP, HYSTERON_TEXT, HYSTERON_VALUE,
+    HYSTERON_ALIGNMENT, HYSTERON_INTERNAL, HYSTERON_NULL, HYSTERON_OVERLAP, HYSTERON_TEXT,
+    HYSTERON_VALUE,
 };
 use crate::fault::{Fault, Result};
 use std::ffi::{CStr, c_char};
+use std::ops::Range;
 
-/// A place for a result: not null, aligned.
-pub(crate) struct Out<T>(*mut T);
+/// No function has more pointers.
+const MOST: usize = 6;
 
-impl<T> Out<T> {
-    /// # Safety
-    /// `place` is null or valid for a write while the `Out` is used.
-    pub(crate) unsafe fn new(place: *mut T, name: &'static str) -> Result<Self> {
-        check(place, name)?;
-        Ok(Self(place))
-    }
-
-    pub(crate) fn set(&self, value: T) {
-        // SAFETY: valid for a write by the contract of `new`, not null and aligned as checked there.
-        unsafe { self.0.write(value) }
-    }
+/// The pointers of one call. Each is checked by itself, and refused where it shares memory with one before it.
+///
+/// This is the only way to the memory behind a pointer, so that no function can forget a pair. Nothing is written
+/// while pointers are taken: a function takes them all first.
+#[derive(Default)]
+pub(crate) struct Arguments {
+    taken: [Range<usize>; MOST],
+    count: usize,
 }
 
-/// As [`Out::new`], of a result that nobody needs to want.
-///
-/// # Safety
-/// As [`Out::new`].
-pub(crate) unsafe fn optional<T>(place: *mut T, name: &'static str) -> Result<Option<Out<T>>> {
-    if place.is_null() {
-        return Ok(None);
+impl Arguments {
+    /// Notes that an argument uses `bytes` bytes from `start` on.
+    pub(crate) fn claim(&mut self, start: usize, bytes: usize, name: &'static str) -> Result<()> {
+        let end = start.saturating_add(bytes);
+        let shares = |other: &Range<usize>| start < other.end && other.start < end;
+        if self.taken[..self.count].iter().any(shares) {
+            return Err(Fault::Call(HYSTERON_OVERLAP, name));
+        }
+        let Some(free) = self.taken.get_mut(self.count) else {
+            return Err(Fault::Call(HYSTERON_INTERNAL, name));
+        };
+        *free = start..end;
+        self.count += 1;
+        Ok(())
     }
-    // SAFETY: the caller's promise.
-    unsafe { Out::new(place, name).map(Some) }
+
+    fn elements<T>(&mut self, pointer: *const T, count: usize, name: &'static str) -> Result<()> {
+        check(pointer, name)?;
+        if count > isize::MAX as usize / size_of::<T>() {
+            return Err(Fault::Call(HYSTERON_VALUE, name));
+        }
+        self.claim(pointer.addr(), count * size_of::<T>(), name)
+    }
+
+    /// A value, copied.
+    ///
+    /// # Safety
+    /// `pointer` is null or valid for a read; every bit pattern is a value of `T`.
+    pub(crate) unsafe fn value<T: Copy>(
+        &mut self,
+        pointer: *const T,
+        name: &'static str,
+    ) -> Result<T> {
+        self.elements(pointer, 1, name)?;
+        // SAFETY: the caller's promise, not null and aligned as checked.
+        Ok(unsafe { pointer.read() })
+    }
+
+    /// A place for a result.
+    ///
+    /// # Safety
+    /// `place` is null or valid for a write while the `Out` is used.
+    pub(crate) unsafe fn out<T>(&mut self, place: *mut T, name: &'static str) -> Result<Out<T>> {
+        self.elements(place, 1, name)?;
+        Ok(Out(place))
+    }
+
+    /// As [`Arguments::out`], of a result that nobody needs to want.
+    ///
+    /// # Safety
+    /// As [`Arguments::out`].
+    pub(crate) unsafe fn optional<T>(
+        &mut self,
+        place: *mut T,
+        name: &'static str,
+    ) -> Result<Option<Out<T>>> {
+        if place.is_null() {
+            return Ok(None);
+        }
+        // SAFETY: the caller's promise.
+        unsafe { self.out(place, name).map(Some) }
+    }
+
+    /// An array to read; an empty one may be null.
+    ///
+    /// # Safety
+    /// `pointer` is null or valid for reads of `count` elements, which nobody writes during `'a`.
+    pub(crate) unsafe fn array<'a, T>(
+        &mut self,
+        pointer: *const T,
+        count: usize,
+        name: &'static str,
+    ) -> Result<&'a [T]> {
+        if count == 0 {
+            return Ok(&[]);
+        }
+        self.elements(pointer, count, name)?;
+        // SAFETY: the caller's promise; not null, aligned and of a possible size as checked.
+        Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+    }
+
+    /// An array to write; an empty one may be null.
+    ///
+    /// # Safety
+    /// `pointer` is null or valid for writes of `count` elements, which nobody else uses while the `ArrayOut` is used.
+    pub(crate) unsafe fn array_out<T>(
+        &mut self,
+        pointer: *mut T,
+        count: usize,
+        name: &'static str,
+    ) -> Result<ArrayOut<T>> {
+        if count > 0 {
+            self.elements(pointer, count, name)?;
+        }
+        Ok(ArrayOut { pointer, count })
+    }
+
+    /// A text.
+    ///
+    /// # Safety
+    /// `pointer` is null or a text that ends with a zero byte, which nobody writes during `'a`.
+    pub(crate) unsafe fn text<'a>(
+        &mut self,
+        pointer: *const c_char,
+        name: &'static str,
+    ) -> Result<&'a str> {
+        check(pointer, name)?;
+        // SAFETY: the caller's promise, and not null.
+        let text = unsafe { CStr::from_ptr(pointer) };
+        self.claim(pointer.addr(), text.count_bytes() + 1, name)?;
+        text.to_str().map_err(|_| Fault::Call(HYSTERON_TEXT, name))
+    }
 }
 
 pub(crate) fn check<T>(pointer: *const T, name: &'static str) -> Result<()> {
@@ -45,125 +145,83 @@ pub(crate) fn check<T>(pointer: *const T, name: &'static str) -> Result<()> {
     Ok(())
 }
 
-pub(crate) fn check_array<T>(pointer: *const T, count: usize, name: &'static str) -> Result<()> {
-    check(pointer, name)?;
-    if count > isize::MAX as usize / size_of::<T>() {
-        return Err(Fault::Call(HYSTERON_VALUE, name));
+/// A place for a result: not null, aligned.
+pub(crate) struct Out<T>(*mut T);
+
+impl<T> Out<T> {
+    pub(crate) fn set(&self, value: T) {
+        // SAFETY: valid for a write by the contract of `Arguments::out`, not null and aligned as checked there.
+        unsafe { self.0.write(value) }
     }
-    Ok(())
 }
 
-/// An array to read; an empty one may be null.
-///
-/// # Safety
-/// `pointer` is null or valid for reads of `count` elements, which nobody writes during `'a`.
-pub(crate) unsafe fn array<'a, T>(
-    pointer: *const T,
+/// Places for results: not null where there are any, aligned.
+pub(crate) struct ArrayOut<T> {
+    pointer: *mut T,
     count: usize,
-    name: &'static str,
-) -> Result<&'a [T]> {
-    if count == 0 {
-        return Ok(&[]);
-    }
-    check_array(pointer, count, name)?;
-    // SAFETY: the caller's promise; not null, aligned and of a possible size as checked.
-    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
 /// A number of which zero bytes are a value.
 pub(crate) trait Number: Copy {}
 impl Number for f64 {}
-impl Number for i32 {}
 
-/// An array to write, of numbers that were written before or not.
-///
-/// # Safety
-/// `pointer` is null or valid for writes of `count` elements, which nobody else uses during `'a`.
-pub(crate) unsafe fn array_out<'a, T: Number>(
-    pointer: *mut T,
-    count: usize,
-    name: &'static str,
-) -> Result<&'a mut [T]> {
-    if count == 0 {
-        return Ok(&mut []);
-    }
-    check_array(pointer, count, name)?;
-    // SAFETY: as for `array`; the zeros make numbers of memory that was never written.
-    unsafe {
-        pointer.write_bytes(0, count);
-        Ok(std::slice::from_raw_parts_mut(pointer, count))
-    }
-}
-
-/// Refuses arrays of `count` elements each of which a part is the same memory; null is no array.
-pub(crate) fn apart<A, B>(
-    a: *const A,
-    b: *const B,
-    count: usize,
-    name: &'static str,
-) -> Result<()> {
-    let end = |start: usize, size: usize| start.saturating_add(count.saturating_mul(size));
-    let (a_end, b_end) = (end(a.addr(), size_of::<A>()), end(b.addr(), size_of::<B>()));
-    if !a.is_null() && !b.is_null() && a.addr() < b_end && b.addr() < a_end {
-        return Err(Fault::Call(HYSTERON_OVERLAP, name));
-    }
-    Ok(())
-}
-
-/// A text.
-///
-/// # Safety
-/// `pointer` is null or a text that ends with a zero byte, which nobody writes during `'a`.
-pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &'static str) -> Result<&'a str> {
-    check(pointer, name)?;
-    // SAFETY: the caller's promise, and not null.
-    let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().map_err(|_| Fault::Call(HYSTERON_TEXT, name))
-}
-
-/// Copies all of `values`, or tells by `count` how much room that takes.
-///
-/// # Safety
-/// `to` is null or valid for writes of `capacity` numbers.
-pub(crate) unsafe fn copy_out(
-    values: impl Iterator<Item = f64> + Clone,
-    (to, capacity): (*mut f64, usize),
-    count: &Out<usize>,
-) -> Result<()> {
-    let needed = values.clone().count();
-    count.set(needed);
-    if capacity < needed {
-        return Err(hysteron_core::Error::MemoryTooSmall {
-            needed,
-            found: capacity,
+impl<T> ArrayOut<T> {
+    /// Writes one element; there is none from the count on.
+    pub(crate) fn set(&self, n: usize, value: T) {
+        if n < self.count {
+            // SAFETY: valid for a write by the contract of `Arguments::array_out`, not null and aligned as checked there.
+            unsafe { self.pointer.add(n).write(value) }
         }
-        .into());
     }
-    // SAFETY: the caller's promise, and `needed` is no more than that.
-    let to = unsafe { array_out(to, needed, "values")? };
-    to.iter_mut()
-        .zip(values)
-        .for_each(|(to, value)| *to = value);
-    Ok(())
+
+    /// Writes `values`, as far as there is room.
+    pub(crate) fn write(&self, values: impl Iterator<Item = T>) {
+        let values = values.take(self.count).enumerate();
+        values.for_each(|(n, value)| self.set(n, value));
+    }
+
+    /// Writes all of `values`, which are `needed`; `count` says so even where there is no room for them.
+    pub(crate) fn write_all(
+        &self,
+        values: impl Iterator<Item = T>,
+        needed: usize,
+        count: &Out<usize>,
+    ) -> Result<()> {
+        count.set(needed);
+        if self.count < needed {
+            let found = self.count;
+            return Err(hysteron_core::Error::MemoryTooSmall { needed, found }.into());
+        }
+        self.write(values);
+        Ok(())
+    }
 }
 
-/// Copies as much of `from` as fits into `size` bytes with a zero byte at the end; gives the bytes that the whole takes.
-///
-/// # Safety
-/// `to` is null or valid for writes of `size` bytes.
-pub(crate) unsafe fn copy_text(from: &str, to: *mut c_char, size: usize) -> usize {
-    if !to.is_null() && size > 0 {
-        let mut length = from.len().min(size - 1);
-        while !from.is_char_boundary(length) {
-            length -= 1;
+impl<T: Number> ArrayOut<T> {
+    /// The array itself, which may never have been written: zeros now.
+    pub(crate) fn zeros(&mut self) -> &mut [T] {
+        if self.count == 0 {
+            return &mut [];
         }
-        // SAFETY: `to` has `size` bytes by contract, more than `length`, and does not lie in a string of ours.
+        // SAFETY: as for `write`, and nobody else uses it; the zeros make numbers of memory that was never written.
         unsafe {
-            from.as_ptr()
-                .cast::<c_char>()
-                .copy_to_nonoverlapping(to, length);
-            to.add(length).write(0);
+            self.pointer.write_bytes(0, self.count);
+            std::slice::from_raw_parts_mut(self.pointer, self.count)
         }
     }
-    from.len() + 1
+}
+
+impl ArrayOut<c_char> {
+    /// Copies as much of `from` as fits with a zero byte at the end; gives the bytes that the whole takes.
+    pub(crate) fn write_text(&self, from: &str) -> usize {
+        if self.count > 0 {
+            let mut length = from.len().min(self.count - 1);
+            while !from.is_char_boundary(length) {
+                length -= 1;
+            }
+            let bytes = from.as_bytes()[..length].iter().chain(&[0]);
+            self.write(bytes.map(|byte| *byte as c_char));
+        }
+        from.len() + 1
+    }
 }

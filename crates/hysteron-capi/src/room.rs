@@ -1,121 +1,137 @@
 //! Objects in memory that the caller owns: made, found again, never taken for what they are not.
 
-use crate::codes::{HYSTERON_ALIGNMENT, HYSTERON_HANDLE, HYSTERON_NULL};
+use crate::codes::HYSTERON_HANDLE;
 use crate::fault::{Fault, Result};
-use crate::pointer::{Out, check};
+use crate::pointer::{Arguments, Out, check};
 use hysteron_core::Error;
 use std::ffi::c_void;
 
-/// An object that begins with something that random memory hardly has.
-pub(crate) trait Marked {
+/// What every object begins with.
+#[repr(C)]
+struct Head {
+    /// Which kind of object follows: a number that random memory hardly has, or 0 for none.
+    mark: u64,
+    /// Of the object as a whole.
+    bytes: usize,
+}
+
+/// A kind of object, as C knows it. Behind its pointer lie the head, the content and the content's elements.
+pub(crate) trait Kind {
     const MARK: u64;
-    /// # Safety
-    /// `this` is valid for reads of `Self`, of whatever content.
-    unsafe fn mark(this: *const Self) -> u64;
+    type Content;
 }
 
-macro_rules! marked {
-    ($type:ty, $mark:expr) => {
-        impl $crate::room::Marked for $type {
-            const MARK: u64 = $mark;
-            unsafe fn mark(this: *const Self) -> u64 {
-                // SAFETY: the caller's promise.
-                unsafe { (&raw const (*this).mark).read() }
-            }
-        }
-    };
-}
-pub(crate) use marked;
-
-/// The object behind a pointer that an initialisation gave.
-///
-/// # Safety
-/// `pointer` is null or points to memory of at least the size of `T` that nobody else uses during `'a`.
-pub(crate) unsafe fn object<'a, T: Marked>(
-    pointer: *mut T,
-    name: &'static str,
-) -> Result<&'a mut T> {
-    check(pointer, name)?;
-    // SAFETY: the caller's promise; with its mark it is an object that `Room::finish` has written.
-    unsafe {
-        if T::mark(pointer) != T::MARK {
-            return Err(Fault::Call(HYSTERON_HANDLE, name));
-        }
-        Ok(&mut *pointer)
-    }
-}
-
-/// As [`object`], of one that is read only: others may read it too.
-///
-/// # Safety
-/// As for [`object`], but others may read it.
-pub(crate) unsafe fn object_ref<'a, T: Marked>(
-    pointer: *const T,
-    name: &'static str,
-) -> Result<&'a T> {
-    check(pointer, name)?;
-    // SAFETY: as in `object`.
-    unsafe {
-        if T::mark(pointer) != T::MARK {
-            return Err(Fault::Call(HYSTERON_HANDLE, name));
-        }
-        Ok(&*pointer)
-    }
-}
-
-/// Bytes of an object `T` with `count` elements `E` behind it.
-pub(crate) fn size<T, E>(count: usize) -> Option<usize> {
+/// Bytes of an object with `count` elements `E`.
+pub(crate) fn size<K: Kind, E>(count: usize) -> Option<usize> {
     const {
-        assert!(
-            size_of::<T>().is_multiple_of(align_of::<E>()) && align_of::<T>() >= align_of::<E>()
-        )
+        assert!(size_of::<Head>().is_multiple_of(align_of::<K::Content>()));
+        assert!(size_of::<K::Content>().is_multiple_of(align_of::<E>()));
+        assert!(align_of::<Head>() >= align_of::<K::Content>());
+        assert!(align_of::<Head>() >= align_of::<E>());
     };
     count
         .checked_mul(size_of::<E>())?
-        .checked_add(size_of::<T>())
+        .checked_add(size_of::<Head>() + size_of::<K::Content>())
 }
 
-/// The caller's memory, cut into the object's place and the elements behind it.
-pub(crate) struct Room<T>(*mut T);
+impl Arguments {
+    /// The object behind a pointer that an initialisation gave.
+    ///
+    /// # Safety
+    /// `pointer` is null or points to memory of at least the size of an object, which nobody else uses during `'a`.
+    pub(crate) unsafe fn object<'a, K: Kind>(
+        &mut self,
+        pointer: *mut K,
+        name: &'static str,
+    ) -> Result<&'a mut K::Content> {
+        // SAFETY: the caller's promise.
+        unsafe { Ok(&mut *self.content::<K>(pointer, name)?) }
+    }
 
-impl<T> Room<T> {
+    /// As [`Arguments::object`], of one that is read only: others may read it too.
+    ///
+    /// # Safety
+    /// As for [`Arguments::object`], but others may read it.
+    pub(crate) unsafe fn object_ref<'a, K: Kind>(
+        &mut self,
+        pointer: *const K,
+        name: &'static str,
+    ) -> Result<&'a K::Content> {
+        // SAFETY: the caller's promise.
+        unsafe { Ok(&*self.content::<K>(pointer.cast_mut(), name)?) }
+    }
+
+    /// # Safety
+    /// As for [`Arguments::object_ref`].
+    unsafe fn content<K: Kind>(
+        &mut self,
+        pointer: *mut K,
+        name: &'static str,
+    ) -> Result<*mut K::Content> {
+        let head = pointer.cast::<Head>();
+        check(head, name)?;
+        // SAFETY: the caller's promise, not null and aligned as checked.
+        let Head { mark, bytes } = unsafe { head.read() };
+        if mark != K::MARK {
+            return Err(Fault::Call(HYSTERON_HANDLE, name));
+        }
+        self.claim(head.addr(), bytes, name)?;
+        Ok(content_of::<K>(head))
+    }
+
+    /// Memory for an object.
+    ///
     /// # Safety
     /// `memory` is null or valid for `bytes` bytes that nobody else uses while the object lives.
-    pub(crate) unsafe fn cut<E: Default + 'static>(
-        memory: *mut c_void,
-        bytes: usize,
+    pub(crate) unsafe fn room(&mut self, memory: *mut c_void, bytes: usize) -> Result<Room> {
+        let head = memory.cast::<Head>();
+        check(head, "memory")?;
+        self.claim(head.addr(), bytes, "memory")?;
+        Ok(Room { head, bytes })
+    }
+}
+
+fn content_of<K: Kind>(head: *mut Head) -> *mut K::Content {
+    head.wrapping_add(1).cast()
+}
+
+/// Memory of the caller, for an object.
+pub(crate) struct Room {
+    head: *mut Head,
+    bytes: usize,
+}
+
+impl Room {
+    /// Makes an object of `count` elements and what `make` puts in front of them.
+    ///
+    /// An object that was here is gone as soon as its elements are written over: its mark goes first, so that it is
+    /// refused from then on even where `make` fails.
+    pub(crate) fn fill<K: Kind, E: Default + 'static>(
+        self,
         count: usize,
-    ) -> Result<(Self, &'static mut [E])> {
-        if memory.is_null() {
-            return Err(Fault::Call(HYSTERON_NULL, "memory"));
+        out: &Out<*mut K>,
+        make: impl FnOnce(&'static mut [E]) -> Result<K::Content>,
+    ) -> Result<()> {
+        let needed = size::<K, E>(count).unwrap_or(usize::MAX);
+        if self.bytes < needed {
+            let found = self.bytes;
+            return Err(Error::MemoryTooSmall { needed, found }.into());
         }
-        let head = memory.cast::<T>();
-        if !head.is_aligned() {
-            return Err(Fault::Call(HYSTERON_ALIGNMENT, "memory"));
-        }
-        let needed = size::<T, E>(count).unwrap_or(usize::MAX);
-        if bytes < needed {
-            return Err(Error::MemoryTooSmall {
-                needed,
-                found: bytes,
-            }
-            .into());
-        }
-        // SAFETY: `bytes` suffice for the head and `count` elements behind it, aligned because the head is and its size is a
-        // multiple; each element is written before the slice is made.
-        let elements = unsafe {
-            let first = head.add(1).cast::<E>();
+        let (head, content) = (self.head, content_of::<K>(self.head));
+        let (mark, bytes) = (K::MARK, needed);
+        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses them. They suffice for head,
+        // content and elements, which lie apart and aligned, as `size` asserts; each element is written before the slice
+        // is made.
+        unsafe {
+            head.write(Head { mark: 0, bytes });
+            let first = content.add(1).cast::<E>();
             for n in 0..count {
                 first.add(n).write(E::default());
             }
-            std::slice::from_raw_parts_mut(first, count)
-        };
-        Ok((Self(head), elements))
-    }
-
-    pub(crate) fn finish(self, object: T, out: &Out<*mut T>) {
-        // SAFETY: valid, aligned and apart from the elements, as `cut` has seen to.
-        unsafe { self.0.write(object) };
-        out.set(self.0);
+            content.write(make(std::slice::from_raw_parts_mut(first, count))?);
+            head.write(Head { mark, bytes });
+        }
+        out.set(head.cast());
+        Ok(())
     }
 }

@@ -4,7 +4,7 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::handles::Table;
 use crate::model::MODELS;
-use crate::pointer::{Out, apart, array, array_out, copy_out, optional};
+use crate::pointer::Arguments;
 use crate::types::{
     HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant, policy,
     status as status_constant,
@@ -33,7 +33,7 @@ static STATES: Table<Running> = Table::new(2);
 pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let out = unsafe { Out::new(state, "state")? };
+        let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
         model.runs_by_itself()?;
         let state = Mutex::new(model.start());
@@ -78,9 +78,14 @@ pub unsafe extern "C" fn hysteron_step(
     clipped: *mut i32,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (output, clipped) =
-            unsafe { (Out::new(output, "output")?, optional(clipped, "clipped")?) };
+        let (output, clipped) = unsafe {
+            (
+                arguments.out(output, "output")?,
+                arguments.optional(clipped, "clipped")?,
+            )
+        };
         let running = STATES.get(state, "state")?;
         let step = running.model.step(&mut running.state(), input)?;
         output.set(step.output);
@@ -101,17 +106,16 @@ pub unsafe extern "C" fn hysteron_run(
     count: usize,
 ) -> i32 {
     guard(|| {
-        let running = STATES.get(state, "state")?;
-        if count > 0 {
-            apart(input, output, count, "output")?;
-        }
-        // SAFETY: the contract of the crate, and apart as checked.
-        let (input, output) = unsafe {
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
+        let (input, mut output) = unsafe {
             (
-                array(input, count, "input")?,
-                array_out(output, count, "output")?,
+                arguments.array(input, count, "input")?,
+                arguments.array_out(output, count, "output")?,
             )
         };
+        let running = STATES.get(state, "state")?;
+        let output = output.zeros();
         running.model.run(&mut running.state(), input, output)?;
         Ok(())
     })
@@ -132,8 +136,14 @@ pub unsafe extern "C" fn hysteron_inverse_step(
     status: *mut i32,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (input, status) = unsafe { (Out::new(input, "input")?, Out::new(status, "status")?) };
+        let (input, status) = unsafe {
+            (
+                arguments.out(input, "input")?,
+                arguments.out(status, "status")?,
+            )
+        };
         let running = STATES.get(state, "state")?;
         let policy = policy(heading, tolerance)?;
         let inverse = running.model.inverse()?;
@@ -158,24 +168,18 @@ pub unsafe extern "C" fn hysteron_inverse_run(
     count: usize,
 ) -> i32 {
     guard(|| {
-        let running = STATES.get(state, "state")?;
-        if count > 0 {
-            apart(target, input, count, "input")?;
-            apart(target, status, count, "status")?;
-            apart(input, status, count, "status")?;
-            apart(heading, input, count, "heading")?;
-            apart(heading, status, count, "heading")?;
-        }
-        let wanted = |count, pointer_is_null| if pointer_is_null { 0 } else { count };
-        // SAFETY: the contract of the crate, and apart as checked.
+        let wanted = |is_null| if is_null { 0 } else { count };
+        let mut arguments = Arguments::default();
+        // SAFETY: the contract of the crate.
         let (target, heading, input, status) = unsafe {
             (
-                array(target, count, "target")?,
-                array(heading, wanted(count, heading.is_null()), "heading")?,
-                array_out(input, count, "input")?,
-                array_out(status, wanted(count, status.is_null()), "status")?,
+                arguments.array(target, count, "target")?,
+                arguments.array(heading, wanted(heading.is_null()), "heading")?,
+                arguments.array_out(input, count, "input")?,
+                arguments.array_out(status, wanted(status.is_null()), "status")?,
             )
         };
+        let running = STATES.get(state, "state")?;
         let headings = heading
             .iter()
             .copied()
@@ -187,12 +191,8 @@ pub unsafe extern "C" fn hysteron_inverse_run(
             .collect::<Result<Vec<_>>>()?;
         let inverse = running.model.inverse()?;
         let solutions = inverse.through(&mut running.state(), target, policies)?;
-        for (input, solution) in input.iter_mut().zip(&solutions) {
-            *input = solution.input;
-        }
-        for (status, solution) in status.iter_mut().zip(&solutions) {
-            *status = status_constant(solution.status);
-        }
+        input.write(solutions.iter().map(|solution| solution.input));
+        status.write(solutions.iter().map(|s| status_constant(s.status)));
         Ok(())
     })
 }
@@ -207,11 +207,12 @@ pub unsafe extern "C" fn hysteron_headings(
     heading: *mut i32,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
         let (target, heading) = unsafe {
             (
-                array(target, count, "target")?,
-                array_out(heading, count, "heading")?,
+                arguments.array(target, count, "target")?,
+                arguments.array_out(heading, count, "heading")?,
             )
         };
         if let Some(index) = target.iter().position(|target| !target.is_finite()) {
@@ -220,9 +221,8 @@ pub unsafe extern "C" fn hysteron_headings(
         if band.is_nan() || band < 0.0 {
             return Err(Fault::Call(HYSTERON_VALUE, "band"));
         }
-        for (to, heading) in heading.iter_mut().zip(headings(target, band)) {
-            *to = heading.map_or(HYSTERON_HOLD, heading_constant);
-        }
+        let constant = |heading: Option<_>| heading.map_or(HYSTERON_HOLD, heading_constant);
+        heading.write(headings(target, band).into_iter().map(constant));
         Ok(())
     })
 }
@@ -238,13 +238,19 @@ pub unsafe extern "C" fn hysteron_state_save(
     input: *mut f64,
 ) -> i32 {
     guard(|| {
+        let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (count, input) = unsafe { (Out::new(count, "count")?, Out::new(input, "input")?) };
+        let (points, count, input) = unsafe {
+            (
+                arguments.array_out(points, capacity, "points")?,
+                arguments.out(count, "count")?,
+                arguments.out(input, "input")?,
+            )
+        };
         let running = STATES.get(state, "state")?;
         let state = running.state();
-        let saved: Vec<f64> = state.turning_points().collect();
-        // SAFETY: the contract of the crate.
-        unsafe { copy_out(saved.into_iter(), (points, capacity), &count)? };
+        let needed = state.turning_points().count();
+        points.write_all(state.turning_points(), needed, &count)?;
         input.set(state.input());
         Ok(())
     })
@@ -260,7 +266,7 @@ pub unsafe extern "C" fn hysteron_state_restore(
 ) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
-        let points = unsafe { array(points, count, "points")? };
+        let points = unsafe { Arguments::default().array(points, count, "points")? };
         let running = STATES.get(state, "state")?;
         *running.state() = running.model.restore(points, input)?;
         Ok(())

@@ -127,7 +127,7 @@ pub unsafe extern "C" fn hysteron_adaptation_default(
 ) -> i32 {
     crate::fault::guard_plain(|| {
         // SAFETY: the contract of the crate.
-        let options = unsafe { crate::pointer::Out::new(options, "options")? };
+        let options = unsafe { crate::pointer::Arguments::default().out(options, "options")? };
         let usual = Adaptation::<f64>::default();
         let filled = HysteronAdaptation {
             method,

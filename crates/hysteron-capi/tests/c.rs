@@ -7,6 +7,7 @@ mod programs;
 use programs::{has, links, run, skip};
 use serde_json::Value;
 use std::fmt::Write;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -18,6 +19,15 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
+/// As cargo names the shared library, and as programs linked with it look for it.
+const SHARED: &str = "libhysteron_capi.so";
+const SONAME: &str = "libhysteron_capi.so.0";
+
+/// Where cargo builds the libraries: beside the tests.
+fn built() -> PathBuf {
+    std::env::current_exe().unwrap().parent().unwrap().into()
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Library {
     Static,
@@ -26,13 +36,9 @@ enum Library {
     Sanitized,
 }
 
-/// Compiles strictly and links with one of the libraries, which cargo builds beside the tests.
+/// Compiles strictly and links with one of the libraries.
 fn compile(sources: &[PathBuf], library: Library, program: &Path) {
-    let built = std::env::current_exe()
-        .unwrap()
-        .parent()
-        .unwrap()
-        .to_owned();
+    let folder = program.parent().unwrap();
     let mut cc = Command::new("cc");
     cc.args([
         "-std=c99",
@@ -47,11 +53,10 @@ fn compile(sources: &[PathBuf], library: Library, program: &Path) {
         cc.args([SANITIZE, "-fno-sanitize-recover=all"]);
     }
     if library == Library::Shared {
-        let (start, end) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-        cc.arg(built.join(format!("{start}hysteron_capi{end}")));
-        cc.arg(format!("-Wl,-rpath,{}", built.display()));
+        cc.arg(built().join(SHARED));
+        cc.arg(format!("-Wl,-rpath,{}", folder.display()));
     } else {
-        cc.arg(built.join("libhysteron_capi.a"));
+        cc.arg(built().join("libhysteron_capi.a"));
     }
     cc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(program);
     run(&mut cc);
@@ -63,6 +68,7 @@ fn programs(folder: &Path) -> Vec<PathBuf> {
         return Vec::new();
     }
     let sources = SOURCES.map(|name| here("tests/c").join(name));
+    symlink(built().join(SHARED), folder.join(SONAME)).unwrap();
     let mut kinds = vec![(Library::Static, "static"), (Library::Shared, "shared")];
     if links("cc", &[SANITIZE]) || skip("`cc` has no sanitizers") {
         kinds.push((Library::Sanitized, "sanitized"));
@@ -187,26 +193,63 @@ fn a_wrong_vector_is_noticed() {
     assert!(!output.status.success());
 }
 
+/// The README's command lines and program word for word, in a folder that looks like a clone with the libraries built.
 #[test]
 fn the_readme_in_c() {
     if !has("cc") {
         return;
     }
-    let (_, program_text) = programs::readme("From C");
+    let (section, program) = programs::readme("From C");
+    let commands = section.split("```text\n").nth(1).unwrap();
+    let commands = commands.split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let (source, program) = (folder.path().join("spring.c"), folder.path().join("spring"));
-    std::fs::write(&source, program_text).unwrap();
-    compile(&[source], Library::Static, &program);
-    let there = || {
-        let mut command = Command::new(&program);
-        command.current_dir(folder.path());
-        command
+    let (include, libraries) = ("crates/hysteron-capi/include", "target/release");
+    let make = |name: &str| std::fs::create_dir_all(folder.path().join(name)).unwrap();
+    make("crates/hysteron-capi");
+    make(libraries);
+    symlink(here("include"), folder.path().join(include)).unwrap();
+    for name in [SHARED, "libhysteron_capi.a"] {
+        symlink(built().join(name), folder.path().join(libraries).join(name)).unwrap();
+    }
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    let shell = |line: &str| {
+        let mut shell = Command::new("sh");
+        shell.args(["-euc", line]).current_dir(folder.path());
+        shell
     };
-    assert!(
-        !there().status().unwrap().success(),
-        "without the model it says why"
-    );
+    run(&mut shell(commands));
+    let names = ["./spring-static", "./spring-shared"];
+    for name in names {
+        let alone = shell(name).status().unwrap();
+        assert!(!alone.success(), "without the model it says why");
+    }
     let (model, _) = vectors(folder.path()).swap_remove(0);
     std::fs::rename(model, folder.path().join("spring.json")).unwrap();
-    run(&mut there());
+    names.map(|name| run(&mut shell(name)));
+    assert!(commands.contains(&native_libraries()), "{commands}");
+}
+
+/// What a static library in Rust needs beside itself, as the compiler says.
+fn native_libraries() -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("empty.rs");
+    std::fs::write(&source, "").unwrap();
+    let mut rustc = Command::new("rustc");
+    rustc.args(["--crate-type=staticlib", "--print=native-static-libs"]);
+    let done = rustc.current_dir(folder.path()).arg(&source).output();
+    let text = String::from_utf8(done.unwrap().stderr).unwrap();
+    let line = text.lines().find_map(|line| line.split_once("libs: "));
+    line.unwrap().1.trim().to_owned()
+}
+
+#[test]
+fn the_shared_library_has_the_name_that_programs_look_for() {
+    if !has("readelf") {
+        return;
+    }
+    let mut readelf = Command::new("readelf");
+    let done = readelf.arg("-d").arg(built().join(SHARED)).output();
+    let text = String::from_utf8(done.unwrap().stdout).unwrap();
+    let line = text.lines().find(|line| line.contains("(SONAME)"));
+    assert!(line.unwrap().contains(&format!("[{SONAME}]")), "{text}");
 }

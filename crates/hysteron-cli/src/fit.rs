@@ -37,7 +37,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 
     let mut clipped = 0;
     for advice in hysteron::advice(&model, &recordings)? {
-        eprintln!("hysteron: {advice}");
+        eprintln!("hysteron: {}", crate::remedy::text_of_advice(&advice));
         if let Advice::Clipped { inputs, .. } = advice {
             clipped = inputs;
         }

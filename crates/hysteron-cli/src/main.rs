@@ -11,6 +11,7 @@ mod inspect;
 mod prepare;
 mod progress;
 mod recording;
+mod remedy;
 mod table;
 mod text;
 mod track;
@@ -47,7 +48,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("hysteron: {error}");
+            eprintln!("hysteron: {}", remedy::text_of(error.as_ref()));
             ExitCode::FAILURE
         }
     }

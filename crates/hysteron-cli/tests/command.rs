@@ -645,3 +645,26 @@ fn inputs_outside_the_plane_are_told_of() {
         .collect();
     assert_eq!(statuses, ["high", "low", "high"]);
 }
+
+/// What looks like an option in a path is part of the path; options in the advice are the command's.
+#[test]
+fn a_path_is_printed_as_it_is() {
+    let bench = Bench::new();
+    let here = bench.folder.path();
+    let said = |arguments: &[&str]| {
+        let mut command = assert_cmd::Command::cargo_bin("hysteron").unwrap();
+        let done = command.current_dir(here).args(arguments).output().unwrap();
+        assert_eq!(done.status.code(), Some(1));
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let none = said(&["inspect", "run --old/m.json"]);
+    assert!(none.starts_with("hysteron: run --old/m.json: "), "{none}");
+    let path = "./--start unknown.csv";
+    std::fs::write(here.join(path), "x,y\n1,2\n,3\n").unwrap();
+    let broken = said(&["fit", path, "--input", "x", "--output", "y", "-o", "m.json"]);
+    assert!(
+        broken.contains("recording ./--start unknown.csv, line 3"),
+        "{broken}"
+    );
+    assert!(broken.trim_end().ends_with("or use --repair"), "{broken}");
+}

@@ -5,7 +5,7 @@ mod name;
 mod text;
 
 use constants::{Constants, Number};
-use hysteron::{AtomicFile, Error, Model, Result};
+use hysteron::{AtomicFile, Error, Model, Remedy, Result, Setting};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -165,8 +165,9 @@ fn write<T: Number>(
 ) -> Result<CExport> {
     let constants = Constants::<T>::of(model)?;
     if options.adaptation && constants.slack.is_none() {
-        let text = "adaptation keeps weights at zero or above, but there are some below zero: fit with --solver nnls";
-        return Err(Error::Export(text.into()));
+        let what = "adaptation keeps weights at zero or above, but there are some below zero";
+        let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
+        return Err(Error::Export(what.into()).remedied(remedy));
     }
     let levels = model.plane().levels();
     let parts: &[&[(&str, &str)]] = match options.adaptation {
@@ -231,22 +232,24 @@ fn may_replace(path: &Path, real: CReal) -> Result<()> {
     };
     let found = String::from_utf8_lossy(&found);
     if !found.starts_with(MARK) {
-        return Err(Error::Export(format!(
-            "{}: a file that `export c` did not write: name another folder (-o) or the model otherwise (--name)",
-            path.display()
-        )));
+        let what = format!("{}: a file that `export c` did not write", path.display());
+        let words = "name another folder, or the model otherwise ({})";
+        let remedy = Remedy::new(words, [Setting::any("name")]);
+        return Err(Error::Export(what).remedied(remedy));
     }
     let other = match real {
         CReal::Float => CReal::Double,
         CReal::Double => CReal::Float,
     };
     if found.contains(&other.line()) {
-        return Err(Error::Export(format!(
-            "{}: the models in this folder are of {}: name another folder (-o), or export with --real {}",
-            path.display(),
-            other.name(),
-            other.name(),
-        )));
+        let name = other.name();
+        let what = format!(
+            "{}: the models in this folder are of {name}",
+            path.display()
+        );
+        let words = "name another folder, or export with {}";
+        let remedy = Remedy::new(words, [Setting::word("real", name)]);
+        return Err(Error::Export(what).remedied(remedy));
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ mod package;
 mod units;
 mod variables;
 
-use hysteron::{AtomicFile, Error, Model, Result};
+use hysteron::{AtomicFile, Error, Model, Remedy, Result, Setting};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -150,15 +150,19 @@ const LONGEST: usize = 63;
 
 /// A name that may stand in C, as the standards ask: files inside the FMU have it.
 fn identifier(name: &str) -> Result<&str> {
+    let refused = |why: &str| {
+        let what = format!("`{name}` cannot be a block's name: {why}");
+        let remedy = Remedy::new("choose one with {}", [Setting::any("name")]);
+        Err(Error::Export(what).remedied(remedy))
+    };
     if name.len() > LONGEST {
-        let text = format!(
-            "--name: {} letters are too many for a block, {LONGEST} will do",
-            name.len()
-        );
-        return Err(Error::Export(text));
+        let letters = name.len();
+        return refused(&format!(
+            "it has {letters} letters, and {LONGEST} are the most"
+        ));
     }
     if crate::is_device(name) {
-        return Err(Error::Export(format!("--name {name}: {}", crate::DEVICE)));
+        return refused(crate::DEVICE);
     }
     let mut letters = name.chars();
     let first = letters
@@ -167,6 +171,5 @@ fn identifier(name: &str) -> Result<&str> {
     if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Ok(name);
     }
-    let text = "a block's name begins with a letter and has letters, digits and underscores only";
-    Err(Error::Export(format!("--name {name}: {text}")))
+    refused("it has to begin with a letter and to have letters, digits and underscores only")
 }

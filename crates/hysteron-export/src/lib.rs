@@ -7,7 +7,7 @@ mod fmu;
 pub use c::{CExport, CMemory, COptions, CReal, CWorstCase, c};
 pub use fmu::{Fmi, Fmu, FmuOptions, fmu};
 
-use hysteron::{Error, Model, Result};
+use hysteron::{Error, Model, Remedy, Result, Setting};
 
 /// Refuses what runs nowhere but here: a model is exported at one load and without a thermal body.
 fn check(model: &Model) -> Result<()> {
@@ -18,10 +18,9 @@ fn check(model: &Model) -> Result<()> {
     if let Some(load) = &model.load {
         let (low, high) = load.range();
         let name = &load.quantity.name;
-        let text = format!(
-            "the model depends on the load `{name}`: name one with --load, from {low} to {high}"
-        );
-        return Err(Error::Export(text));
+        let what = format!("the model depends on the load `{name}`, from {low} to {high}");
+        let remedy = Remedy::new("name one with {}", [Setting::any("load")]);
+        return Err(Error::Export(what).remedied(remedy));
     }
     Ok(())
 }

@@ -128,7 +128,7 @@ fn what_others_wrote_stays() {
     std::fs::write(&theirs, "int x;\n").unwrap();
     let said = refused(&model, folder.path(), &options(CReal::Float));
     assert!(
-        said.contains("some_spring.c") && said.contains("--name"),
+        said.contains("some_spring.c") && said.contains("(`name`)"),
         "{said}"
     );
     assert_eq!(names(folder.path()), ["some_spring.c"]);
@@ -146,7 +146,7 @@ fn a_folder_has_one_number_type() {
         ..options(CReal::Float)
     };
     let said = refused(&model, folder.path(), &other);
-    assert!(said.contains("--real double"), "{said}");
+    assert!(said.contains("`real` double"), "{said}");
     assert_eq!(names(folder.path()).len(), 6);
     assert_eq!(
         std::fs::read(folder.path().join("hysteron_mcu.h")).unwrap(),
@@ -189,7 +189,7 @@ fn what_does_not_fit_float_asks_for_double() {
     for (what, model) in cases {
         let folder = tempfile::tempdir().unwrap();
         let said = refused(&model, folder.path(), &options(CReal::Float));
-        assert!(said.contains("--real double"), "{what}: {said}");
+        assert!(said.contains("`real` double"), "{what}: {said}");
         assert!(names(folder.path()).is_empty(), "{what}");
         c(&model, folder.path(), &options(CReal::Double)).unwrap();
     }

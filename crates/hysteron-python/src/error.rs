@@ -1,6 +1,6 @@
 //! Errors of the façade as Python exceptions, one class for each kind: `pyhysteron.errors`.
 
-use hysteron::Error;
+use hysteron::{Error, Remedy, SettingValue};
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use std::io::ErrorKind;
@@ -53,6 +53,7 @@ fn not_finite(place: &str, value: f64) -> PyErr {
 }
 
 fn exception(error: &Error) -> PyErr {
+    let (error, remedy) = error.parts();
     let class = match error {
         Error::Core(_) => "CoreError",
         Error::File { path, source } => match source.raw_os_error() {
@@ -78,7 +79,11 @@ fn exception(error: &Error) -> PyErr {
         Error::Export(_) => "ExportError",
         _ => "HysteronError",
     };
-    new(class, (in_python(&error.to_string()),), error.code())
+    let text = match remedy {
+        Some(remedy) => format!("{error}: {}", spelt(remedy)),
+        None => error.to_string(),
+    };
+    new(class, (text,), error.code())
 }
 
 /// An error of the system's, which Python says in its own words: with `errno` and `filename`.
@@ -93,34 +98,18 @@ fn of_file(class: &str, path: &Path, number: i32, code: i32) -> PyErr {
     }
 }
 
-/// A text of the façade with options named as arguments: `--load-degree 2` is `load_degree` 2 here, and `--start unknown` is
-/// `start="unknown"`. Paths stay as they are.
-pub(crate) fn in_python(text: &str) -> String {
-    let mut parts = text.split("--");
-    let mut result = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let before = result.chars().next_back();
-        if !matches!(before, None | Some(' ' | '(' | '`')) {
-            result = result + "--" + part;
-            continue;
+/// What helps, with options as arguments: `load_degree=2`, `start="unknown"`.
+pub(crate) fn spelt(remedy: &Remedy) -> String {
+    remedy.spelt(|setting| {
+        let name = setting.name.replace('-', "_");
+        match setting.value {
+            SettingValue::Any => format!("`{name}`"),
+            SettingValue::On => format!("`{name}=True`"),
+            SettingValue::Word(word) => format!("`{name}=\"{word}\"`"),
+            SettingValue::Number(number) => format!("`{name}={number}`"),
         }
-        let quote = if before == Some('`') { "" } else { "`" };
-        let name = part.find(|c: char| c != '-' && !c.is_ascii_alphabetic());
-        let (name, rest) = part.split_at(name.unwrap_or(part.len()));
-        let name = name.replace('-', "_");
-        let word = WORDS
-            .iter()
-            .find_map(|word| Some((word, rest.strip_prefix(' ')?.strip_prefix(word)?)));
-        result += &match word {
-            Some((word, rest)) => format!("{quote}{name}=\"{word}\"{quote}{rest}"),
-            None => format!("{quote}{name}{quote}{rest}"),
-        };
-    }
-    result
+    })
 }
-
-/// Values of options that are texts in Python.
-const WORDS: [&str; 2] = ["unknown", "ols"];
 
 /// An exception of a class of `pyhysteron.errors`.
 fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {

@@ -1,5 +1,6 @@
 //! `fit` and `left_out`.
 
+use crate::error::spelt;
 use crate::given::recordings_of;
 use crate::model::{Model, sign_of};
 use crate::said::warn;
@@ -102,7 +103,7 @@ pub(crate) fn fit(
         Ok((model, advice))
     })?;
     for advice in advice {
-        warn(py, &advice.to_string())?;
+        warn(py, &format!("{advice}: {}", spelt(&advice.remedy())))?;
     }
     Ok(model.into())
 }

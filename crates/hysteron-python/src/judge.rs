@@ -130,7 +130,7 @@ pub(crate) fn evaluate<'py>(
     };
     dict.set_item("band", band)?;
     let (inverse, refused) = match &found.inverse {
-        Err(reason) => (None, Some(crate::error::in_python(reason))),
+        Err(reason) => (None, Some(reason)),
         Ok(inverse) => {
             let dict = PyDict::new(py);
             let moving = inverse.moving.iter().copied();

@@ -78,7 +78,6 @@ pub(crate) fn options<T: DeserializeOwned>(of: &str, given: &Bound<'_, PyAny>) -
 /// A warning that Python users may filter: `HysteronWarning`.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let class = py.import("pyhysteron.errors")?.getattr("HysteronWarning")?;
-    let text = crate::error::in_python(text);
     py.import("warnings")?
         .call_method1("warn", (text, class, 1))
         .map(|_| ())

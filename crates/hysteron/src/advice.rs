@@ -1,13 +1,13 @@
 //! What a fit should make its user look at again.
 
 use crate::monotone::{AGAINST_INPUT, way_against_input};
-use crate::{Model, Recording, Result, Solver, Start};
+use crate::{Model, Recording, Remedy, Result, Setting, Solver, Start};
 use std::fmt;
 
 /// Part of the operators from which on it matters that a start leaves them open.
 const MANY: f64 = 0.05;
 
-/// A doubt about a fit, and what may help.
+/// A doubt about a fit; [`Advice::remedy`] says what may help.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Advice {
@@ -41,22 +41,47 @@ impl fmt::Display for Advice {
                 range: (low, high),
             } => write!(
                 f,
-                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} and were taken as its ends: widen --range"
+                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} and were taken as its ends"
             ),
             Self::AgainstInput { part } if *part > 0.5 => write!(
                 f,
-                "on {:.0} % of its way the output goes the other way than the model's sign allows: leave --sign out; where it was left out, the output hardly follows from this input",
+                "on {:.0} % of its way the output goes the other way than the model's sign allows",
                 100.0 * part
             ),
             Self::AgainstInput { part } => write!(
                 f,
-                "on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow: \
-                 a butterfly loop needs --solver ols, several loads --load, a drive that heats --thermal",
+                "on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow",
                 100.0 * part
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the first input leaves {operators} operators open, which are taken as off: if the recording does not begin after the lowest input, use --start unknown"
+                "the first input leaves {operators} operators open, which are taken as off"
+            ),
+        }
+    }
+}
+
+impl Advice {
+    /// What may help.
+    #[must_use]
+    pub fn remedy(&self) -> Remedy {
+        match self {
+            Self::Clipped { .. } => Remedy::new("widen {}", [Setting::any("range")]),
+            Self::AgainstInput { part } if *part > 0.5 => Remedy::new(
+                "leave {} out; where it was left out, the output hardly follows from this input",
+                [Setting::any("sign")],
+            ),
+            Self::AgainstInput { .. } => Remedy::new(
+                "a butterfly loop needs {}, several loads {}, a drive that heats {}",
+                [
+                    Setting::word("solver", "ols"),
+                    Setting::any("load"),
+                    Setting::any("thermal"),
+                ],
+            ),
+            Self::OpenStart { .. } => Remedy::new(
+                "if the recording does not begin after the lowest input, use {}",
+                [Setting::word("start", "unknown")],
             ),
         }
     }

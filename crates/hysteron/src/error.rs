@@ -1,5 +1,6 @@
 //! Everything that can go wrong, with a stable code for each kind.
 
+use crate::Remedy;
 use std::path::PathBuf;
 
 /// A result of this crate.
@@ -92,6 +93,14 @@ pub enum Error {
     /// The virtual rig was asked for something outside its physics.
     #[error(transparent)]
     Rig(#[from] crate::rig::RigError),
+    /// Another error, and what helps against it; [`Error::parts`] takes them apart.
+    #[error("{error}: {remedy}")]
+    Remedied {
+        /// What is wrong, and where.
+        error: Box<Error>,
+        /// What to do.
+        remedy: Remedy,
+    },
 }
 
 impl Error {
@@ -112,7 +121,24 @@ impl Error {
             Error::Scenario { .. } => 29,
             Error::Control(_) => 30,
             Error::Export(_) => 31,
+            Error::Remedied { error, .. } => error.code(),
         }
+    }
+
+    /// What is wrong, and what helps where that is known: for a surface that spells options in its own way.
+    #[must_use]
+    pub fn parts(&self) -> (&Error, Option<&Remedy>) {
+        match self {
+            Error::Remedied { error, remedy } => (error, Some(remedy)),
+            error => (error, None),
+        }
+    }
+
+    /// This error with what helps against it.
+    #[must_use]
+    pub fn remedied(self, remedy: Remedy) -> Self {
+        let error = Box::new(self);
+        Error::Remedied { error, remedy }
     }
 }
 

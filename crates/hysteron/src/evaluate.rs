@@ -4,7 +4,8 @@ use crate::identify::simulate_from_unknown;
 use crate::recording::range;
 use crate::turning::{NOISE, Turning};
 use crate::{
-    BandEvaluation, Errors, Inverse, Invert, Model, Recording, Result, Solution, Start, State,
+    BandEvaluation, Errors, Inverse, Invert, Model, Recording, Remedy, Result, Setting, Solution,
+    Start, State,
 };
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
@@ -76,10 +77,9 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     let clipped = run(begin.clone(), &mut output_model)?;
     if start != Start::Off {
         if model.load.is_some() {
-            return Err(crate::Error::Fit(
-                "from another start than off, take the model at one load (a number for --load)"
-                    .into(),
-            ));
+            let what = "a model that depends on a load is evaluated from off only";
+            let remedy = Remedy::new("take it at one load ({})", [Setting::any("load")]);
+            return Err(crate::Error::Fit(what.into()).remedied(remedy));
         }
         let mut from_on = vec![0.0; recording.len()];
         run(model.saturated(), &mut from_on)?;

@@ -1,6 +1,8 @@
 //! The inverse of a model in its own units: of one target, and of a series of them.
 
-use crate::{Direction, Error, Invert, Model, Policy, Result, Sign, Solution, State};
+use crate::{
+    Direction, Error, Invert, Model, Policy, Remedy, Result, Setting, Sign, Solution, State,
+};
 
 impl Model {
     /// The inverse of this model.
@@ -13,10 +15,12 @@ impl Model {
         }
         if let Some(load) = &self.load {
             let (low, high) = load.range();
-            return Err(Error::Fit(format!(
-                "the model depends on the load `{}`, from {low} to {high}: an inverse is that of one load (--load of the command)",
+            let what = format!(
+                "the model depends on the load `{}`, from {low} to {high}, and an inverse is that of one load",
                 load.quantity.name
-            )));
+            );
+            let remedy = Remedy::new("take it at one load ({})", [Setting::any("load")]);
+            return Err(Error::Fit(what).remedied(remedy));
         }
         Ok(Inverse {
             model: self,

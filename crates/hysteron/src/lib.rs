@@ -32,6 +32,7 @@ pub mod plant;
 mod predict;
 mod prepare;
 mod recording;
+mod remedy;
 pub mod rig;
 mod stream;
 mod table;
@@ -75,6 +76,7 @@ pub use prepare::{
     Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
 };
 pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
+pub use remedy::{Remedy, Setting, SettingValue};
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, Row, TableReader};
 pub use thermal::{FirstOrder, ThermalState, fit_thermal};
@@ -85,5 +87,5 @@ pub type Plane = hysteron_core::Plane<f64>;
 
 /// The README's code, run as a test.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 pub struct Readme;

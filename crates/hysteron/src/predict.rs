@@ -2,7 +2,7 @@
 
 use crate::band::ends;
 use crate::thermal::needs_time;
-use crate::{Error, Model, Result};
+use crate::{Error, Model, Remedy, Result, Setting};
 use std::borrow::Cow;
 
 /// What goes with the samples of an input, each series as long as it.
@@ -66,10 +66,10 @@ impl Model {
         surroundings: Surroundings<'_>,
     ) -> Result<(Vec<f64>, Vec<f64>)> {
         let Some(band) = self.band()? else {
-            return Err(Error::Fit(
-                "the model does not say how certain it is: fit it again with --bootstrap 200"
-                    .into(),
-            ));
+            let what = "the model does not say how certain it is";
+            let bootstrap = Setting::number("bootstrap", 200);
+            let remedy = Remedy::new("fit it again with {}", [bootstrap]);
+            return Err(Error::Fit(what.into()).remedied(remedy));
         };
         let seen = self.seen(input, surroundings)?;
         let output = self.at(&seen, surroundings)?;

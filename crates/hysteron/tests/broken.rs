@@ -45,15 +45,15 @@ const FILES: [(&str, &str); 22] = [
     ),
     (
         "nan.csv",
-        "recording FILE, line 3, column `x`: `NaN` where a finite number is needed; in all lines 3, 5, 7 and 2 more without a number: mend or remove them, or use `--repair`",
+        "recording FILE, line 3, column `x`: `NaN` where a finite number is needed; in all lines 3, 5, 7 and 2 more without a number: mend or remove them, or use `repair`",
     ),
     (
         "text.csv",
-        "recording FILE, line 3, column `x`: `abc` where a finite number is needed: mend or remove the row, or use `--repair`",
+        "recording FILE, line 3, column `x`: `abc` where a finite number is needed: mend or remove the row, or use `repair`",
     ),
     (
         "infinity.csv",
-        "recording FILE, line 3, column `y`: `inf` where a finite number is needed: mend or remove the row, or use `--repair`",
+        "recording FILE, line 3, column `y`: `inf` where a finite number is needed: mend or remove the row, or use `repair`",
     ),
     (
         "unclosed-quote.csv",
@@ -65,7 +65,7 @@ const FILES: [(&str, &str); 22] = [
     ),
     (
         "latin-1-cell.csv",
-        "recording FILE, line 3, column `x`: `\u{fffd}` where a finite number is needed: mend or remove the row, or use `--repair`",
+        "recording FILE, line 3, column `x`: `\u{fffd}` where a finite number is needed: mend or remove the row, or use `repair`",
     ),
     (
         "constant-input.csv",
@@ -73,11 +73,11 @@ const FILES: [(&str, &str); 22] = [
     ),
     (
         "unsorted-time.csv",
-        "recording FILE, line 4, column `t`: time goes back from 2 to 1: mend or remove the row, or use `--repair`",
+        "recording FILE, line 4, column `t`: time goes back from 2 to 1: mend or remove the row, or use `repair`",
     ),
     (
         "repeated-time.csv",
-        "recording FILE, line 4, column `t`: the time is 1 again; in all lines 4 and 5 at the time of the row before: mend or remove them, or use `--repair`",
+        "recording FILE, line 4, column `t`: the time is 1 again; in all lines 4 and 5 at the time of the row before: mend or remove them, or use `repair`",
     ),
     (
         "huge.csv",
@@ -93,7 +93,7 @@ const FILES: [(&str, &str); 22] = [
     ),
     (
         "thousands.csv",
-        "recording FILE, line 2, column `x`: `1,234` where a finite number is needed; in all lines 2 and 3 without a number: mend or remove them, or use `--repair`",
+        "recording FILE, line 2, column `x`: `1,234` where a finite number is needed; in all lines 2 and 3 without a number: mend or remove them, or use `repair`",
     ),
     (
         "units-only.csv",
@@ -101,7 +101,7 @@ const FILES: [(&str, &str); 22] = [
     ),
     (
         "many-faults.csv",
-        "recording FILE, line 7, column `x`: `-` where a finite number is needed; in all line 7 without a number; line 9 at the time of the row before: mend or remove them, or use `--repair`",
+        "recording FILE, line 7, column `x`: `-` where a finite number is needed; in all line 7 without a number; line 9 at the time of the row before: mend or remove them, or use `repair`",
     ),
     (
         "text.parquet",
@@ -209,7 +209,7 @@ fn what_whole_files_do_not_hold() {
         (
             "v5.mat",
             ["temperature", "late"],
-            "recording FILE: the times of `late` are not those of `temperature`: use `--repair` to interpolate it onto them",
+            "recording FILE: the times of `late` are not those of `temperature`: use `repair` to interpolate it onto them",
         ),
         (
             "v5.mat",
@@ -224,7 +224,7 @@ fn what_whole_files_do_not_hold() {
         (
             "none.parquet",
             ["x", "y"],
-            "recording FILE, row 6, column `y`: `NaN` where a finite number is needed: mend or remove the row, or use `--repair`",
+            "recording FILE, row 6, column `y`: `NaN` where a finite number is needed: mend or remove the row, or use `repair`",
         ),
     ];
     for (name, [input, output], expected) in cases {

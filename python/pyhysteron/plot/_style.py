@@ -17,7 +17,11 @@ MODELLED = dict(color=BLUE, linewidth=1.1, zorder=3)
 CONTRAST = dict(color=ORANGE, linewidth=1.1, linestyle=DASHED, zorder=4)
 
 _SIGNS = {"degC": "°C", "degF": "°F", "deg": "°", "um": "µm", "uC/cm2": "µC/cm²"}
-_KINDS = {"recording": (Recording, "a pyhysteron.Recording"), "model": (Model, "a pyhysteron.Model"), "ax": (Axes, "a matplotlib Axes")}
+_KINDS = {
+    "recording": (Recording, "a pyhysteron.Recording"),
+    "model": (Model, "a pyhysteron.Model"),
+    "ax": (Axes, "a matplotlib Axes"),
+}
 
 
 def figure(draw):

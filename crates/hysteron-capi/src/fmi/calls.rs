@@ -5,7 +5,7 @@ use super::logger::{CATEGORY, Logger};
 use super::values::Value;
 use super::{ERROR, FATAL, OK, Problem, Result, Status, resource};
 use crate::handles::Table;
-use crate::pointer::{check_array, text};
+use crate::pointer::Arguments;
 use std::ffi::{CStr, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -75,14 +75,14 @@ pub(crate) unsafe fn instantiate(
 ) -> *mut c_void {
     let made = catch_unwind(AssertUnwindSafe(|| {
         // SAFETY: the caller's promise.
-        let name = unsafe { text(name, "instanceName") };
+        let name = unsafe { Arguments::default().text(name, "instanceName") };
         let logger = logger(name.as_ref().map_or("", |name| name));
         let block = || {
             if name?.is_empty() {
                 return Err(Problem::new("the instance has no name"));
             }
             // SAFETY: the caller's promise.
-            let token = unsafe { text(token, "instantiationToken")? };
+            let token = unsafe { Arguments::default().text(token, "instantiationToken")? };
             let block = resource::read(&resources()?)?;
             if block.token != token {
                 let own = &block.token;
@@ -120,12 +120,11 @@ pub(crate) unsafe fn logging(
 ) -> Status {
     let mut chosen = count == 0;
     let status = call(instance, name, |_| {
-        if count > 0 {
-            check_array(categories, count, "categories")?;
-        }
-        for n in 0..count {
-            // SAFETY: the caller's promise, and not null.
-            let category = unsafe { text(categories.add(n).read(), "categories")? };
+        // SAFETY: the caller's promise.
+        let categories = unsafe { Arguments::default().array(categories, count, "categories")? };
+        for &category in categories {
+            // SAFETY: the caller's promise.
+            let category = unsafe { Arguments::default().text(category, "categories")? };
             match category.as_bytes() == CStr::to_bytes(CATEGORY) {
                 true => chosen = true,
                 false => return Err(Problem(format!("there is no log category `{category}`"))),
@@ -154,17 +153,16 @@ pub(crate) unsafe fn get<T: Value, C>(
     values: *mut C,
     outward: impl Fn(T) -> C,
 ) -> Result<()> {
-    if count == 0 {
-        return Ok(());
-    }
-    check_array(references, count, "valueReferences")?;
-    check_array(values, count, "values")?;
-    for n in 0..count {
-        // SAFETY: the caller's promise, not null and aligned as checked.
-        unsafe {
-            let value = T::get(instance, references.add(n).read())?;
-            values.add(n).write(outward(value));
-        }
+    let mut arguments = Arguments::default();
+    // SAFETY: the caller's promise.
+    let (references, values) = unsafe {
+        (
+            arguments.array(references, count, "valueReferences")?,
+            arguments.array_out(values, count, "values")?,
+        )
+    };
+    for (n, &reference) in references.iter().enumerate() {
+        values.set(n, outward(T::get(instance, reference)?));
     }
     Ok(())
 }
@@ -173,21 +171,23 @@ pub(crate) unsafe fn get<T: Value, C>(
 ///
 /// # Safety
 /// Pointers are null or have `count` elements.
-pub(crate) unsafe fn set<T: Value, C>(
+pub(crate) unsafe fn set<T: Value, C: Copy>(
     instance: &mut Instance,
     references: *const u32,
     count: usize,
     values: *const C,
     inward: impl Fn(C) -> T,
 ) -> Result<()> {
-    if count == 0 {
-        return Ok(());
-    }
-    check_array(references, count, "valueReferences")?;
-    check_array(values, count, "values")?;
-    // SAFETY: the caller's promise, not null and aligned as checked.
-    let pair = |n| unsafe { (references.add(n).read(), inward(values.add(n).read())) };
-    instance.set((0..count).map(pair))
+    let mut arguments = Arguments::default();
+    // SAFETY: the caller's promise.
+    let (references, values) = unsafe {
+        (
+            arguments.array(references, count, "valueReferences")?,
+            arguments.array(values, count, "values")?,
+        )
+    };
+    let values = values.iter().map(|value| inward(*value));
+    instance.set(references.iter().copied().zip(values))
 }
 
 /// Functions that this FMU's description says it has not, by the arguments after the instance.

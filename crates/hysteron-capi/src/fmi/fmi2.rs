@@ -4,7 +4,7 @@
 use super::calls::{call, free, get, instantiate, logging, refused, set};
 use super::logger::{Callback, Fmi2Logger, Logger};
 use super::{DISCARD, OK, Problem, Result, Status, location, states};
-use crate::pointer::{Out, check, text};
+use crate::pointer::{Arguments, check};
 use std::ffi::{c_char, c_void};
 
 /// `fmi2Component`: a handle.
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             return Err(Problem::new("this FMU is for co-simulation only"));
         }
         // SAFETY: the contract of the crate.
-        location::of_uri(unsafe { text(resources, "fmuResourceLocation")? })
+        location::of_uri(unsafe { Arguments::default().text(resources, "fmuResourceLocation")? })
     };
     // SAFETY: the contract of the crate.
     unsafe { instantiate((name, guid), logger, folder) }
@@ -279,7 +279,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(c: Component, kind: i32, value: *mut 
     }
     call(c, "fmi2GetRealStatus", |instance| {
         // SAFETY: the contract of the crate.
-        let value = unsafe { Out::new(value, "value")? };
+        let value = unsafe { Arguments::default().out(value, "value")? };
         value.set(instance.time());
         Ok(())
     })

@@ -4,7 +4,7 @@
 use super::calls::{call, free, get, instantiate, logging, refused, set};
 use super::logger::{Callback, Fmi3Logger, Logger};
 use super::{Problem, Result, Status, states};
-use crate::pointer::{optional, text};
+use crate::pointer::Arguments;
 use std::ffi::{c_char, c_void};
 use std::path::PathBuf;
 
@@ -51,7 +51,9 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             return Err(Problem::new("this FMU has no event mode"));
         }
         // SAFETY: the contract of the crate.
-        Ok(PathBuf::from(unsafe { text(resources, "resourcePath")? }))
+        Ok(PathBuf::from(unsafe {
+            Arguments::default().text(resources, "resourcePath")?
+        }))
     };
     let logger = |name: &str| logger(name, environment, log);
     // SAFETY: the contract of the crate.
@@ -150,14 +152,16 @@ pub unsafe extern "C" fn fmi3DoStep(
     last: *mut f64,
 ) -> Status {
     call(c, "fmi3DoStep", |instance| {
+        // Each by itself: a tool that wants none of the flags may give one place for all.
         // SAFETY: the contract of the crate.
         let (flags, last) = unsafe {
             let flags = [
-                optional(event, "eventHandlingNeeded")?,
-                optional(terminate, "terminateSimulation")?,
-                optional(early, "earlyReturn")?,
+                Arguments::default().optional(event, "eventHandlingNeeded")?,
+                Arguments::default().optional(terminate, "terminateSimulation")?,
+                Arguments::default().optional(early, "earlyReturn")?,
             ];
-            (flags, optional(last, "lastSuccessfulTime")?)
+            let last = Arguments::default().optional(last, "lastSuccessfulTime")?;
+            (flags, last)
         };
         let done = instance.step(from, size);
         for flag in flags.iter().flatten() {

@@ -2,7 +2,7 @@
 
 use super::calls::{call, handle_of, pointer_of};
 use super::{Problem, Status};
-use crate::pointer::{Out, array, check};
+use crate::pointer::Arguments;
 use std::ffi::c_void;
 
 /// # Safety
@@ -10,7 +10,7 @@ use std::ffi::c_void;
 pub(crate) unsafe fn save(c: *mut c_void, name: &str, state: *mut *mut c_void) -> Status {
     call(c, name, |instance| {
         // SAFETY: the caller's promise; not null as checked.
-        let (out, older) = unsafe { (Out::new(state, "FMUstate")?, state.read()) };
+        let (out, older) = unsafe { (Arguments::default().out(state, "FMUstate")?, state.read()) };
         out.set(pointer_of(instance.save(handle_of(older))?));
         Ok(())
     })
@@ -23,7 +23,12 @@ pub(crate) fn restore(c: *mut c_void, name: &str, state: *mut c_void) -> Status 
 pub(crate) unsafe fn forget(c: *mut c_void, name: &str, state: *mut *mut c_void) -> Status {
     call(c, name, |instance| {
         // SAFETY: the caller's promise; not null as checked.
-        let (out, handle) = unsafe { (Out::new(state, "FMUstate")?, handle_of(state.read())) };
+        let (out, handle) = unsafe {
+            (
+                Arguments::default().out(state, "FMUstate")?,
+                handle_of(state.read()),
+            )
+        };
         if handle != 0 {
             instance.forget(handle)?;
             out.set(std::ptr::null_mut());
@@ -40,7 +45,7 @@ pub(crate) unsafe fn size(
 ) -> Status {
     call(c, name, |instance| {
         // SAFETY: the caller's promise.
-        let size = unsafe { Out::new(size, "size")? };
+        let size = unsafe { Arguments::default().out(size, "size")? };
         size.set(instance.serialised(handle_of(state))?.len());
         Ok(())
     })
@@ -55,15 +60,15 @@ pub(crate) unsafe fn serialise(
 ) -> Status {
     call(c, name, |instance| {
         let bytes = instance.serialised(handle_of(state))?;
-        check(to, "serializedState")?;
         if size < bytes.len() {
             return Err(Problem(format!(
                 "room for {size} bytes where {} are needed",
                 bytes.len()
             )));
         }
-        // SAFETY: the caller's promise, and no more bytes than that.
-        unsafe { to.copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+        // SAFETY: the caller's promise.
+        let to = unsafe { Arguments::default().array_out(to, size, "serializedState")? };
+        to.write(bytes.iter().copied());
         Ok(())
     })
 }
@@ -76,11 +81,12 @@ pub(crate) unsafe fn deserialise(
     state: *mut *mut c_void,
 ) -> Status {
     call(c, name, |instance| {
+        let mut arguments = Arguments::default();
         // SAFETY: the caller's promise.
         let (bytes, out) = unsafe {
             (
-                array(from, size, "serializedState")?,
-                Out::new(state, "FMUstate")?,
+                arguments.array(from, size, "serializedState")?,
+                arguments.out(state, "FMUstate")?,
             )
         };
         out.set(pointer_of(instance.deserialise(bytes)?));

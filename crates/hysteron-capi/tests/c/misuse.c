@@ -28,6 +28,8 @@ static void models(void) {
     REQUIRE(hysteron_model_parse(MODEL, NULL) == HYSTERON_NULL);
     REQUIRE(hysteron_model_read("/no/such/model.json", &model) == HYSTERON_FILE);
     REQUIRE(hysteron_model_read("/", &model) == HYSTERON_FILE);
+    REQUIRE(hysteron_model_read("run --old/m.json", &model) == HYSTERON_FILE);
+    REQUIRE(hysteron_last_error(detail, sizeof detail) > 0 && strstr(detail, "run --old/m.json: ") == detail);
     REQUIRE(hysteron_model_new(HYSTERON_MKP, 0.0, 1.0, 2, NULL, 3, 0.0, 1, &model) == HYSTERON_NULL);
     REQUIRE(hysteron_model_new(HYSTERON_MKP, 0.0, 1.0, 2, WEIGHTS, 2, 0.0, 1, &model) == HYSTERON_WEIGHT_COUNT);
     REQUIRE(hysteron_model_new(HYSTERON_MKP, 0.0, 1.0, 2, WEIGHTS, (size_t)-1, 0.0, 1, &model) == HYSTERON_VALUE);

@@ -69,8 +69,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// state of the model with earlier weights is [rebased](Model::rebase). Cost: [`Method`].
     ///
     /// # Errors
-    /// [`Error::InputNotFinite`] with index 0 for the input and 1 for the output, [`Error::StateMismatch`];
-    /// nothing is changed then.
+    /// [`Error::InputNotFinite`] with index 0 for the input and 1 for the output, [`Error::StateMismatch`], and
+    /// [`Error::MemoryTooSmall`] for the table of another model than its own; nothing is changed then.
     pub fn step<C, S>(
         &mut self,
         model: &mut Model<T, C>,
@@ -90,6 +90,10 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         }
         if model.plane().levels() != self.levels || model.operator() != self.operator {
             return Err(Error::StateMismatch);
+        }
+        // It may be another model than the one that the estimator was made with.
+        if matches!(self.options.method, Method::Increments { .. }) {
+            model.check_renewable()?;
         }
         if model.check(state).is_err() {
             model.rebase(state)?;

@@ -1,7 +1,7 @@
 //! A model in the number type of the target.
 
-use super::CMemory;
-use hysteron::{Error, Model, Operator, Result, Sign};
+use super::{CMemory, CReal};
+use hysteron::{Error, Model, Operator, Remedy, Result, Setting, Sign};
 use hysteron_core::{Plane, Real, table_len, turn_capacity};
 
 /// A number type of C.
@@ -130,7 +130,7 @@ impl<T: Number> Constants<T> {
 }
 
 fn unfit(what: &str) -> Error {
-    Error::Export(format!(
-        "{what} does not fit single precision: export with --real double"
-    ))
+    let double = Setting::word("real", CReal::Double.name());
+    let what = format!("{what} does not fit single precision");
+    Error::Export(what).remedied(Remedy::new("export with {}", [double]))
 }

@@ -1,6 +1,6 @@
 //! Names that a model may have in C.
 
-use hysteron::{Error, Result};
+use hysteron::{Error, Remedy, Result, Setting};
 use std::path::Path;
 
 /// As many letters of an external name as C99 tells apart (5.2.4.1).
@@ -36,9 +36,11 @@ pub(super) fn choose(asked: Option<&str>, source: &Path) -> Result<String> {
     };
     match fault(&name) {
         None => Ok(name),
-        Some(why) => Err(Error::Export(format!(
-            "`{name}` cannot be the model's name in C: {why}: choose one with --name"
-        ))),
+        Some(why) => {
+            let what = format!("`{name}` cannot be the model's name in C: {why}");
+            let remedy = Remedy::new("choose one with {}", [Setting::any("name")]);
+            Err(Error::Export(what).remedied(remedy))
+        }
     }
 }
 
@@ -157,7 +159,10 @@ mod tests {
         ];
         for name in bad {
             let error = choose(Some(name), Path::new("spring.json")).unwrap_err();
-            assert!(error.to_string().contains("--name"), "{name}: {error}");
+            assert!(
+                error.to_string().contains("choose one with `name`"),
+                "{name}: {error}"
+            );
         }
         assert_eq!(choose(Some("left"), Path::new("x")).unwrap(), "left");
     }

@@ -8,7 +8,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 const LINUX: &[u8] = include_bytes!("../../binaries/linux64/hysteron.so");
 const WINDOWS: &[u8] = include_bytes!("../../binaries/win64/hysteron.dll");
-const LICENCE: &str = include_str!("../../../../LICENSE-MIT");
+const LICENCE: &str = include_str!("../../LICENSE-MIT");
 
 pub(super) struct Files {
     pub(super) description: String,

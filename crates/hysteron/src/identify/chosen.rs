@@ -1,7 +1,7 @@
 //! A fit whose levels, smoothness or bootstrap are left to the data.
 
 use super::{Candidates, FitOptions, Watch, cross_validate, fit_experiment};
-use crate::{Error, Model, Recording, Result, fit_thermal};
+use crate::{Error, Model, Recording, Remedy, Result, Setting, fit_thermal};
 
 /// What is not taken from the options but chosen, each where it is true.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -41,9 +41,10 @@ pub fn identify(
     let mut validation = None;
     if open.levels || open.smooth {
         if thermal {
-            return Err(Error::Fit(
-                "--thermal does not go with `auto`: choose --levels and --smooth yourself".into(),
-            ));
+            let what = "behind a thermal body neither levels nor smoothness can be chosen";
+            let settings = [Setting::any("levels"), Setting::any("smooth")];
+            let remedy = Remedy::new("give {} and {} yourself", settings);
+            return Err(Error::Fit(what.into()).remedied(remedy));
         }
         let candidates = Candidates::new(
             (!open.levels).then_some(options.levels),

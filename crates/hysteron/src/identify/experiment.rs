@@ -6,7 +6,7 @@ use super::regressor::MOST_RECORDINGS;
 use crate::load::bernstein;
 use crate::recording::range;
 use crate::turning::{branches, noise_band};
-use crate::{Error, Plane, Recording, Result};
+use crate::{Error, Plane, Recording, Remedy, Result, Setting};
 use std::ops::Range;
 
 pub(super) struct Experiment {
@@ -71,10 +71,12 @@ impl Experiment {
                 }
                 let (loads, degree) = (different(&load), options.load_degree);
                 if loads <= degree {
-                    return Err(Error::Fit(format!(
-                        "{loads} different loads cannot tell weights of order {degree} in the load: take --load-degree {} at most",
-                        loads - 1
-                    )));
+                    let what = format!(
+                        "{loads} different loads cannot tell weights of order {degree} in the load"
+                    );
+                    let most = Setting::number("load-degree", loads - 1);
+                    let remedy = Remedy::new("take {} at most", [most]);
+                    return Err(Error::Fit(what).remedied(remedy));
                 }
                 experiment.load_range = Some((low, high));
                 let functions = load

@@ -1,7 +1,7 @@
 //! Samples at equal steps of time.
 
 use super::noise::median_of;
-use crate::{Error, Recording, Result};
+use crate::{Error, Recording, Remedy, Result, Setting};
 
 /// Steps that differ from the median by up to this part of it are equal: a filter does not notice.
 const JITTER: f64 = 0.1;
@@ -25,11 +25,15 @@ pub(super) fn fits(time: &[f64]) -> Result<()> {
     let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let samples = duration / median;
     if median > 0.0 && samples > GROWTH * time.len() as f64 {
-        return Err(Error::Preparation(format!(
-            "the time has gaps: at the median step of {median} s there would be {samples:.0} samples instead of {}. Cut the recording at its gaps \
-             (several files make one experiment), or leave the filter out (--low-pass off) or give a step (--resample)",
+        let what = format!(
+            "the time has gaps: at the median step of {median} s there would be {samples:.0} samples instead of {}",
             time.len()
-        )));
+        );
+        let remedy = Remedy::new(
+            "cut the recording at its gaps (several files make one experiment), or leave the filter out ({}) or give a step ({})",
+            [Setting::word("low-pass", "off"), Setting::any("resample")],
+        );
+        return Err(Error::Preparation(what).remedied(remedy));
     }
     Ok(())
 }

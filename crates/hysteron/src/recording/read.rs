@@ -3,8 +3,8 @@
 use super::repair::{Note, NoteKind, Repair};
 use super::samples::{Samples, interpolate};
 use super::{Columns, Origin, Quantity, Recording, Source};
-use crate::Result;
 use crate::table::{Column, TableReader};
+use crate::{Remedy, Result, Setting};
 use std::path::Path;
 
 impl Recording {
@@ -66,10 +66,12 @@ impl Recording {
             {
                 if repair == Repair::Refuse {
                     let problem = format!(
-                        "the times of `{}` are not those of `{}`: use `--repair` to interpolate it onto them",
+                        "the times of `{}` are not those of `{}`",
                         columns.output, columns.input
                     );
-                    return Err(table.fault(None, problem));
+                    let words = "use {} to interpolate it onto them";
+                    let remedy = Remedy::new(words, [Setting::on("repair")]);
+                    return Err(table.fault(None, problem).remedied(remedy));
                 }
                 Some(interpolate(times, output, wanted))
             }

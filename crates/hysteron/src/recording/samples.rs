@@ -2,7 +2,7 @@
 
 use super::repair::{Note, NoteKind, Places, Repair, gaps};
 use crate::table::{Column, TableReader};
-use crate::{Error, Place, Result};
+use crate::{Error, Place, Remedy, Result, Setting};
 
 /// Where the time is among the series.
 const TIME: usize = 2;
@@ -173,19 +173,20 @@ fn refusal(fault: Error, notes: &[Note]) -> Error {
     };
     let count: u64 = notes.iter().map(|note| note.places.count).sum();
     let all: Vec<String> = notes.iter().map(Note::as_fault).collect();
-    let problem = match count {
-        1 => format!("{problem}: mend or remove the row, or use `--repair`"),
-        _ => format!(
-            "{problem}; in all {}: mend or remove them, or use `--repair`",
-            all.join("; ")
+    let (problem, words) = match count {
+        1 => (problem, "mend or remove the row, or use {}"),
+        _ => (
+            format!("{problem}; in all {}", all.join("; ")),
+            "mend or remove them, or use {}",
         ),
     };
-    Error::Recording {
+    let fault = Error::Recording {
         path,
         row,
         column,
         problem,
-    }
+    };
+    fault.remedied(Remedy::new(words, [Setting::on("repair")]))
 }
 
 /// A series at other times, along straight lines; NaN outside its own times. Only its finite samples

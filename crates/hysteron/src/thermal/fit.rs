@@ -121,7 +121,7 @@ impl<'a> Search<'a> {
         match fit_experiment(&heated?, &self.options, &|_, _| Ok(())) {
             Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),
             // A body too slow to reach the plane, or options that the last fit refuses as well.
-            Err(Error::Fit(_)) => Ok(f64::INFINITY),
+            Err(error) if matches!(error.parts().0, Error::Fit(_)) => Ok(f64::INFINITY),
             Err(error) => Err(error),
         }
     }

@@ -5,7 +5,7 @@ mod nelder_mead;
 
 pub use fit::fit_thermal;
 
-use crate::{Error, Model, Recording, Result};
+use crate::{Error, Model, Recording, Remedy, Result, Setting};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -146,9 +146,9 @@ impl Model {
 }
 
 pub(crate) fn needs_time() -> Error {
-    Error::Thermal(
-        "the model has a thermal body, whose temperature depends on time: that is needed too (--time)".into(),
-    )
+    let what = "the model has a thermal body, whose temperature depends on time";
+    let remedy = Remedy::new("give that too ({})", [Setting::any("time")]);
+    Error::Thermal(what.into()).remedied(remedy)
 }
 
 pub(crate) fn no_inverse() -> Error {

@@ -1,0 +1,231 @@
+//! The functions of the header that take two pointers or more, each with arguments that it accepts.
+
+mod calls;
+
+pub use calls::CALLS;
+use hysteron_capi::*;
+use std::ffi::c_void;
+use std::ptr::null_mut;
+
+pub const LEVELS: usize = 2;
+pub const WEIGHTS: [f64; 3] = [1.0, 2.0, 1.0];
+const MODEL_TEXT: &str = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
+    "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1]}"#;
+
+/// A function, its pointers by their names in the header, and a call with these pointers.
+pub struct Call {
+    pub name: &'static str,
+    pub arguments: &'static [(&'static str, Argument)],
+    pub run: fn(&Handles, &[*mut c_void]) -> i32,
+}
+
+/// What a pointer points to.
+#[derive(Clone, Copy)]
+pub enum Argument {
+    Doubles(&'static [f64]),
+    Integers(usize),
+    Characters(usize),
+    /// A handle, a size or a pointer.
+    Word,
+    Options,
+    Learning,
+    /// The path of a model file, and its text.
+    Path,
+    Json,
+    /// The objects over the caller's memory, and memory for one.
+    Model,
+    State,
+    Estimator,
+    Memory(fn() -> usize),
+}
+
+/// What calls need beside pointers.
+pub struct Handles {
+    folder: tempfile::TempDir,
+    pub model: u64,
+    pub state: u64,
+    pub adaptive: u64,
+}
+
+impl Handles {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
+        let (mut model, mut state, mut adaptive) = (0, 0, 0);
+        let count = WEIGHTS.len();
+        // SAFETY: live memory of the sizes given.
+        let made = unsafe {
+            [
+                hysteron_model_new(
+                    HYSTERON_MKP,
+                    0.0,
+                    1.0,
+                    LEVELS,
+                    WEIGHTS.as_ptr(),
+                    count,
+                    0.0,
+                    1,
+                    &mut model,
+                ),
+                hysteron_state_new(model, &mut state),
+                hysteron_adaptive_new(model, std::ptr::null(), &mut adaptive),
+            ]
+        };
+        assert_eq!(made, [HYSTERON_OK; 3]);
+        Self {
+            folder,
+            model,
+            state,
+            adaptive,
+        }
+    }
+
+    fn path(&self) -> String {
+        let path = self.folder.path().join("model.json");
+        path.to_str().unwrap().into()
+    }
+}
+
+pub fn options() -> HysteronAdaptation {
+    // SAFETY: all fields are numbers.
+    let mut options = unsafe { std::mem::zeroed() };
+    // SAFETY: a live structure.
+    let filled = unsafe { hysteron_adaptation_default(HYSTERON_GRADIENT, &mut options) };
+    assert_eq!(filled, HYSTERON_OK);
+    options
+}
+
+pub fn model_size() -> usize {
+    hysteron_core_model_size(LEVELS, 1)
+}
+
+pub fn state_size() -> usize {
+    hysteron_core_state_size(LEVELS)
+}
+
+pub fn estimator_size() -> usize {
+    // SAFETY: a live structure.
+    unsafe { hysteron_core_estimator_size(LEVELS, &options()) }
+}
+
+impl Argument {
+    pub fn bytes(self, handles: &Handles) -> usize {
+        match self {
+            Self::Doubles(values) => size_of_val(values),
+            Self::Integers(count) => count * size_of::<i32>(),
+            Self::Characters(count) => count,
+            Self::Word => size_of::<u64>(),
+            Self::Options => size_of::<HysteronAdaptation>(),
+            Self::Learning => size_of::<HysteronLearning>(),
+            Self::Path | Self::Json => self.text(handles).map_or(0, |text| text.len()),
+            Self::Model => model_size(),
+            Self::State => state_size(),
+            Self::Estimator => estimator_size(),
+            Self::Memory(bytes) => bytes(),
+        }
+    }
+
+    pub fn alignment(self) -> usize {
+        match self {
+            Self::Integers(_) => align_of::<i32>(),
+            Self::Characters(_) | Self::Path | Self::Json => 1,
+            _ => align_of::<u64>(),
+        }
+    }
+
+    pub fn is_object(self) -> bool {
+        matches!(self, Self::Model | Self::State | Self::Estimator)
+    }
+
+    /// A text with its zero byte.
+    pub fn text(self, handles: &Handles) -> Option<String> {
+        match self {
+            Self::Path => Some(handles.path() + "\0"),
+            Self::Json => Some(format!("{MODEL_TEXT}\0")),
+            _ => None,
+        }
+    }
+
+    /// Puts it in its place. `model` becomes the model that a state or an estimator is one of.
+    pub fn prepare(self, handles: &Handles, place: *mut c_void, model: &mut Model) {
+        if let Some(text) = self.text(handles) {
+            // SAFETY: the place has room for it.
+            unsafe { place.cast::<u8>().copy_from(text.as_ptr(), text.len()) };
+        }
+        match self {
+            // SAFETY: the place has room for it.
+            Self::Doubles(values) => unsafe {
+                place.cast::<f64>().copy_from(values.as_ptr(), values.len());
+            },
+            // SAFETY: the place has room for it.
+            Self::Options => unsafe { place.cast::<HysteronAdaptation>().write(options()) },
+            Self::Model => model.0 = core_model(place),
+            Self::State => core_state(model.get(), place),
+            Self::Estimator => core_estimator(model.get(), place),
+            _ => {}
+        }
+    }
+}
+
+/// The model of a call, or one of its own for a call that has none.
+pub struct Model(*mut HysteronCoreModel, Vec<u64>);
+
+impl Model {
+    pub fn none() -> Self {
+        Self(null_mut(), vec![0; model_size().div_ceil(8)])
+    }
+
+    fn get(&mut self) -> *mut HysteronCoreModel {
+        if self.0.is_null() {
+            self.0 = core_model(self.1.as_mut_ptr().cast());
+        }
+        self.0
+    }
+}
+
+fn core_model(place: *mut c_void) -> *mut HysteronCoreModel {
+    let mut model = null_mut();
+    let (weights, count, kind) = (WEIGHTS.as_ptr(), WEIGHTS.len(), HYSTERON_MKP);
+    // SAFETY: the place has the size asked for.
+    let made = unsafe {
+        hysteron_core_model_init(
+            place,
+            model_size(),
+            kind,
+            0.0,
+            1.0,
+            LEVELS,
+            weights,
+            count,
+            &mut model,
+        )
+    };
+    assert_eq!(made, HYSTERON_OK);
+    model
+}
+
+fn core_state(model: *mut HysteronCoreModel, place: *mut c_void) {
+    let mut state = null_mut();
+    // SAFETY: the place has the size asked for.
+    let made = unsafe { hysteron_core_state_init(model, place, state_size(), &mut state) };
+    assert_eq!(made, HYSTERON_OK);
+}
+
+fn core_estimator(model: *mut HysteronCoreModel, place: *mut c_void) {
+    let mut estimator = null_mut();
+    let (weights, count, bytes) = (WEIGHTS.as_ptr(), WEIGHTS.len(), estimator_size());
+    // SAFETY: the place has the size asked for.
+    let made = unsafe {
+        hysteron_core_estimator_init(
+            model,
+            &options(),
+            weights,
+            count,
+            0.0,
+            place,
+            bytes,
+            &mut estimator,
+        )
+    };
+    assert_eq!(made, HYSTERON_OK);
+}

@@ -1,0 +1,23 @@
+//! Errors of the library, with its options as they are on the command line.
+
+use hysteron::{Advice, Remedy, Setting, SettingValue};
+use std::error::Error;
+
+/// What is wrong, where, and what to do.
+pub(crate) fn text_of(error: &(dyn Error + 'static)) -> String {
+    match error.downcast_ref().map(hysteron::Error::parts) {
+        Some((error, Some(remedy))) => format!("{error}: {}", spelt(remedy)),
+        _ => error.to_string(),
+    }
+}
+
+pub(crate) fn text_of_advice(advice: &Advice) -> String {
+    format!("{advice}: {}", spelt(&advice.remedy()))
+}
+
+fn spelt(remedy: &Remedy) -> String {
+    remedy.spelt(|Setting { name, value }| match value {
+        SettingValue::Any | SettingValue::On => format!("--{name}"),
+        value => format!("--{name} {value}"),
+    })
+}

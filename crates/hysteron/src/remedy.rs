@@ -1,0 +1,114 @@
+//! What helps against an error, apart from what is wrong: each surface spells the options in its own way.
+
+use std::fmt;
+
+/// What helps, in words, with the options among them as such.
+///
+/// ```
+/// use hysteron::{Remedy, Setting};
+/// let remedy = Remedy::new("take {} at most", [Setting::number("load-degree", 2)]);
+/// assert_eq!(remedy.to_string(), "take `load degree` 2 at most");
+/// let spelt = |setting: &Setting| format!("--{} {}", setting.name, setting.value);
+/// assert_eq!(remedy.spelt(spelt), "take --load-degree 2 at most");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remedy {
+    words: &'static str,
+    settings: Vec<Setting>,
+}
+
+/// An option, and the value that it should have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setting {
+    /// As the command has it: `load-degree`.
+    pub name: &'static str,
+    /// The value.
+    pub value: SettingValue,
+}
+
+/// What an option should be set to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SettingValue {
+    /// Whatever the user finds right.
+    Any,
+    /// On, of an option that is on or off.
+    On,
+    /// A word.
+    Word(&'static str),
+    /// A number.
+    Number(usize),
+}
+
+impl Remedy {
+    /// Words with `{}` where the options stand.
+    #[must_use]
+    pub fn new<const N: usize>(words: &'static str, settings: [Setting; N]) -> Self {
+        let settings = settings.into();
+        Self { words, settings }
+    }
+
+    /// The words, with each option as a surface spells it.
+    pub fn spelt(&self, spelling: impl Fn(&Setting) -> String) -> String {
+        let mut words = self.words.split("{}");
+        let first = words.next().unwrap_or_default().to_owned();
+        let pairs = self.settings.iter().zip(words);
+        pairs.fold(first, |text, (setting, words)| {
+            text + &spelling(setting) + words
+        })
+    }
+}
+
+impl Setting {
+    /// An option whose value is the user's.
+    #[must_use]
+    pub const fn any(name: &'static str) -> Self {
+        let value = SettingValue::Any;
+        Self { name, value }
+    }
+
+    /// An option to turn on.
+    #[must_use]
+    pub const fn on(name: &'static str) -> Self {
+        let value = SettingValue::On;
+        Self { name, value }
+    }
+
+    /// An option with a word for its value.
+    #[must_use]
+    pub const fn word(name: &'static str, word: &'static str) -> Self {
+        let value = SettingValue::Word(word);
+        Self { name, value }
+    }
+
+    /// An option with a number for its value.
+    #[must_use]
+    pub const fn number(name: &'static str, number: usize) -> Self {
+        let value = SettingValue::Number(number);
+        Self { name, value }
+    }
+}
+
+/// Without a surface, an option is known by its name.
+impl fmt::Display for Remedy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let spelling = |setting: &Setting| {
+            let name = setting.name.replace('-', " ");
+            match setting.value {
+                SettingValue::Any | SettingValue::On => format!("`{name}`"),
+                value => format!("`{name}` {value}"),
+            }
+        };
+        f.write_str(&self.spelt(spelling))
+    }
+}
+
+/// Nothing for a value that has no text.
+impl fmt::Display for SettingValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Any | Self::On => Ok(()),
+            Self::Word(word) => f.write_str(word),
+            Self::Number(number) => number.fmt(f),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Every number is the same, whatever the number of threads.
+#![allow(clippy::unwrap_used)]
+
+mod loops;
+
+use hysteron::rig::{Experiment, prepared};
+use hysteron::track::track;
+use hysteron::{
+    AdaptOptions, DesignOptions, FitOptions, Model, Open, Operator, Plane, PrepareOptions, Rates,
+    Recording, Solver, Start, adapt, design, evaluate, fit, identify, prepare,
+};
+use loops::{RELAYS, RELAYS_SINE, scenario};
+use rayon::ThreadPoolBuilder;
+
+const THREADS: [usize; 4] = [1, 2, 3, 8];
+
+/// The work in pools of different size gives the same text: `Debug` writes every bit of a number.
+fn same(name: &str, work: impl Fn() -> String + Sync) {
+    let in_pool = |threads| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(&work)
+    };
+    let texts = THREADS.map(in_pool);
+    for (threads, text) in THREADS.iter().zip(&texts) {
+        assert!(
+            *text == texts[0],
+            "{name}: {threads} threads give other digits"
+        );
+    }
+}
+
+/// A spring's recording, of which a fit leaves errors behind.
+fn recording() -> Recording {
+    prepared(&Experiment::default().record(1).unwrap()).unwrap()
+}
+
+fn options() -> FitOptions {
+    FitOptions {
+        levels: 20,
+        range: Some((20.0, 80.0)),
+        bootstrap: 12,
+        ..FitOptions::default()
+    }
+}
+
+#[test]
+fn fits_with_their_confidence() {
+    let recording = recording();
+    let usual = options();
+    let smooth = FitOptions {
+        smooth: 1e-6,
+        ..options()
+    };
+    let unknown = FitOptions {
+        start: Start::Unknown,
+        ..options()
+    };
+    let ols = FitOptions {
+        solver: Solver::Ols,
+        smooth: 1e-6,
+        ..options()
+    };
+    let relay = FitOptions {
+        operator: Operator::Relay,
+        ..options()
+    };
+    let all = [
+        ("usual", usual),
+        ("smooth", smooth),
+        ("unknown", unknown),
+        ("ols", ols),
+        ("relay", relay),
+    ];
+    for (name, options) in all {
+        same(name, || fit(&recording, &options).unwrap().to_json());
+    }
+}
+
+#[test]
+fn levels_and_smoothness_chosen_on_branches_left_out() {
+    let recordings = [recording()];
+    let open = Open {
+        levels: true,
+        smooth: true,
+        bootstrap: false,
+    };
+    let chosen = || identify(&recordings, &options(), open, false, &|_, _| Ok(()));
+    same("auto", || chosen().unwrap().to_json());
+}
+
+#[test]
+fn what_is_done_with_a_model() {
+    let recording = recording();
+    let model: Model = fit(
+        &recording,
+        &FitOptions {
+            bootstrap: 0,
+            ..options()
+        },
+    )
+    .unwrap();
+    same("evaluate", || format!("{:?}", evaluate(&model, &recording)));
+    same("adapt", || {
+        format!("{:?}", adapt(&model, &recording, &AdaptOptions::default()))
+    });
+    same("prepare", || {
+        format!("{:?}", prepare(&recording, &PrepareOptions::default()))
+    });
+    let rates = Rates {
+        heating: 3.0,
+        cooling: 0.8,
+    };
+    let plan = DesignOptions::new(Plane::new(20.0, 80.0, 20).unwrap(), rates);
+    same("design", || format!("{:?}", design(&plan, &[])));
+}
+
+#[test]
+fn comparisons_of_controllers() {
+    let short = "duration_s = 8\nsettle_s = 1\nseeds = 2";
+    let compared = scenario(&[RELAYS, short, RELAYS_SINE]);
+    same("track", || {
+        format!("{:?}", track(&compared, &|_, _| Ok(())).unwrap())
+    });
+}
