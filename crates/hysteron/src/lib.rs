@@ -31,6 +31,7 @@ mod output;
 pub mod plant;
 mod predict;
 mod prepare;
+mod printable;
 mod recording;
 pub mod rig;
 mod stream;
@@ -74,6 +75,7 @@ pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
     Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
 };
+pub use printable::printable;
 pub use recording::{
     Columns, Note, NoteKind, Origin, Others, Places, Quantity, Recording, Repair, Source,
 };

@@ -17,7 +17,11 @@ fn written(bytes: impl AsRef<[u8]>) -> tempfile::NamedTempFile {
 }
 
 /// Reads input `x`, output `y` and, where it is named, a time.
-fn read(bytes: impl AsRef<[u8]>, time: Option<&str>, repair: Repair) -> Result<(Recording, Vec<String>), String> {
+fn read(
+    bytes: impl AsRef<[u8]>,
+    time: Option<&str>,
+    repair: Repair,
+) -> Result<(Recording, Vec<String>), String> {
     let file = written(bytes);
     let columns = Columns {
         time,
@@ -37,9 +41,18 @@ fn lines_above_the_header_are_skipped_and_told() {
     let logger = "Logger: TC-08\nSerial;A12\nStart;2024-03-01;10:00\nInterval;1\n\nn;x;y\n;degC;mm\n1;20,5;0,25\n2;30,5;1,25\n3;40,5;2,25\n";
     let pairs = "Device,ABC,1\nInterval,1,s\nt,x,y\n0,20.5,0.25\n1,30.5,1.25\n2,40.5,2.25\n";
     let cases = [
-        (lvm, "15 lines above the header skipped; line 16 is the header: X_Value, x, y, Comment"),
-        (logger, "5 lines above the header skipped; line 6 is the header: n, x, y"),
-        (pairs, "2 lines above the header skipped; line 3 is the header: t, x, y"),
+        (
+            lvm,
+            "15 lines above the header skipped; line 16 is the header: X_Value, x, y, Comment",
+        ),
+        (
+            logger,
+            "5 lines above the header skipped; line 6 is the header: n, x, y",
+        ),
+        (
+            pairs,
+            "2 lines above the header skipped; line 3 is the header: t, x, y",
+        ),
     ];
     for (text, note) in cases {
         let (recording, notes) = read(text, None, Repair::Refuse).expect(text);
@@ -52,7 +65,16 @@ fn lines_above_the_header_are_skipped_and_told() {
 /// Whatever stands above a table, as long as no line of it looks like a header above rows.
 #[test]
 fn any_preamble_is_skipped_whole() {
-    let lines = ["Run 7", "a: b", "Serial no. 12", "2024-03-01 10:00:00", "== data ==", "", "# comment", "v1.5"];
+    let lines = [
+        "Run 7",
+        "a: b",
+        "Serial no. 12",
+        "2024-03-01 10:00:00",
+        "== data ==",
+        "",
+        "# comment",
+        "v1.5",
+    ];
     for n in 0..8_usize.pow(3) {
         let above = [n % 8, n / 8 % 8, n / 64].map(|k| lines[k]).join("\n");
         for delimiter in [",", ";", "\t"] {
@@ -60,7 +82,9 @@ fn any_preamble_is_skipped_whole() {
             let text = format!("{above}\n{table}");
             let (recording, notes) = read(&text, Some("t"), Repair::Refuse).expect(&text);
             assert_eq!(recording.input, [20.5, 30.5], "{text}");
-            let told = above.lines().any(|line| !line.is_empty() && !line.starts_with('#'));
+            let told = above
+                .lines()
+                .any(|line| !line.is_empty() && !line.starts_with('#'));
             assert_eq!(notes.len(), usize::from(told), "{text}");
         }
     }
@@ -69,7 +93,9 @@ fn any_preamble_is_skipped_whole() {
 #[test]
 fn columns_without_names_go_by_number() {
     let note = |above: usize| {
-        format!("no header row: the table begins in line {above}, and its columns go by number, 1 to 3")
+        format!(
+            "no header row: the table begins in line {above}, and its columns go by number, 1 to 3"
+        )
     };
     for (text, note) in [
         ("0;20,5;1\n1;30,5;2\n", note(1)),
@@ -86,7 +112,10 @@ fn columns_without_names_go_by_number() {
     let file = written("a,1,x\n0.5,20,5\n1.5,30,6\n");
     let (recording, notes) =
         Recording::read(file.path(), Columns::new("1", "3"), Repair::Refuse).unwrap();
-    assert_eq!((&recording.input[..], &recording.output[..]), (&[20.0, 30.0][..], &[5.0, 6.0][..]));
+    assert_eq!(
+        (&recording.input[..], &recording.output[..]),
+        (&[20.0, 30.0][..], &[5.0, 6.0][..])
+    );
     let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
     assert_eq!(notes, ["`3` is taken for the column `x`"]);
 }
@@ -97,17 +126,24 @@ fn text_of_other_encodings_is_read() {
     let (recording, notes) =
         Recording::read(&fixture("latin-1.csv"), columns, Repair::Refuse).unwrap();
     assert_eq!(recording.input, [20.0, 30.0]);
-    assert_eq!(notes[0].to_string(), "the text is not UTF-8: read as windows-1252");
+    assert_eq!(
+        notes[0].to_string(),
+        "the text is not UTF-8: read as windows-1252"
+    );
     let text = "Zeit;x [°C];y\n0;20,5;1\n1;30,5;2\n";
     let utf16 = |bytes: fn(u16) -> [u8; 2]| -> Vec<u8> {
         let units = std::iter::once(0xfeff).chain(text.encode_utf16());
         units.flat_map(bytes).collect()
     };
     let latin1 = text.replace('°', "\u{fffd}").into_bytes();
-    let latin1: Vec<u8> = String::from_utf8(latin1).unwrap().chars().map(|c| match c {
-        '\u{fffd}' => 0xb0,
-        c => c as u8,
-    }).collect();
+    let latin1: Vec<u8> = String::from_utf8(latin1)
+        .unwrap()
+        .chars()
+        .map(|c| match c {
+            '\u{fffd}' => 0xb0,
+            c => c as u8,
+        })
+        .collect();
     for (bytes, encoding) in [
         (utf16(u16::to_le_bytes), "UTF-16LE"),
         (utf16(u16::to_be_bytes), "UTF-16BE"),
@@ -116,7 +152,10 @@ fn text_of_other_encodings_is_read() {
         let (recording, notes) = read(&bytes, None, Repair::Refuse).unwrap();
         assert_eq!(recording.input, [20.5, 30.5]);
         assert_eq!(recording.input_quantity.unit.as_deref(), Some("°C"));
-        assert_eq!(notes, [format!("the text is not UTF-8: read as {encoding}")]);
+        assert_eq!(
+            notes,
+            [format!("the text is not UTF-8: read as {encoding}")]
+        );
     }
     // The whole table is decoded, and what is written again is UTF-8.
     let file = written(b"x,\xb0\n1,\xe9\n2,\xfc\n");
@@ -135,7 +174,11 @@ fn fields_of_structures_are_columns() {
         };
         let read = Recording::read(&fixture(name), columns, Repair::Refuse);
         let (recording, _) = read.unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(recording.input, [20.0, 35.5, 50.0, 80.0, 50.0, 20.0], "{name}");
+        assert_eq!(
+            recording.input,
+            [20.0, 35.5, 50.0, 80.0, 50.0, 20.0],
+            "{name}"
+        );
         assert_eq!(recording.output, [0.0, 1.0, 4.0, 14.0, 13.0, 2.0], "{name}");
         assert_eq!(recording.input_quantity.name, "run.probe.temperature");
     }
@@ -146,10 +189,19 @@ fn rows_cut_short_are_dropped_or_refused_with_their_lines() {
     let text = "t,x,y\n0,20,0\n1,30\n2,40,2\n3,50,3,9\n4,60,4\n";
     let (recording, notes) = read(text, None, Repair::Mend).unwrap();
     assert_eq!(recording.input, [20.0, 40.0, 60.0]);
-    assert_eq!(notes, ["lines 3 and 5 with more or fewer cells than the header: dropped"]);
+    assert_eq!(
+        notes,
+        ["lines 3 and 5 with more or fewer cells than the header: dropped"]
+    );
     let refused = read(text, None, Repair::Refuse).unwrap_err();
-    assert!(refused.contains("line 3: 2 cells where the header has 3"), "{refused}");
-    assert!(refused.ends_with("or use `--repair` to drop such rows"), "{refused}");
+    assert!(
+        refused.contains("line 3: 2 cells where the header has 3"),
+        "{refused}"
+    );
+    assert!(
+        refused.ends_with("or use `--repair` to drop such rows"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -160,10 +212,16 @@ fn commas_that_may_be_thousands_are_told_or_refused() {
     // Both are.
     let (recording, notes) = read("x;y\n20,125;1\n1,234;2\n", None, Repair::Refuse).unwrap();
     assert_eq!(recording.input, [20.125, 1.234]);
-    assert!(notes[0].starts_with("line 2, column `x`: commas are read as decimal"), "{notes:?}");
+    assert!(
+        notes[0].starts_with("line 2, column `x`: commas are read as decimal"),
+        "{notes:?}"
+    );
     // Numbers below a thousand have no comma, and those above have.
     let refused = read("x\ty\n950\t1\n1,234\t2\n", None, Repair::Refuse).unwrap_err();
-    assert!(refused.contains("line 3, column `x`: `1,234` may be 1.234 or 1234"), "{refused}");
+    assert!(
+        refused.contains("line 3, column `x`: `1,234` may be 1.234 or 1234"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -179,7 +237,12 @@ fn times_become_seconds() {
         let text = format!("{header},x,y\n0,1,2\n{value},3,4\n");
         let (recording, notes) = read(&text, Some(asked), Repair::Refuse).expect(&text);
         assert_eq!(recording.time.as_deref(), Some(&[0.0, seconds][..]));
-        assert_eq!(notes, [format!("the time in column `{header}` is in {unit}: turned into seconds")]);
+        assert_eq!(
+            notes,
+            [format!(
+                "the time in column `{header}` is in {unit}: turned into seconds"
+            )]
+        );
     }
     let (recording, _) = read("t;x;y\nms;;\n0;1;2\n250;3;4\n", Some("t"), Repair::Refuse).unwrap();
     assert_eq!(recording.time.as_deref(), Some(&[0.0, 0.25][..]));
@@ -188,14 +251,19 @@ fn times_become_seconds() {
 #[test]
 fn a_doubtful_time_is_questioned() {
     let rows = |step: f64| -> String {
-        (0..3000).map(|n| format!("{},{n},{n}\n", step * f64::from(n))).collect()
+        (0..3000)
+            .map(|n| format!("{},{n},{n}\n", step * f64::from(n)))
+            .collect()
     };
     let (_, notes) = read(format!("t,x,y\n{}", rows(10.0)), Some("t"), Repair::Refuse).unwrap();
     assert!(
         notes[0].contains("no unit and is taken as seconds: a step of 10 s, 29990 s in all"),
         "{notes:?}"
     );
-    for text in [format!("t [s],x,y\n{}", rows(10.0)), format!("t,x,y\n{}", rows(0.1))] {
+    for text in [
+        format!("t [s],x,y\n{}", rows(10.0)),
+        format!("t,x,y\n{}", rows(0.1)),
+    ] {
         let time = text.split(',').next().unwrap().to_owned();
         let (_, notes) = read(&text, Some(&time), Repair::Refuse).unwrap();
         assert!(notes.is_empty(), "{notes:?}");
@@ -206,17 +274,34 @@ fn a_doubtful_time_is_questioned() {
 fn columns_are_found_by_their_bare_names() {
     let file = written("Zeit [s],Temperatur (°C),Weg [mm],Weg 2 [mm]\n0,20,0,1\n1,30,1,2\n");
     let read = |input, output| {
-        Recording::read(file.path(), Columns::new(input, output), Repair::Refuse)
-            .map_err(|error| error.to_string().rsplit_once(": no ").unwrap_or_default().1.to_owned())
+        Recording::read(file.path(), Columns::new(input, output), Repair::Refuse).map_err(|error| {
+            error
+                .to_string()
+                .rsplit_once(": no ")
+                .unwrap_or_default()
+                .1
+                .to_owned()
+        })
     };
     let (recording, notes) = read("temperature", "weg").unwrap();
     assert_eq!(recording.input_quantity.to_column(), "Temperatur [°C]");
     assert_eq!(recording.output_quantity.to_column(), "Weg [mm]");
     assert_eq!(recording.output, [0.0, 1.0]);
-    assert_eq!(notes[0].to_string(), "`temperature` is taken for the column `Temperatur (°C)`");
+    assert_eq!(
+        notes[0].to_string(),
+        "`temperature` is taken for the column `Temperatur (°C)`"
+    );
     let refused = read("temperatur", "wge").unwrap_err();
-    assert!(refused.starts_with("column `wge`, did you mean") || refused.starts_with("column `wge`: there are"), "{refused}");
-    let ambiguous = Recording::read(file.path(), Columns::new("temperatur", "we"), Repair::Refuse);
+    assert!(
+        refused.starts_with("column `wge`, did you mean")
+            || refused.starts_with("column `wge`: there are"),
+        "{refused}"
+    );
+    let ambiguous = Recording::read(
+        file.path(),
+        Columns::new("temperatur", "we"),
+        Repair::Refuse,
+    );
     assert!(ambiguous.is_err());
     // Two names for one column.
     let twice = Recording::read(file.path(), Columns::new("weg", "Weg [mm]"), Repair::Refuse);
@@ -230,8 +315,11 @@ fn a_stray_quote_is_read_once() {
     let mut text = String::from("x,y\n1,2\n3,\"4\n");
     text.push_str(&"5\n".repeat(3 << 20));
     let refused = read(&text, None, Repair::Mend).unwrap_err();
-    assert!(refused.contains("line 3: a quote is opened here and never closed"), "{refused}");
-    let cell = format!("x,y,note\n1,2,\"{}\"\n3,4,ok\n", "5\n".repeat(2 << 20));
+    assert!(
+        refused.contains("line 3: a quote is opened here and never closed"),
+        "{refused}"
+    );
+    let cell = format!("x,y,note\n1,2,\"{}\"\n3,4,ok\n", "5\n".repeat(1 << 20));
     let (recording, _) = read(&cell, None, Repair::Refuse).unwrap();
     assert_eq!(recording.input, [1.0, 3.0]);
 }

@@ -1,12 +1,13 @@
 //! The columns of a file that a recording does not use, kept beside it to be written again.
 
-use super::{Quantity, Recording};
+use super::Recording;
 use crate::output::TableWriter;
 use crate::table::{Column, Row, TableReader};
 use crate::{Error, Result};
 use std::path::Path;
 
-/// All columns of the file that a recording was read from, in their order and with their names.
+/// All columns of the file that a recording was read from, in their order and with their names; units
+/// that stood in a row below them stand behind them, and a time in another unit is in seconds.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
     header: Vec<String>,
@@ -19,7 +20,7 @@ impl Others {
     /// None yet, of a table of which these columns are the recording's input, output, time and load.
     pub(super) fn of(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
         Self {
-            header: table.header().to_vec(),
+            header: table.names_with_units(),
             places: columns.map(|column| column.map(Column::place)),
             rows: Vec::new(),
         }
@@ -101,11 +102,7 @@ impl Others {
         match place {
             0 => Some((name, &recording.input)),
             1 => Some((name, &recording.output)),
-            // It was turned into seconds, whatever it was.
-            2 => {
-                let name = Quantity::with_unit(&Quantity::from_column(&name).name, "s");
-                Some((name.to_column(), recording.time.as_deref()?))
-            }
+            2 => Some((name, recording.time.as_deref()?)),
             _ => Some((name, recording.load.as_deref()?)),
         }
     }

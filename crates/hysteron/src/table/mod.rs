@@ -18,7 +18,7 @@ pub use remark::Remark;
 pub(crate) use budget::Budget;
 
 use crate::recording::Places;
-use crate::{Error, Place, Repair, Result};
+use crate::{Error, Place, Quantity, Repair, Result};
 use hashing::Hash;
 use names::{Found, Missing};
 use numbers::Numbers;
@@ -217,6 +217,23 @@ impl TableReader {
     /// A column's own name.
     pub(crate) fn name(&self, column: Column) -> &str {
         &self.header[column.0]
+    }
+
+    /// The columns' names with their units behind them, as numbers of this table are given.
+    pub(crate) fn names_with_units(&self) -> Vec<String> {
+        let name = |n: usize| {
+            let quantity = Quantity::from_column(&self.header[n]);
+            match (&self.time, self.unit(Column(n))) {
+                (Some((time, unit)), _) if *time == n => {
+                    Quantity::with_unit(unit.removed_from(&quantity.name), "s").to_column()
+                }
+                (_, Some(unit)) if quantity.unit.is_none() => {
+                    Quantity::with_unit(&quantity.name, unit).to_column()
+                }
+                _ => self.header[n].clone(),
+            }
+        };
+        (0..self.header.len()).map(name).collect()
     }
 
     /// Where the column is that is meant by `name`.

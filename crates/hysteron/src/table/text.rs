@@ -101,7 +101,9 @@ impl Text {
     }
 
     fn read_header(&mut self) -> Result<Vec<String>> {
-        for _ in 0..self.dialect.header.above {
+        // Without a preamble these are comments, the last of which may be the header.
+        let preamble = self.dialect.header.preamble;
+        for _ in 0..self.dialect.header.above * u64::from(preamble) {
             self.raw.clear();
             self.read_line()?;
         }
@@ -120,7 +122,7 @@ impl Text {
             self.held = true;
             return Ok(self.names_from(&comment, header.len()));
         }
-        if self.dialect.header.preamble {
+        if preamble {
             let lines = self.line - 1;
             let header = shortened(&header.join(", "));
             self.remarks.push(Remark::Preamble { lines, header });

@@ -60,6 +60,13 @@ impl TimeUnit {
         self.seconds == 1.0
     }
 
+    /// A name without the unit at its end.
+    pub(super) fn removed_from<'n>(&self, name: &'n str) -> &'n str {
+        let bare = name.strip_suffix(self.name.as_str());
+        let bare = bare.and_then(|bare| bare.strip_suffix(['_', ' ']));
+        bare.filter(|bare| !bare.is_empty()).unwrap_or(name)
+    }
+
     /// A time in seconds.
     pub(super) fn in_seconds(&self, time: f64) -> f64 {
         // Dividing by a whole number is exact where its inverse is not.

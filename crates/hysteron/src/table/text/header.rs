@@ -99,11 +99,10 @@ impl Body<'_> {
 }
 
 fn body(lines: &[Line]) -> Option<Body<'_>> {
-    let (width, _) = usual(lines.iter().map(|line| line.cells.len()))?;
-    let rows = lines
-        .iter()
-        .filter(|line| line.cells.len() == width && line.has_numbers());
-    let (numbers, _) = usual(rows.map(|line| &line.numbers[..]))?;
+    let rows = || lines.iter().filter(|line| line.has_numbers());
+    let (width, _) = usual(rows().map(|line| line.cells.len()))?;
+    let of_width = rows().filter(|line| line.cells.len() == width);
+    let (numbers, _) = usual(of_width.map(|line| &line.numbers[..]))?;
     Some(Body { width, numbers })
 }
 
