@@ -97,6 +97,56 @@ fn no_name_reaches_the_terminal_raw() {
     }
 }
 
+#[test]
+fn no_name_reaches_a_report_raw() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "x\u{1b}[31m\u{202e}";
+    let rows: String = (0..80)
+        .map(|n| format!("{},{}\n", (n - 40_i32).abs(), n % 40))
+        .collect();
+    fs::write(folder.path().join("run.csv"), format!("{name},y\n{rows}")).unwrap();
+    let made = [
+        vec![
+            "fit",
+            "run.csv",
+            "--input",
+            name,
+            "--output",
+            "y",
+            "-o",
+            "m.json",
+            "--bootstrap",
+            "0",
+        ],
+        vec![
+            "evaluate", "m.json", "run.csv", "--input", name, "--output", "y", "--report", "report",
+        ],
+    ];
+    for words in made {
+        let mut command = Command::cargo_bin("hysteron").unwrap();
+        let done = command
+            .current_dir(folder.path())
+            .args(words)
+            .output()
+            .unwrap();
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        assert!(!acts(&text(&done.stderr)) && !acts(&text(&done.stdout)));
+    }
+    let mut pages = 0;
+    for file in fs::read_dir(folder.path().join("report")).unwrap() {
+        let path = file.unwrap().path();
+        if path.extension().is_some_and(|ending| ending != "png") {
+            assert!(
+                !acts(&fs::read_to_string(&path).unwrap()),
+                "{}",
+                path.display()
+            );
+            pages += 1;
+        }
+    }
+    assert!(pages > 1);
+}
+
 /// The system gives no more memory than a little above the budget: nothing asks for it.
 #[cfg(unix)]
 #[test]

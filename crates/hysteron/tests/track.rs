@@ -71,7 +71,7 @@ fn a_refusal_names_file_line_and_field() {
     let path = folder.path().join("mine.toml");
     let whole = text(&[SPRING, SPRING_SINE]);
     for (from, to, field) in [
-        ("period_s = 300", "period_s = -1", "reference[0].period_s"),
+        ("period_s = 300", "period_s = -1", "reference[1].period_s"),
         ("smooth = 1e-8", "smooth = -1", "model.smooth"),
         ("tolerance = 0.1", "tolerance = \"x\"", "loop.tolerance"),
     ] {
