@@ -280,6 +280,7 @@ def read(
     output_name: str | None = None,
     load_name: str | None = None,
     repair: bool = False,
+    max_memory: int | None = None,
 ) -> Recording: ...
 def fit(
     recording: _Recordings,

@@ -40,7 +40,7 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     let recorded: Vec<Vec<f64>> = args
         .from
         .iter()
-        .map(|path| input_of(path, column))
+        .map(|path| input_of(path, column, args.memory.max_memory))
         .collect::<Result<_>>()?;
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
     let design = hysteron::design(&options, &inputs)?;
@@ -58,14 +58,14 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     }
     let summary = summary(&design, args);
     if to_stdout {
-        eprintln!("{summary}");
+        eprintln!("{}", hysteron::printable(&summary));
         return Ok(());
     }
     print(&summary)
 }
 
-fn input_of(path: &Path, column: &str) -> Result<Vec<f64>> {
-    let mut table = TableReader::open(path)?;
+fn input_of(path: &Path, column: &str, max_memory: u64) -> Result<Vec<f64>> {
+    let mut table = TableReader::open_with(path, max_memory)?;
     let column = table.column(column)?;
     let mut input = Vec::new();
     while table.advance()? {

@@ -1,6 +1,6 @@
 //! `hysteron evaluate`
 
-use crate::{Result, args, print, recording, text};
+use crate::{Result, args, print, recording, say, text};
 use hysteron::{Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
 use hysteron_report::Report;
 use serde_json::{Value, json};
@@ -24,10 +24,10 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
             evaluation: &evaluation,
         };
         report.write(folder)?;
-        eprintln!(
-            "hysteron: the report is {}",
+        say(format_args!(
+            "the report is {}",
             folder.join("index.html").display()
-        );
+        ));
     }
     if args.json.json {
         return print(&to_json(&evaluation).to_string());

@@ -1,6 +1,6 @@
 //! `hysteron fit`
 
-use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
+use crate::{Result, args, keep_apart, prepare, print, progress, recording, say, text};
 use hysteron::{
     Advice, Columns, FirstOrder, FitOptions, FitSummary, Model, Open, Preparation, RateDependence,
     Recording, Sign, Solver, Step,
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 
     let mut clipped = 0;
     for advice in hysteron::advice(&model, &recordings)? {
-        eprintln!("hysteron: {}", crate::remedy::text_of_advice(&advice));
+        say(format_args!("{}", crate::remedy::text_of_advice(&advice)));
         if let Advice::Clipped { inputs, .. } = advice {
             clipped = inputs;
         }

@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         hysteron::discard_unfinished();
         std::process::exit(130);
     });
-    let done = match Cli::parse().command {
+    let done = match parse().command {
         Command::Fit(args) => fit::run(&args),
         Command::Prepare(args) => prepare::run(&args),
         Command::Simulate(args) => table::simulate(&args),
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("hysteron: {}", remedy::text_of(error.as_ref()));
+            say(format_args!("{}", remedy::text_of(error.as_ref())));
             ExitCode::FAILURE
         }
     }
@@ -78,9 +78,26 @@ fn keep_apart(data: &Path, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Prints to standard output; an error there is returned, not a panic.
+/// The arguments. What is wrong with them may repeat them, so that it is shown as other messages are.
+fn parse() -> Cli {
+    Cli::try_parse().unwrap_or_else(|error| {
+        let text = error.to_string();
+        if error.use_stderr() && hysteron::printable(&text) != text {
+            eprint!("{}", hysteron::printable(&text));
+            std::process::exit(error.exit_code());
+        }
+        error.exit()
+    })
+}
+
+/// Tells a person something, on standard error.
+fn say(message: std::fmt::Arguments<'_>) {
+    eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));
+}
+
+/// Prints to standard output for people, or JSON; an error there is returned, not a panic.
 fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{text}")?;
+    writeln!(out, "{}", hysteron::printable(text))?;
     Ok(out.flush()?)
 }

@@ -1,6 +1,6 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
-use crate::{Result, args, keep_apart, print, progress};
+use crate::{Result, args, keep_apart, print, progress, recording, say};
 use hysteron::{Counts, Model, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
@@ -18,7 +18,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
-        args.json.json,
+        (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
             let what = hysteron::Simulate {
@@ -53,7 +53,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
-        args.json.json,
+        (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
             hysteron::invert_table(&model, table, &args.target, how, out, progress)
@@ -65,7 +65,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
 fn through(
     [data, model]: [&Path; 2],
     out: Option<&Path>,
-    json: bool,
+    (json, max_memory): (bool, u64),
     what: [&str; 2],
     work: impl FnOnce(
         &mut TableReader,
@@ -75,7 +75,7 @@ fn through(
 ) -> Result<()> {
     // The table itself may be replaced: all its columns are in the new one.
     out.map_or(Ok(()), |out| keep_apart(model, out))?;
-    let mut table = TableReader::open(data)?;
+    let mut table = TableReader::open_with(data, max_memory)?;
     // With --json, standard output is for the JSON alone.
     let mut writer = match (out, json) {
         (None, true) => None,
@@ -89,16 +89,17 @@ fn through(
     if let Some(writer) = writer {
         writer.finish()?;
     }
+    recording::tell_of_table(data, &table);
     for (count, what) in [counts.high, counts.low].into_iter().zip(what) {
         if count > 0 {
-            eprintln!("hysteron: {count} of {} {what}", counts.samples);
+            say(format_args!("{count} of {} {what}", counts.samples));
         }
     }
     if counts.passed > 0 {
-        eprintln!(
-            "hysteron: {} of {} targets lie inside a jump of the relay model: the output passes them",
+        say(format_args!(
+            "{} of {} targets lie inside a jump of the relay model: the output passes them",
             counts.passed, counts.samples
-        );
+        ));
     }
     if json {
         print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "passed": counts.passed, "table": out}).to_string())?;

@@ -1,6 +1,6 @@
 //! `hysteron track`
 
-use crate::{Result, args, print, progress, text};
+use crate::{Result, args, print, progress, say, text};
 use hysteron::track::{Comparison, Scenario, track};
 use hysteron::{AtomicFile, Quantity};
 use serde_json::json;
@@ -52,10 +52,10 @@ fn write(scenario: &Scenario, comparison: &Comparison, folder: &Path) -> Result<
     AtomicFile::write_all(&folder.join("summary.json"), summary.as_bytes())?;
     let report = folder.join("report");
     hysteron_report::write_comparison(scenario, comparison, &report)?;
-    eprintln!(
-        "hysteron: the report is {}",
+    say(format_args!(
+        "the report is {}",
         report.join("index.html").display()
-    );
+    ));
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::ReportError;
 use crate::png;
+use hysteron::printable;
 use std::fmt::Display;
 use std::fs;
 use std::io;
@@ -23,7 +24,8 @@ pub(crate) fn write_report<F: Display>(
     for (figure, svg) in figures {
         let [svg_path, png_path] =
             ["svg", "png"].map(|extension| dir.join(format!("{figure}.{extension}")));
-        let Some(svg) = svg else {
+        // Names come from anywhere; XML allows no control characters.
+        let Some(svg) = svg.map(|svg| printable(&svg).into_owned()) else {
             remove_stale(&svg_path)?;
             remove_stale(&png_path)?;
             continue;
@@ -38,7 +40,7 @@ pub(crate) fn write_report<F: Display>(
         drawn.push((figure, svg));
     }
     // The page comes last, so that a page in the directory means a complete report.
-    write(&index, page(&drawn).as_bytes())?;
+    write(&index, printable(&page(&drawn)).as_bytes())?;
     Ok(written)
 }
 

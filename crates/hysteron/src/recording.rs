@@ -1,9 +1,11 @@
 //! Recordings: an input and the output it caused.
 
+mod others;
 mod read;
 mod repair;
 mod samples;
 
+pub use others::Others;
 pub(crate) use repair::gaps;
 pub use repair::{Note, NoteKind, Places, Repair};
 
@@ -124,7 +126,7 @@ pub struct Columns<'a> {
     pub input: &'a str,
     /// The output.
     pub output: &'a str,
-    /// Time in seconds, if wanted.
+    /// Time, if wanted: in seconds, or with another unit behind its name.
     pub time: Option<&'a str>,
     /// The load or stress, if wanted.
     pub load: Option<&'a str>,

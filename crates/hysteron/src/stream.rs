@@ -144,7 +144,7 @@ impl Heating {
         let Some(body) = model.thermal else {
             return Ok(None);
         };
-        let time = table.column(time.ok_or_else(needs_time)?)?;
+        let time = table.time_column(time.ok_or_else(needs_time)?)?;
         Ok(Some(Self {
             body,
             time,

@@ -17,7 +17,7 @@ pub(crate) struct Adapt {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds, for the table
+    /// Column of time, in seconds or with its unit in its name, for the table
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample; `unknown` takes off or on, with which the model errs less

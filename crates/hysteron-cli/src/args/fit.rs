@@ -83,7 +83,7 @@ pub(crate) struct Prepare {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds
+    /// Column of time, in seconds or with its unit in its name
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     #[command(flatten)]
@@ -99,7 +99,7 @@ pub(crate) struct Prepare {
 
 #[derive(Args)]
 pub(crate) struct PrepareBeforeFit {
-    /// Column of time in seconds, for the preparation, a thermal body and the warning that loops depend on rate
+    /// Column of time, in seconds or with its unit in its name, for the preparation, a thermal body and the warning that loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named
