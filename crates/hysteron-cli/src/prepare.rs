@@ -1,14 +1,15 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
-use crate::{Result, args, keep_apart, print, recording, text};
+use crate::{Result, args, print, recording, text};
 use hysteron::{
     Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
-    Smoothed, Step,
+    Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Prepare) -> Result<()> {
-    keep_apart(&args.data, &args.out)?;
+    let inputs = [args.data.as_path()];
+    let table = TableWriter::plain(Some(args.force.target(&args.out, &inputs)))?;
     let columns = Columns {
         time: args.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
@@ -17,7 +18,7 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     let options = options(&args.steps, PrepareOptions::default());
     let (prepared, report) = hysteron::prepare(&recording, &options)?;
     let rate = hysteron::rate_dependence(&prepared)?;
-    prepared.write_csv(&args.out)?;
+    prepared.write_to(table)?;
     if args.json.json {
         return print(
             &json!({"table": args.out, "preparation": report, "rate": rate, "rate_dependent": is_material(&rate)})

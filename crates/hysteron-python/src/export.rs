@@ -4,6 +4,7 @@ use crate::error::Raise;
 use crate::model::Model;
 use crate::whole::Whole;
 use crate::word::choice;
+use hysteron::Target;
 use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -64,7 +65,12 @@ impl Model {
             source,
             adaptation,
         };
-        let export = hysteron_export::c(&self.inner, &folder, &options).raise()?;
+        let export = hysteron_export::c(
+            &self.inner,
+            Target::keeping_foreign(&folder, false),
+            &options,
+        )
+        .raise()?;
         let said = PyDict::new(py);
         said.set_item("files", export.files)?;
         said.set_item("name", export.name)?;

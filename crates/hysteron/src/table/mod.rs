@@ -11,6 +11,7 @@ mod text;
 
 use crate::{Error, Place, Result};
 use numbers::Numbers;
+pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
 use text::Text;
 
@@ -69,6 +70,11 @@ impl TableReader {
             source,
             hashed,
         })
+    }
+
+    /// The file, as it was named.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The columns' names. Asking for a column of a MATLAB file leaves those that are as long.
@@ -286,6 +292,11 @@ impl TableReader {
             problem,
         }
     }
+}
+
+/// SHA-256 in hexadecimal of a whole file.
+pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
+    text::Hashing::file(path)
 }
 
 /// At most 40 characters of a text, for a message.
