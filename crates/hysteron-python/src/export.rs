@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 impl Model {
     /// Write the model as C99 for a microcontroller, with the algorithm beside it.
     ///
+    /// Files exported before are replaced. One that was edited since, or is another's, is kept and a FileError raised.
+    ///
     /// Parameters
     /// ----------
     /// folder : str or path-like
@@ -82,7 +84,8 @@ impl Model {
         Ok(said)
     }
 
-    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools.
+    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools. A file that is there
+    /// already is replaced.
     ///
     /// Parameters
     /// ----------

@@ -13,13 +13,21 @@ use tempfile::NamedTempFile;
 /// A link is followed, and refused where it leads to no file; what is no regular file, such as a pipe or `/dev/null`, is
 /// written to as it is. The bytes are on the disk before the file takes its name.
 pub struct AtomicFile {
+    /// As it was given, for errors.
     path: PathBuf,
     to: Place,
 }
 
 enum Place {
-    Beside(NamedTempFile, Claim),
+    Beside(Beside),
     There(File),
+}
+
+struct Beside {
+    file: NamedTempFile,
+    /// The place, at the end of any links.
+    place: PathBuf,
+    claim: Claim,
 }
 
 impl AtomicFile {
@@ -30,20 +38,19 @@ impl AtomicFile {
     pub fn create<'a>(target: impl Into<Target<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
         let claim = target.claim(own)?;
-        let place = Self::place(target.path(), claim);
-        let (path, to) = place.map_err(|source| Error::File {
-            path: target.path().to_owned(),
-            source,
-        })?;
-        Ok(Self { path, to })
+        let path = target.path().to_owned();
+        match Self::place(&path, claim) {
+            Ok(to) => Ok(Self { path, to }),
+            Err(source) => Err(Error::File { path, source }),
+        }
     }
 
-    fn place(path: &Path, claim: Claim) -> io::Result<(PathBuf, Place)> {
-        let path = match std::fs::metadata(path) {
+    fn place(path: &Path, claim: Claim) -> io::Result<Place> {
+        let place = match std::fs::metadata(path) {
             Ok(there) if there.is_dir() => return Err(io::Error::other("this is a folder")),
             Ok(there) if !there.is_file() => {
                 let file = File::options().write(true).open(path)?;
-                return Ok((path.to_owned(), Place::There(file)));
+                return Ok(Place::There(file));
             }
             Ok(_) => path.canonicalize()?,
             Err(_) if path.is_symlink() => {
@@ -51,9 +58,9 @@ impl AtomicFile {
             }
             Err(_) => path.to_owned(),
         };
-        let before = std::fs::metadata(&path).map(|there| there.permissions());
-        let folder = folder_of(&path);
-        let beside = file_in(folder, before.ok()).map_err(|error| match error.kind() {
+        let before = std::fs::metadata(&place).map(|there| there.permissions());
+        let folder = folder_of(&place);
+        let file = file_in(folder, before.ok()).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
                 let text = format!("there is no folder {} to write to", folder.display());
                 io::Error::new(error.kind(), text)
@@ -61,7 +68,7 @@ impl AtomicFile {
             // Without the name of the file beside, which says nothing to anyone.
             kind => kind.into(),
         })?;
-        Ok((path, Place::Beside(beside, claim)))
+        Ok(Place::Beside(Beside { file, place, claim }))
     }
 
     /// Gives the file its name.
@@ -72,7 +79,7 @@ impl AtomicFile {
         let path = self.path;
         let kept = match self.to {
             Place::There(_) => Ok(()),
-            Place::Beside(beside, claim) => keep(beside, claim, &path),
+            Place::Beside(beside) => beside.keep(),
         };
         kept.map_err(|source| Error::File { path, source })
     }
@@ -92,17 +99,20 @@ impl AtomicFile {
     }
 }
 
-fn keep(beside: NamedTempFile, claim: Claim, path: &Path) -> io::Result<()> {
-    let hidden = beside.path().to_owned();
-    let kept = beside
-        .as_file()
-        .sync_all()
-        .and_then(|()| claim.holds(&hidden, path))
-        .and_then(|()| beside.persist(path).map_err(|error| error.error));
-    finished(&hidden);
-    kept?;
-    sync_folder(folder_of(path));
-    Ok(())
+impl Beside {
+    fn keep(self) -> io::Result<()> {
+        let Self { file, place, claim } = self;
+        let hidden = file.path().to_owned();
+        let kept = file
+            .as_file()
+            .sync_all()
+            .and_then(|()| claim.holds(&hidden, &place))
+            .and_then(|()| Ok(file.persist(&place)?));
+        finished(&hidden);
+        kept?;
+        sync_folder(folder_of(&place));
+        Ok(())
+    }
 }
 
 /// Flushes the names in a folder to the disk, where a system has a way to.
@@ -118,14 +128,14 @@ pub(super) fn sync_folder(folder: &Path) {
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
-            Place::Beside(file, _) => file.write(bytes),
+            Place::Beside(beside) => beside.file.write(bytes),
             Place::There(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.to {
-            Place::Beside(file, _) => file.flush(),
+            Place::Beside(beside) => beside.file.flush(),
             Place::There(file) => file.flush(),
         }
     }

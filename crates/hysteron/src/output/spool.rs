@@ -148,7 +148,9 @@ fn number(cell: &[u8]) -> Option<f64> {
 }
 
 /// Refuses two columns of one name, which readers of Parquet do not tell apart.
-pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(names: impl Iterator<Item = N>) -> io::Result<()> {
+pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
+    names: impl Iterator<Item = N>,
+) -> io::Result<()> {
     let mut seen = HashSet::new();
     for name in names {
         if let Some(name) = seen.replace(name) {
