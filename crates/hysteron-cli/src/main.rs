@@ -25,7 +25,8 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() -> ExitCode {
-    // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works as well.
+    // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works
+    // as well.
     let _ = ctrlc::set_handler(|| {
         hysteron::discard_unfinished();
         std::process::exit(130);
@@ -53,8 +54,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whoever read our output, such as `head`, has had enough: that is no fault. The reader of a pipe that was named is one who is
-/// missed.
+/// Whoever read our output, such as `head`, has had enough: that is no fault. The reader of a pipe
+/// that was named is one who is missed.
 fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
     if let Some((path, _)) = of_file(error)
         && path != Path::new(hysteron::STANDARD_OUTPUT)

@@ -1,4 +1,5 @@
-//! What a command may replace, from outside: every command, with everything that may stand where its result goes.
+//! What a command may replace, from outside: every command, with everything that may stand where
+//! its result goes.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -142,7 +143,7 @@ fn a_file_is_replaced_only_where_it_is_a_result() {
             fs::write(&out, bytes).unwrap();
             keeps_all(folder, &line, true);
         }
-        for write in [fs::hard_link::<&Path, &Path>, link] {
+        for write in [hard_link as fn(&Path, &Path) -> std::io::Result<()>, link] {
             let theirs = folder.join("theirs");
             fs::rename(&out, &theirs).unwrap();
             write(&theirs, &out).unwrap();
@@ -169,6 +170,10 @@ fn a_file_is_replaced_only_where_it_is_a_result() {
     }
 }
 
+fn hard_link(theirs: &Path, out: &Path) -> std::io::Result<()> {
+    fs::hard_link(theirs, out)
+}
+
 #[cfg(unix)]
 fn link(theirs: &Path, out: &Path) -> std::io::Result<()> {
     std::os::unix::fs::symlink(theirs, out)
@@ -176,7 +181,7 @@ fn link(theirs: &Path, out: &Path) -> std::io::Result<()> {
 
 #[cfg(not(unix))]
 fn link(theirs: &Path, out: &Path) -> std::io::Result<()> {
-    fs::hard_link(theirs, out)
+    hard_link(theirs, out)
 }
 
 #[test]
@@ -217,9 +222,10 @@ fn a_folder_keeps_what_is_not_ours() {
             fs::write(file, &ours[file]).unwrap();
         }
         // Files and folders of others stay, whoever's the rest is; the folder above is another's too.
+        fs::create_dir(out.join("empty")).unwrap();
+        passes(path, &line);
         let note = some[1].with_file_name("note.txt");
         fs::write(&note, "mine").unwrap();
-        fs::create_dir(out.join("empty")).unwrap();
         passes(path, &line);
         assert_eq!(fs::read_to_string(&note).unwrap(), "mine");
         assert!(out.join("empty").is_dir());

@@ -64,8 +64,8 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
     }
 }
 
-/// Whether an archive is one of ours as it was written: the description says so, and no file was added or, as its time would
-/// tell, exchanged.
+/// Whether an archive is one of ours as it was written: the description says so, and no file was
+/// added or, as its time would tell, exchanged.
 pub(super) fn is_ours(path: &Path) -> io::Result<bool> {
     let Ok(mut archive) = ZipArchive::new(File::open(path)?) else {
         return Ok(false);

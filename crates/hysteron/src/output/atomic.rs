@@ -8,10 +8,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A file that is written beside its place and takes its name when it is whole; dropped before, it leaves nothing.
+/// A file that is written beside its place and takes its name when it is whole; dropped before, it
+/// leaves nothing.
 ///
-/// A link is followed, and refused where it leads to no file; what is no regular file, such as a pipe or `/dev/null`, is
-/// written to as it is. The bytes are on the disk before the file takes its name.
+/// A link is followed, and refused where it leads to no file; what is no regular file, such as a
+/// pipe or `/dev/null`, is written to as it is. The bytes are on the disk before the file takes its
+/// name.
 pub struct AtomicFile {
     /// As it was given, for errors.
     path: PathBuf,
@@ -33,8 +35,8 @@ struct Beside {
 impl AtomicFile {
     /// Starts a file at `target`. `own` tells whether a file that is there is ours to replace.
     ///
-    /// # Errors
-    /// [`Error::File`]; its source is of the kind [`io::ErrorKind::AlreadyExists`] where a file is kept that is not ours.
+    /// # Errors [`Error::File`]; its source is of the kind [`io::ErrorKind::AlreadyExists`] where a
+    /// file is kept that is not ours.
     pub fn create<'a>(target: impl Into<Target<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
         let claim = target.claim(own)?;
@@ -117,7 +119,8 @@ impl Beside {
 
 /// Flushes the names in a folder to the disk, where a system has a way to.
 ///
-/// The file is in its place by then. So a file system without that way is no reason to report a failure.
+/// The file is in its place by then. So a file system without that way is no reason to report a
+/// failure.
 pub(super) fn sync_folder(folder: &Path) {
     #[cfg(unix)]
     let _ = File::open(folder).and_then(|folder| folder.sync_all());

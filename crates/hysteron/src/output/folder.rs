@@ -16,11 +16,13 @@ use std::path::{Path, PathBuf};
 const NEW: &str = "new";
 const OLD: &str = "old";
 
-/// A folder whose files are written beside its place and appear together; dropped before, it leaves nothing.
+/// A folder whose files are written beside its place and appear together; dropped before, it leaves
+/// nothing.
 ///
-/// Files of others that are in the folder stay. One that is in the way is refused, unless the target says otherwise.
-/// Where every file of the folder is ours, and it is not where the program runs, the new folder takes the place of the old one at
-/// once. Otherwise one file after the other does, and a fault brings the old ones back.
+/// Files of others that are in the folder stay. One that is in the way is refused, unless the
+/// target says otherwise. Where every file of the folder is ours, and it is not where the program
+/// runs, the new folder takes the place of the old one at once. Otherwise one file after the other
+/// does, and a fault brings the old ones back.
 pub struct AtomicFolder {
     target: PathBuf,
     inputs: Vec<PathBuf>,
@@ -35,8 +37,8 @@ pub struct AtomicFolder {
 }
 
 impl AtomicFolder {
-    /// Starts a folder at `target`; folders above it are made with it. `own` tells which of the files there are ours. Without
-    /// it, a list of digests that is written with the files does.
+    /// Starts a folder at `target`; folders above it are made with it. `own` tells which of the
+    /// files there are ours. Without it, a list of digests that is written with the files does.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -114,7 +116,8 @@ impl AtomicFolder {
         Ok(written)
     }
 
-    /// Gives the folder and its files their names. Files of ours that are not among the new ones are removed.
+    /// Gives the folder and its files their names. Files of ours that are not among the new ones
+    /// are removed.
     ///
     /// # Errors
     /// [`Error::File`]; the folder is then as it was.
@@ -248,8 +251,8 @@ impl AtomicFolder {
     }
 }
 
-/// Beside a folder that may be exchanged for a new one, otherwise in it. In it as well where nothing can be moved from
-/// one to the other, as where a disk is mounted here.
+/// Beside a folder that may be exchanged for a new one, otherwise in it. In it as well where
+/// nothing can be moved from one to the other, as where a disk is mounted here.
 fn workshop_for(folder: &Path, listed: bool) -> io::Result<Workshop> {
     let exchanged = listed && may_be_exchanged(folder)?;
     let inside = Workshop::create_in(folder)?;
@@ -273,8 +276,8 @@ fn first_missing(path: &Path) -> (PathBuf, PathBuf) {
     (first.to_owned(), rest.to_owned())
 }
 
-/// Whether another folder may take the place of this one: all in it is ours, and no program that runs in it, as far as this one
-/// can know, would find itself in a folder that is gone.
+/// Whether another folder may take the place of this one: all in it is ours, and no program that
+/// runs in it, as far as this one can know, would find itself in a folder that is gone.
 fn may_be_exchanged(folder: &Path) -> io::Result<bool> {
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
     let runs_here = here.is_ok_and(|here| {
@@ -289,7 +292,8 @@ fn may_be_exchanged(folder: &Path) -> io::Result<bool> {
         && Manifest::owns_all(folder)?)
 }
 
-/// Flushes the names in a folder and in those below it; the files were flushed when they were written.
+/// Flushes the names in a folder and in those below it; the files were flushed when they were
+/// written.
 fn sync_tree(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;

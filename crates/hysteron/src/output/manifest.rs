@@ -1,4 +1,5 @@
-//! The list of what was written into a folder, with digests: which of its files are ours, and unchanged.
+//! The list of what was written into a folder, with digests: which of its files are ours, and
+//! unchanged.
 //!
 //! `sha256sum -c` reads it as well.
 
@@ -71,14 +72,18 @@ impl Manifest {
         }
     }
 
-    /// Whether a folder holds nothing but files that are ours, and folders of which the same is true.
+    /// Whether a folder holds nothing but files that are ours, and folders of which the same is
+    /// true. An empty folder in it is another's, because we make none.
     pub(super) fn owns_all(folder: &Path) -> io::Result<bool> {
         let listed = Self::read(folder);
         for entry in std::fs::read_dir(folder)? {
             let entry = entry?;
             let name = entry.file_name();
             let ours = match (entry.file_type()?.is_dir(), name.to_str()) {
-                (true, _) => Self::owns_all(&entry.path())?,
+                (true, _) => {
+                    let path = entry.path();
+                    std::fs::read_dir(&path)?.next().is_some() && Self::owns_all(&path)?
+                }
                 (false, Some(name)) => listed.owns(folder, name)?,
                 (false, None) => false,
             };

@@ -7,7 +7,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The columns that commands add to tables: in CSV they stand last. Those of words come with those of numbers.
+/// The columns that commands add to tables: in CSV they stand last. Those of words come with those
+/// of numbers.
 const ADDED: [&[&str]; 4] = [
     &["output_model"],
     &["output_model", "output_low", "output_high"],
@@ -17,8 +18,8 @@ const ADDED: [&[&str]; 4] = [
 /// Those among them that hold words.
 const WORDS: [&str; 2] = ["status", "outcome"];
 
-/// A model that was fitted or adapted, and is written exactly as it would be again. One written by hand tells of no
-/// fit, or has other spaces.
+/// A model that was fitted or adapted, and is written exactly as it would be again. One written by
+/// hand tells of no fit, or has other spaces.
 pub(crate) fn is_our_model(path: &Path) -> io::Result<bool> {
     if !begins_with(path, b"{")? {
         return Ok(false);
@@ -59,8 +60,8 @@ fn parquet(path: &Path) -> io::Result<bool> {
     Ok(writer.is_ok_and(|writer| writer.is_some_and(|name| name.starts_with(PROGRAM))))
 }
 
-/// The last columns are ours, and every number in them is written as we write it, to the last line. Spreadsheets write
-/// numbers and ends of lines in ways of their own.
+/// The last columns are ours, and every number in them is written as we write it, to the last line.
+/// Spreadsheets write numbers and ends of lines in ways of their own.
 fn csv(path: &Path) -> io::Result<bool> {
     let mut rows = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -1,4 +1,5 @@
-//! A Parquet file with more columns: those of the source go over as they are stored, whatever they hold.
+//! A Parquet file with more columns: those of the source go over as they are stored, whatever they
+//! hold.
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};

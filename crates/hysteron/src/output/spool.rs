@@ -1,7 +1,7 @@
 //! Rows of cells on their way into a Parquet file.
 //!
-//! What a column holds is known only at its last cell. So the rows wait in a file without a name, which the
-//! system removes with the program, and memory does not grow with their number.
+//! What a column holds is known only at its last cell. So the rows wait in a file without a name,
+//! which the system removes with the program, and memory does not grow with their number.
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
@@ -40,14 +40,13 @@ impl Spool {
         &mut self,
         cells: impl Iterator<Item = C>,
     ) -> csv::Result<()> {
-        let Some(header) = &self.header else {
+        if self.header.is_none() {
             let names = cells.map(|name| String::from_utf8_lossy(name.as_ref()).into_owned());
             let names: Vec<String> = names.collect();
             self.kinds = vec![Kind::Numbers; names.len()];
             self.header = Some(names);
             return Ok(());
-        };
-        debug_assert_eq!(header.len(), self.kinds.len());
+        }
         let mut kinds = self.kinds.iter_mut();
         for cell in cells {
             if let Some(kind) = kinds.next() {
@@ -134,8 +133,8 @@ impl Kind {
     }
 }
 
-/// The number in a cell, where a `f64` holds all that is written there: numerals such as `007` and whole numbers beyond
-/// 2⁵³ are text.
+/// The number in a cell, where a `f64` holds all that is written there: numerals such as `007` and
+/// whole numbers beyond 2⁵³ are text.
 fn number(cell: &[u8]) -> Option<f64> {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let text = std::str::from_utf8(cell).ok()?.trim();

@@ -52,10 +52,13 @@ pub const STANDARD_OUTPUT: &str = "standard output";
 
 /// Writes a table, to standard output or to a file that appears only when it is whole.
 ///
-/// The end of the file's name tells the format: `.parquet` is Parquet; `.csv`, `.txt`, `.dat` or none is CSV; no other can be
-/// written. Memory does not grow with the table. In Parquet, the columns of a source that is Parquet too go over as they are stored, with
-/// all their types. Of other sources, a column whose cells are all numbers becomes one of doubles, any other one of
-/// text; an empty cell is null. A cell is a number where a double holds all of it: `007` and 2⁵³ + 1 are text.
+/// The end of the file's name tells the format: `.parquet` is Parquet; `.csv`, `.txt`, `.dat` or
+/// none is CSV; no other can be written. Memory does not grow with the table. In Parquet, the
+/// columns of a source that is Parquet too go over as they are stored, with all their types; what
+/// Apache Arrow notes beside these (the name of a time zone, dictionaries, durations) does not. Of
+/// other sources, a column whose cells are all numbers becomes one of doubles, any other one of
+/// text; an empty cell is null. A cell is a number where a double holds all of it: `007` and 2⁵³ +
+/// 1 are text.
 pub struct TableWriter {
     path: PathBuf,
     to: Format,
@@ -107,7 +110,8 @@ fn is_parquet(path: &Path) -> io::Result<bool> {
 }
 
 impl TableWriter {
-    /// A table with columns that a command adds, to `target`, or to standard output without one or with `-`.
+    /// A table with columns that a command adds, to `target`, or to standard output without one or
+    /// with `-`.
     ///
     /// # Errors
     /// [`Error::File`], also for a name whose end is of a format that cannot be written.
@@ -115,7 +119,8 @@ impl TableWriter {
         Self::start(target, Own::Marked(is_our_table))
     }
 
-    /// As [`TableWriter::create`], for a table without such columns: one in CSV is not known as ours when it is there.
+    /// As [`TableWriter::create`], for a table without such columns: one in CSV is not known as
+    /// ours when it is there.
     ///
     /// # Errors
     /// As [`TableWriter::create`].

@@ -6,12 +6,14 @@ use std::io::{self, BufReader, Read};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// How a file that is there is known to be a result of ours of one kind, unchanged as far as that can be told.
+/// How a file that is there is known to be a result of ours of one kind, unchanged as far as that
+/// can be told.
 #[derive(Debug, Clone, Copy)]
 pub enum Own {
     /// Every result of this kind carries a mark, which the function looks for.
     Marked(fn(&Path) -> io::Result<bool>),
-    /// Some carry none. A file without a mark is ours where it holds the bytes that are to be written.
+    /// Some carry none. A file without a mark is ours where it holds the bytes that are to be
+    /// written.
     Unmarked(fn(&Path) -> io::Result<bool>),
 }
 
@@ -22,7 +24,8 @@ impl Own {
 
 /// A place for a result, with what it may replace.
 ///
-/// A path alone, as in `Target::from(path)`, replaces whatever file is there, as a call of a library that names a file does.
+/// A path alone, as in `Target::from(path)`, replaces whatever file is there, as a call of a
+/// library that names a file does.
 #[derive(Debug, Clone, Copy)]
 pub struct Target<'a> {
     path: &'a Path,
@@ -41,7 +44,8 @@ impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// A place whose file is replaced only where it is a result of ours, or with `force` whatever it is.
+    /// A place whose file is replaced only where it is a result of ours, or with `force` whatever
+    /// it is.
     #[must_use]
     pub fn keeping_foreign(path: &'a Path, force: bool) -> Self {
         Self {
@@ -50,7 +54,8 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The files that are read. None of them is replaced, whatever its name here; `-` is standard input.
+    /// The files that are read. None of them is replaced, whatever its name here; `-` is standard
+    /// input.
     #[must_use]
     pub fn made_from(self, inputs: &'a [&'a Path]) -> Self {
         Self { inputs, ..self }
@@ -70,7 +75,8 @@ impl<'a> Target<'a> {
         self.keep_foreign
     }
 
-    /// Refuses a place that can be seen to be wrong before any work: one of the inputs, or a file that is not replaced.
+    /// Refuses a place that can be seen to be wrong before any work: one of the inputs, or a file
+    /// that is not replaced.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -114,7 +120,8 @@ impl<'a> Target<'a> {
 
 pub(super) const FOREIGN: &str = "this file is not a result of hysteron, or it was changed since";
 
-/// A refusal to replace something. Its kind tells it from other faults, so that a surface can say how to insist.
+/// A refusal to replace something. Its kind tells it from other faults, so that a surface can say
+/// how to insist.
 pub(super) fn foreign(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, what)
 }
@@ -182,7 +189,8 @@ pub(super) enum Claim {
 }
 
 impl Claim {
-    /// Whether `new` may take the place now; what stands there may have changed since it was claimed.
+    /// Whether `new` may take the place now; what stands there may have changed since it was
+    /// claimed.
     pub(super) fn holds(self, new: &Path, place: &Path) -> io::Result<()> {
         let holds = match self {
             Self::Whatever => true,

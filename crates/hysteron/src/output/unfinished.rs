@@ -1,7 +1,7 @@
 //! Files and folders that are written beside their places.
 //!
-//! Each has a name that nothing else has, and a lock while it is being written. One without a lock was left by a run
-//! that was killed, and the next run that writes there removes it.
+//! Each has a name that nothing else has, and a lock while it is being written. One without a lock
+//! was left by a run that was killed, and the next run that writes there removes it.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
