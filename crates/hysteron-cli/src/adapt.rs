@@ -1,22 +1,12 @@
 //! `hysteron adapt`
 
-use crate::{Result, args, keep_apart, print, recording, text};
-use hysteron::{Adapted, AtomicFile, Columns, Compared, Model};
+use crate::{Result, args, print, recording, text};
+use hysteron::{Adapted, Columns, Compared, Model, TableWriter};
 use serde_json::{Value, json};
-use std::io::Write;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
-    keep_apart(&args.data, &args.out)?;
     if let Some(table) = &args.table {
-        keep_apart(&args.data, table)?;
-        keep_apart(&args.model, table)?;
-        if *table == args.out {
-            return Err(format!(
-                "{}: the model and the table need a file each",
-                table.display()
-            )
-            .into());
-        }
+        hysteron::refuse_one_file(&args.out, table)?;
         if args.json.json && table.as_os_str() == "-" {
             return Err(
                 "with --json nothing but that goes to standard output: name a file for --table"
@@ -25,6 +15,15 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         }
     }
     let model = Model::read(&args.model)?;
+    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
+    let data = [args.data.as_path()];
+    let file = Model::file(args.force.target(&args.out, &data))?;
+    let inputs = [args.model.as_path(), &args.data];
+    let table = args.table.as_ref().map(|table| {
+        let target = args.force.target(table, &inputs);
+        TableWriter::create(Some(target))
+    });
+    let table = table.transpose()?;
     let columns = Columns {
         input: &args.input,
         output: &args.output,
@@ -41,13 +40,10 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     {
         adapted["from"]["model"] = json!(args.model);
     }
-    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
-    let mut model = AtomicFile::create(&args.out)?;
-    if let Some(table) = &args.table {
+    if let Some(table) = table {
         adapted.write_table(&recording, table)?;
     }
-    model.write_all(adapted.model.to_json().as_bytes())?;
-    model.commit()?;
+    file.commit_with(adapted.model.to_json().as_bytes())?;
     match args.json.json {
         true => print(&to_json(args, &adapted).to_string()),
         false => print(&to_text(args, &adapted)),

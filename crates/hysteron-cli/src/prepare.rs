@@ -1,14 +1,15 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
-use crate::{Result, args, keep_apart, print, recording, say, text};
+use crate::{Result, args, print, recording, say, text};
 use hysteron::{
     Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
-    Smoothed, Step,
+    Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Prepare) -> Result<()> {
-    keep_apart(&args.data, &args.out)?;
+    let inputs = [args.data.as_path()];
+    let table = TableWriter::plain(Some(args.force.target(&args.out, &inputs)))?;
     let columns = Columns {
         time: args.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
@@ -17,7 +18,7 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     let options = options(&args.steps, PrepareOptions::default());
     let (prepared, report) = hysteron::prepare(&recording, &options)?;
     let rate = hysteron::rate_dependence(&prepared)?;
-    let left_out = others.write_csv(&prepared, recording.time.as_deref(), &args.out)?;
+    let left_out = others.write_to(&prepared, recording.time.as_deref(), table)?;
     if !left_out.is_empty() {
         let names = left_out.join(", ");
         say(format_args!(

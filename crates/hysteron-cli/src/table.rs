@@ -1,6 +1,6 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
-use crate::{Result, args, keep_apart, print, progress, recording, say};
+use crate::{Result, args, print, progress, recording, say};
 use hysteron::{Counts, Model, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
@@ -18,6 +18,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
+        &args.force,
         (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
@@ -53,6 +54,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
+        &args.force,
         (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
@@ -65,30 +67,23 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
 fn through(
     [data, model]: [&Path; 2],
     out: Option<&Path>,
+    force: &args::Force,
     (json, max_memory): (bool, u64),
     what: [&str; 2],
-    work: impl FnOnce(
-        &mut TableReader,
-        Option<&mut TableWriter>,
-        &dyn Fn(u64),
-    ) -> hysteron::Result<Counts>,
+    work: impl FnOnce(&mut TableReader, Option<TableWriter>, &dyn Fn(u64)) -> hysteron::Result<Counts>,
 ) -> Result<()> {
-    // The table itself may be replaced: all its columns are in the new one.
-    out.map_or(Ok(()), |out| keep_apart(model, out))?;
-    let mut table = TableReader::open_with(data, max_memory)?;
+    let inputs = [data, model];
     // With --json, standard output is for the JSON alone.
-    let mut writer = match (out, json) {
+    let writer = match (out, json) {
         (None, true) => None,
-        (path, _) => Some(TableWriter::create(path)?),
+        (path, _) => Some(TableWriter::create(
+            path.map(|path| force.target(path, &inputs)),
+        )?),
     };
+    let mut table = TableReader::open_with(data, max_memory)?;
     let bar = progress::bytes_of(data);
-    let counts = work(&mut table, writer.as_mut(), &|bytes| {
-        bar.set_position(bytes)
-    })?;
+    let counts = work(&mut table, writer, &|bytes| bar.set_position(bytes))?;
     bar.finish_and_clear();
-    if let Some(writer) = writer {
-        writer.finish()?;
-    }
     recording::tell_of_table(data, &table);
     for (count, what) in [counts.high, counts.low].into_iter().zip(what) {
         if count > 0 {

@@ -70,7 +70,10 @@ pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Model, Sign, State};
 pub use monotone::{AGAINST_INPUT, way_against_input};
-pub use output::{AtomicFile, TableWriter, discard_unfinished};
+pub use output::{
+    Added, AtomicFile, AtomicFolder, Cell, Own, STANDARD_OUTPUT, TableWriter, Target,
+    discard_unfinished, refuse_one_file,
+};
 pub use predict::Surroundings;
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

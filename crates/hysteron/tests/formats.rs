@@ -211,7 +211,7 @@ fn rows_are_written_with_commas_and_points() {
         let mut table = TableReader::open(&path).unwrap();
         table.column(column).unwrap();
         let out = folder.path().join("out.csv");
-        let mut writer = TableWriter::create(Some(&out)).unwrap();
+        let mut writer = TableWriter::plain(Some((&out).into())).unwrap();
         writer.row(table.header()).unwrap();
         while table.advance().unwrap() {
             writer.extend_row(table.row(), &[]).unwrap();

@@ -1,7 +1,7 @@
 //! Options of `adapt`.
 
 use super::value::*;
-use super::{Json, Repair};
+use super::{Force, Json, Repair};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -36,8 +36,11 @@ pub(crate) struct Adapt {
     /// Where the adapted model goes
     #[arg(short, value_name = "ADAPTED")]
     pub(crate) out: PathBuf,
-    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`
-    #[arg(long, value_name = "CSV")]
+    #[command(flatten)]
+    pub(crate) force: Force,
+    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`;
+    /// CSV, or Parquet where the name ends with .parquet
+    #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) json: Json,

@@ -1,7 +1,7 @@
 //! Options of `fit` and `prepare`.
 
 use super::value::*;
-use super::{Json, Repair};
+use super::{Force, Json, Repair};
 use clap::Args;
 use hysteron::Step;
 use std::path::PathBuf;
@@ -70,6 +70,8 @@ pub(crate) struct Fit {
     #[arg(short, value_name = "MODEL")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
     pub(crate) json: Json,
 }
 
@@ -93,6 +95,8 @@ pub(crate) struct Prepare {
     /// Where the prepared recording goes
     #[arg(short, value_name = "OUT")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }

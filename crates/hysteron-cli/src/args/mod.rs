@@ -1,7 +1,8 @@
 //! The command line: its forms, defaults and help.
 
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use hysteron::Target;
+use std::path::{Path, PathBuf};
 
 mod adapt;
 mod export;
@@ -23,6 +24,7 @@ pub(crate) use value::*;
                   a row of units; # and % comments; loggers and LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
                   A column goes by its name, without its unit if there is no other, or by its number from 1.\n\
                   `-` reads CSV from standard input.\n\
+                  Results of earlier runs are replaced; any other file is kept, unless --force is given.\n\
                   Exit codes: 0 done, 1 the work failed, 2 wrong usage."
 )]
 pub(crate) struct Cli {
@@ -90,6 +92,20 @@ pub(crate) struct Json {
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Force {
+    /// Replace also what hysteron did not make, or what was changed since
+    #[arg(long)]
+    force: bool,
+}
+
+impl Force {
+    /// A place for a result, which replaces none of the files that are read.
+    pub(crate) fn target<'a>(&self, path: &'a Path, inputs: &'a [&'a Path]) -> Target<'a> {
+        Target::keeping_foreign(path, self.force).made_from(inputs)
+    }
 }
 
 #[derive(Args)]
@@ -165,11 +181,14 @@ pub(crate) struct Simulate {
     /// Column of time, in seconds or with its unit in its name, for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the table goes [default: standard output; with --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
+    /// --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: Memory,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -195,11 +214,14 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Where the table goes [default: standard output; with --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
+    /// --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: Memory,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -229,6 +251,8 @@ pub(crate) struct Evaluate {
     /// Write a page and its figures (SVG, PNG) into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -290,6 +314,8 @@ pub(crate) struct Design {
     /// Where the profile goes, with the columns `time [s]` and `input`
     #[arg(short, value_name = "PROFILE")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Draw the plane with what is known of each operator
     #[arg(long, value_name = "SVG")]
     pub(crate) figure: Option<PathBuf>,
@@ -317,6 +343,8 @@ pub(crate) struct Track {
     #[arg(short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
     pub(crate) json: Json,
 }
 
@@ -325,6 +353,8 @@ pub(crate) struct Demo {
     /// Folder for the recordings, the model and the report
     #[arg(short, value_name = "DIR", default_value = "hysteron-demo")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }

@@ -7,11 +7,11 @@ pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
 use crate::{
-    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start, Watch,
+    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start,
+    TableWriter, Watch,
 };
 use serde::Serialize;
 use serde_json::json;
-use std::path::Path;
 
 /// What came of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +85,7 @@ impl Adapted {
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
-    pub fn write_table(&self, recording: &Recording, path: &Path) -> Result<()> {
+    pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
         if recording.len() != self.outcomes.len() {
             return Err(Error::Recording {
                 path: recording.source.as_ref().map(|source| source.path.clone()),
@@ -100,7 +100,7 @@ impl Adapted {
         }
         let added = ["output_model", "error", "outcome"];
         let errors = self.errors(recording);
-        recording.write_csv_with(path, &added, |n| {
+        recording.write_with(table, &added, |n| {
             let outcome = self.outcomes[n].name().to_owned();
             [
                 self.output_model[n].to_string(),

@@ -4,7 +4,6 @@ use super::Recording;
 use crate::output::TableWriter;
 use crate::table::{Column, Row, TableReader};
 use crate::{Error, Result};
-use std::path::Path;
 
 /// All columns of the file that a recording was read from, in their order and with their names; units
 /// that stood in a row below them stand behind them, and a time in another unit is in seconds.
@@ -38,17 +37,17 @@ impl Others {
     }
 
     /// Writes `recording`, made of the one that was read with these columns by [`crate::prepare`]
-    /// from the times `before`, as CSV: its series in their places, and the other columns beside them.
+    /// from the times `before`: its series in their places, and the other columns beside them.
     /// Where it was resampled, columns of numbers are interpolated, and others left out. Returns the
     /// names of those.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
-    pub fn write_csv(
+    pub fn write_to(
         &self,
         recording: &Recording,
         before: Option<&[f64]>,
-        path: &Path,
+        mut table: TableWriter,
     ) -> Result<Vec<String>> {
         recording.check()?;
         let resampled = recording.time.as_deref() != before;
@@ -80,7 +79,6 @@ impl Others {
                 None => left_out.push(name.clone()),
             }
         }
-        let mut table = TableWriter::create(Some(path))?;
         table.row(columns.iter().map(|(name, _)| name))?;
         for n in 0..recording.len() {
             table.row(columns.iter().map(|(_, cells)| match cells {

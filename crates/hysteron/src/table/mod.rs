@@ -22,6 +22,7 @@ use crate::recording::Places;
 use crate::{Error, Place, Repair, Result};
 use hashing::Hash;
 use numbers::Numbers;
+pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
 use text::Text;
 use time::TimeUnit;
@@ -118,6 +119,11 @@ impl TableReader {
             remarks: Vec::new(),
             time: None,
         })
+    }
+
+    /// The file, as it was named.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// What was assumed in reading the file, for a message; all of it is known at the end of the table.
@@ -286,6 +292,11 @@ impl TableReader {
             problem,
         }
     }
+}
+
+/// SHA-256 in hexadecimal of a whole file.
+pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
+    text::Hashing::file(path)
 }
 
 /// At most 40 characters of a text, for a message.

@@ -75,7 +75,7 @@ fn refused(refusal: Refusal) -> String {
 }
 
 /// What a use of the library gives. It panics where a damaged file contradicts itself.
-fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
+pub(crate) fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
     match catch_unwind(AssertUnwindSafe(use_it)) {
         Ok(result) => result.map_err(damaged),
         Err(_) => Err(damaged("it contradicts itself")),

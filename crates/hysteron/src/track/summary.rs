@@ -111,7 +111,7 @@ impl Comparison {
     /// # Errors
     /// [`crate::Error::File`].
     pub fn write_scores(&self, path: &Path) -> Result<()> {
-        let mut table = TableWriter::create(Some(path))?;
+        let mut table = TableWriter::plain(Some(path.into()))?;
         table.row([
             "controller",
             "seed",
@@ -161,7 +161,7 @@ impl Trace {
     /// # Errors
     /// [`crate::Error::File`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
-        let mut table = TableWriter::create(Some(path))?;
+        let mut table = TableWriter::plain(Some(path.into()))?;
         table.row([
             "time_s",
             "reference",
