@@ -3,9 +3,9 @@
 //! What counts is the *surprise*: the error of a prediction less the error that the last reading believed left behind. What a
 //! model says wrongly again and again, on a branch that it knows badly, is no surprise, however large.
 //!
-//! The scale is a running mean of the surprises' sizes, in which one beyond the gate counts as the gate. So a wrong
-//! reading raises the scale by the same small factor whatever its size, and noise that grows for good is followed. Readings
-//! beyond the gate that agree with each other for long enough are a jump of the plant, and believed.
+//! The scale is a running mean of the sizes of those surprises that were believed, so that no wrong reading is in it. Two ways
+//! lead back for a plant that is not what it was. Readings refused in a row that agree with each other are a jump, and
+//! believed. Those that do not agree are noise that has grown, and the scale follows it step by step.
 
 use super::Adaptation;
 use crate::{Model, Real};
@@ -27,8 +27,10 @@ pub(super) struct Gate<T> {
     left: T,
     /// The surprise of the last reading refused.
     last: T,
-    /// Readings refused one after the other that agree.
-    run: u32,
+    /// Readings refused in a row, since the scale last changed for them.
+    refused: u32,
+    /// The last of them that agree.
+    agreeing: u32,
 }
 
 impl<T: Real> Gate<T> {
@@ -45,7 +47,8 @@ impl<T: Real> Gate<T> {
             scale: range / T::from_index(AT_START),
             left: T::ZERO,
             last: T::ZERO,
-            run: 0,
+            refused: 0,
+            agreeing: 0,
         }
     }
 
@@ -61,26 +64,24 @@ impl<T: Real> Gate<T> {
         }
         let surprise = error - self.left;
         let size = surprise.larger(-surprise);
-        let limit = options.gate * self.scale;
         // Without a range there is nothing to measure by before the first surprise.
-        if size <= limit || self.scale == T::ZERO {
-            self.run = 0;
-            self.remember(size);
+        if size <= options.gate * self.scale || self.scale == T::ZERO {
+            self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
             return true;
         }
-        self.remember(limit);
-        self.run = if agree(surprise, self.last) {
-            self.run + 1
-        } else {
-            1
-        };
+        let agrees = self.agreeing > 0 && agree(surprise, self.last);
+        self.agreeing = if agrees { self.agreeing + 1 } else { 1 };
+        self.refused += 1;
         self.last = surprise;
-        let jump = self.run >= options.burst;
-        if jump {
-            self.run = 0;
-            self.scale = size;
+        if self.agreeing >= options.burst {
+            self.believe(size);
+            return true;
         }
-        jump
+        if self.refused >= options.burst {
+            self.refused = 0;
+            self.rescale(self.scale + self.scale);
+        }
+        false
     }
 
     /// What a reading that was believed has left of its error.
@@ -88,8 +89,12 @@ impl<T: Real> Gate<T> {
         self.left = if left.is_finite() { left } else { T::ZERO };
     }
 
-    fn remember(&mut self, size: T) {
-        let scale = self.scale + (size - self.scale) / T::from_index(MEMORY);
+    fn believe(&mut self, scale: T) {
+        (self.refused, self.agreeing) = (0, 0);
+        self.rescale(scale);
+    }
+
+    fn rescale(&mut self, scale: T) {
         if scale.is_finite() {
             self.scale = scale.larger(self.range / T::from_index(LEAST));
         }

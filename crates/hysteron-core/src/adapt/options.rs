@@ -71,15 +71,14 @@ pub enum Method<T> {
 /// | `burst` | 8 | from 1 | readings in a row that the gate refuses before it believes them, where they agree |
 ///
 /// **Gate.** Measured less expected is compared with what the last reading that was believed left of its error, so that it is the
-/// surprise that counts and not what the model says wrongly all the time. The usual size of a surprise is a running mean over 64 of
-/// them, in which one that is refused counts as the gate: a single reading raises it by an eighth at most, whatever it
-/// says. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Only samples that
-/// something could be learned from are judged, not those at rest.
+/// surprise that counts and not what the model says wrongly all the time. The usual size of a surprise is the running mean over the
+/// last 64 or so that were believed. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples at rest are
+/// not judged, as nothing is learned from them.
 ///
-/// Readings refused one after the other agree where each differs from the one before by half of the larger surprise at
-/// most. The one that completes `burst` of them is learned from, and the gate is as wide as the jump then. So a wrong reading held for
-/// `burst` samples or longer is learned as a jump of the plant would be: no reading tells the two apart. Where more than
-/// one reading in `gate` is wrong, the usual size grows, slowly, until these pass.
+/// Readings refused one after the other agree where two surprises differ by half of the larger one at most. The one that
+/// completes `burst` of them is learned from, and surprises of its size are usual then. So a wrong reading held for `burst` samples or
+/// longer is learned as a jump of the plant would be: no reading tells the two apart. Where `burst` are refused in a row
+/// without agreeing, as when noise grows, the usual size doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
