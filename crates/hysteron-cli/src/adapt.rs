@@ -1,7 +1,7 @@
 //! `hysteron adapt`
 
 use crate::{Result, args, keep_apart, print, recording, text};
-use hysteron::{Adapted, AtomicFile, Columns, Compared, Model};
+use hysteron::{Adapted, AtomicFile, Columns, Compared, Errors, Model};
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -41,25 +41,49 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     {
         adapted["from"]["model"] = json!(args.model);
     }
+    let refused = adapted.worse && !args.force;
     // The model begins before the table and is whole after it: where one cannot be written, neither is there.
-    let mut model = AtomicFile::create(&args.out)?;
+    let file = match refused {
+        true => None,
+        false => Some(AtomicFile::create(&args.out)?),
+    };
     if let Some(table) = &args.table {
         adapted.write_table(&recording, table)?;
     }
-    model.write_all(adapted.model.to_json().as_bytes())?;
-    model.commit()?;
+    if let Some(mut file) = file {
+        file.write_all(adapted.model.to_json().as_bytes())?;
+        file.commit()?;
+    }
     match args.json.json {
-        true => print(&to_json(args, &adapted).to_string()),
-        false => print(&to_text(args, &adapted)),
+        true => print(&to_json(args, &adapted, refused).to_string())?,
+        false => print(&to_text(args, &adapted, refused))?,
+    }
+    match adapted.late {
+        Some(late) if refused => Err(worse(args, &adapted, &late).into()),
+        _ => Ok(()),
     }
 }
 
-fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
+fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
+    let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
+    format!(
+        "{}: the model is not written, for it ended worse: over the last third it erred by {} (RMSE) before it learned, the model left alone by {}: \
+         see which readings were taken by the column `outcome` of --table, try another --method, or leave the model as it is; --force writes it",
+        args.out.display(),
+        error(late.adapting),
+        error(late.fixed)
+    )
+}
+
+fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
     json!({
-        "model": args.out,
+        "model": (!refused).then_some(&args.out),
         "table": args.table,
         "whole": adapted.whole,
         "thirds": adapted.thirds,
+        "late": adapted.late,
+        "worse": adapted.worse,
+        "probation": adapted.probation,
         "again": adapted.again,
         "counts": adapted.counts,
         "drift": adapted.drift,
@@ -67,7 +91,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
     })
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
+fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -95,11 +119,15 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
     let drift = &adapted.drift;
     let mut lines = vec![
         format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} times rolled back",
-            args.out.display(),
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} readings rejected, {} times rolled back",
+            match refused {
+                true => "not written".into(),
+                false => args.out.display().to_string(),
+            },
             counts.learned,
             counts.waiting,
             counts.at_rest,
+            counts.rejected,
             counts.rolled_back
         ),
         text::table(&rows),
@@ -112,6 +140,12 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
             100.0 * drift.moved
         ),
     ];
+    if adapted.probation > 0 {
+        lines.push(format!(
+            "the last {} samples are on probation, as none judge them: the model has nothing of them",
+            adapted.probation
+        ));
+    }
     if counts.outside > 0 {
         lines.push(format!("{} inputs outside the plane", counts.outside));
     }

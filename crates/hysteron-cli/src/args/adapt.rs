@@ -39,6 +39,9 @@ pub(crate) struct Adapt {
     /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`
     #[arg(long, value_name = "CSV")]
     pub(crate) table: Option<PathBuf>,
+    /// Write the model even if it ended worse than the one left alone
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -81,6 +84,13 @@ pub(crate) struct Tuning {
     /// Samples learned from after which the weights are judged against the last good ones [default: 256]
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
+    /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all are learned from [default: 8]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = parse_finite)]
+    gate: Option<f64>,
+    /// Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong, more a plant that jumped
+    /// [default: 8]
+    #[arg(long, value_name = "N")]
+    burst: Option<u32>,
 }
 
 impl From<&Adapt> for hysteron::AdaptOptions {
@@ -101,6 +111,8 @@ impl From<&Adapt> for hysteron::AdaptOptions {
             offset_share: tuning.offset_share,
             movement: tuning.movement,
             trial: tuning.trial,
+            gate: tuning.gate,
+            burst: tuning.burst,
         }
     }
 }
