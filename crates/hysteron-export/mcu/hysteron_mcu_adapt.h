@@ -38,7 +38,7 @@ typedef struct {
     hys_real dead_zone;     /* 0, from 0: errors up to this are noise, in the output's unit */
     hys_real leakage;       /* 0, 0 to 1: share by which weights return to the off-line ones with each update */
     hys_real movement;      /* 0.05, from 0: levels between two samples that are learned from */
-    hys_real gate;          /* 8, 0 or from 2: larger surprises, in usual ones, are not learned from; 0: all are */
+    hys_real gate;          /* 12, 0 or from 2: larger surprises, in usual ones, are not learned from; 0: all are */
     uint32_t trial;         /* 256, from 1: samples on which weights are judged against the last good ones */
     uint32_t burst;         /* 8, from 1: readings in a row beyond the gate that are learned from, where they agree */
 } hys_adapt_options;

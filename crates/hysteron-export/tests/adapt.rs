@@ -183,7 +183,7 @@ fn options(rng: &mut StdRng) -> Option<Adaptation<f64>> {
         leakage: one_of(rng, [0.0, 1e-3, 0.2]),
         movement: one_of(rng, [0.0, 0.05, 0.5]),
         trial: [1, 7, 64][rng.random_range(0..3)],
-        gate: one_of(rng, [0.0, 2.0, 8.0]),
+        gate: one_of(rng, [0.0, 2.0, 12.0]),
         burst: [1, 3, 8][rng.random_range(0..3)],
     })
 }

@@ -67,7 +67,7 @@ pub enum Method<T> {
 /// | `leakage` | 0 | 0 to 1 | share by which weights return to the off-line ones with each update (Ioannou & Kokotović 1984) |
 /// | `movement` | 0.05 | from 0 | levels between two samples that are learned from: less is no excitation |
 /// | `trial` | 256 | from 1 | samples on which weights are judged against the last good ones |
-/// | `gate` | 8 | 0, or from 2 | a reading further off than so many times the usual is not learned from; 0: none is refused |
+/// | `gate` | 12 | 0, or from 2 | a reading further off than so many times the usual is not learned from; 0: none is refused |
 /// | `burst` | 8 | from 1 | readings in a row that the gate refuses before it believes them, where they agree |
 ///
 /// **Gate.** Measured less expected is compared with what the last reading that was believed left of its error, so that it is the
@@ -115,7 +115,7 @@ impl<T: Real> Default for Adaptation<T> {
             leakage: T::ZERO,
             movement: hundredths(5),
             trial: 256,
-            gate: T::from_index(8),
+            gate: T::from_index(12),
             burst: 8,
         }
     }

@@ -57,7 +57,7 @@ pub enum Learner {
 /// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
 /// | `movement` | 0.05 | from 0 on | levels that the input has to move before a sample is learned from |
 /// | `trial` | 256 | from 1 on | samples after which the weights are judged against the last good ones |
-/// | `gate` | 8 | 0, or from 2 on | a reading that surprises so many times more than usual is not learned from; 0: all are learned from |
+/// | `gate` | 12 | 0, or from 2 on | a reading that surprises so many times more than usual is not learned from; 0: all are learned from |
 /// | `burst` | 8 | from 1 on | readings in a row beyond the gate that are learned from, where they agree; samples at the end on probation |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptOptions {
