@@ -257,7 +257,8 @@
 #define HYSTERON_ROLLED_BACK 4
 
 /**
- * Outcome of a sample: the reading differs too much from what was expected, and has not done so for long.
+ * Outcome of a sample: the reading differs too much from what was expected, and has not done so
+ * for long.
  */
 #define HYSTERON_REJECTED 5
 

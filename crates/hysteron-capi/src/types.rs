@@ -44,7 +44,8 @@ pub const HYSTERON_AT_REST: i32 = 2;
 pub const HYSTERON_FROZEN: i32 = 3;
 /// Outcome of a sample: the last good weights are back.
 pub const HYSTERON_ROLLED_BACK: i32 = 4;
-/// Outcome of a sample: the reading differs too much from what was expected, and has not done so for long.
+/// Outcome of a sample: the reading differs too much from what was expected, and has not done so
+/// for long.
 pub const HYSTERON_REJECTED: i32 = 5;
 
 /// What a model is.

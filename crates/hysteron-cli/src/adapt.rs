@@ -67,8 +67,9 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
 fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
     let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
     format!(
-        "{}: the model is not written, for it ended worse: over the last third it erred by {} (RMSE) before it learned, the model left alone by {}: \
-         see which readings were taken by the column `outcome` of --table, try another --method, or leave the model as it is; --force writes it",
+        "{}: the model is not written, for it ended worse: over the last third it erred by {} \
+         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of --table, \
+         try another --method, or keep the model as it is; --force writes it",
         args.out.display(),
         error(late.adapting),
         error(late.fixed)

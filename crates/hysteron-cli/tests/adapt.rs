@@ -164,7 +164,8 @@ fn wrong_readings_are_refused_counted_and_in_the_table() {
 #[test]
 fn a_model_that_ended_worse_is_not_written_without_force() {
     let folder = wires();
-    // The plant has not changed; what there is to learn is noise, with a gain that more than follows it.
+    // The plant has not changed; what there is to learn is noise, with a gain that more than
+    // follows it.
     let mut table = String::from("x,y\n");
     let mut play = 20.0_f64;
     for n in 0..1500 {

@@ -1,4 +1,5 @@
-//! What one wrong reading, or a few in a row, do to an estimator: next to nothing; and a plant that jumps is followed all the same.
+//! What one wrong reading, or a few in a row, do to an estimator: next to nothing; and a plant that
+//! jumps is followed all the same.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -38,7 +39,8 @@ impl Case {
         let (plant, mut there) = build(plane, operator, &truth);
         let (low, high) = plant.output_range();
         let range = high - low;
-        // Off-line the model is wrong by up to half of each weight, and the plant has noise or none.
+        // Off-line the model is wrong by up to half of each weight, and the plant has noise or
+        // none.
         let offline = truth.iter().map(|mu| mu * rng.random_range(0.5..1.5));
         let offline: Vec<f64> = offline.collect();
         let noise = range * [0.0, 1e-4, 1e-2][rng.random_range(0..3)];
@@ -47,7 +49,8 @@ impl Case {
             plant.step(&mut there, input).unwrap().output + noise * rng.random_range(-1.0..=1.0)
         });
         let outputs = outputs.collect();
-        // In the unit of the output, and the spread such that the sum of the weights is uncertain by about its third.
+        // In the unit of the output, and the spread such that the sum of the weights is uncertain
+        // by about its third.
         let method = match method {
             Method::LeastSquares { correlation, .. } => Method::LeastSquares {
                 forgetting: 0.999,
@@ -113,7 +116,8 @@ fn wrong(rng: &mut StdRng, case: &Case) -> Vec<Option<f64>> {
     wrong
 }
 
-/// What became of a run: the largest sum of weights and the largest error of a prediction, of the truth and not of what was read.
+/// What became of a run: the largest sum of weights and the largest error of a prediction, of the
+/// truth and not of what was read.
 fn run(case: &Case, wrong: &[Option<f64>], calls: u64) -> (f64, f64) {
     let mut learner = case.learner();
     let mut rng = rng(calls);
@@ -151,8 +155,9 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
         let wrong = wrong(&mut rng(10_000 + seed), &case);
         let clean = run(&case, &vec![None; wrong.len()], seed);
         let dirty = run(&case, &wrong, seed);
-        // No wrong reading gets further into the model than the gate is wide. Before anything is known that is twelve fiftieths of the range, and
-        // a reading within widens it by a sixth at most: a few in a burst at the very start come to a range in the worst case.
+        // No wrong reading gets further into the model than the gate is wide. Before anything is
+        // known that is twelve fiftieths of the range, and a reading within widens it by a sixth at
+        // most: a few in a burst at the very start come to a range in the worst case.
         assert!(dirty.1 < clean.1 + 1.0, "{seed}: {} {}", clean.1, dirty.1);
         assert!(dirty.0 < 2.0 * clean.0, "{seed}: {} {}", clean.0, dirty.0);
         moved += u64::from(dirty.1 > clean.1 + 0.24 || dirty.0 > 1.3 * clean.0);
@@ -162,7 +167,9 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
         wrecked += u64::from(run(&case, &wrong, seed).1 > clean.1 + 10.0);
     }
     println!(
-        "wrong readings in {SEEDS} runs: weights sum to {sums:.2} times as much at most, errors are {errors:.3} ranges larger at most; without a gate {wrecked} are off by more than ten ranges"
+        "wrong readings in {SEEDS} runs: weights sum to {sums:.2} times as much at most, \
+         errors are {errors:.3} ranges larger at most; without a gate \
+         {wrecked} are off by more than ten ranges"
     );
     // One run in 250 of 3000.
     assert!(
@@ -199,8 +206,9 @@ const JUMPS: [Jump; 11] = [
     Jump::Noise(0.5),
 ];
 
-/// What a jump half-way costs: the squares of the errors of the samples that something could be learned from, in ranges, the
-/// largest error, and the readings refused before the first one that was believed.
+/// What a jump half-way costs: the squares of the errors of the samples that something could be
+/// learned from, in ranges, the largest error, and the readings refused before the first one that
+/// was believed.
 fn cost(case: &Case, jump: Jump, seed: u64) -> (f64, f64, Option<u32>) {
     let mut rng = rng(seed);
     let (plant, mut there) = build(case.plane, case.operator, &case.offline);
@@ -250,9 +258,10 @@ fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
         }
         case.options.gate = 0.0;
         let open = cost(&case, jump, seed).0;
-        // So many samples at the largest error that was met, as a shift is met anew on each branch and growing noise followed by
-        // doublings. The rest is learned from other readings than without a gate, which matters for increments: their
-        // offset follows slowly, and the squares are up to 2.4 times as large.
+        // So many samples at the largest error that was met, as a shift is met anew on each branch
+        // and growing noise followed by doublings. The rest is learned from other readings than
+        // without a gate, which matters for increments: their offset follows slowly, and the
+        // squares are up to 2.4 times as large.
         let at_most = worst * worst * f64::from(burst);
         assert!(
             squares <= 3.0 * open + 8.0 * at_most,
@@ -261,8 +270,8 @@ fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
     }
 }
 
-/// A burst one shorter than `burst` is not learned and the reading that completes it is, held at one value as by a stuck sensor; in the
-/// first samples too.
+/// A burst one shorter than `burst` is not learned and the reading that completes it is, held at
+/// one value as by a stuck sensor; in the first samples too.
 #[test]
 fn a_burst_is_told_from_a_jump_by_its_length() {
     for method in METHODS {

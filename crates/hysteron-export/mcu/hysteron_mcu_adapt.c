@@ -3,7 +3,8 @@
 
 #define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
 
-/* Of the gate: surprises that the mean remembers, the scale at the start and the least one, in shares of the range. */
+/* Of the gate: surprises that the mean remembers, the scale at the start and the least one, in
+ * shares of the range. */
 #define MEMORY 64u
 #define AT_START 50u
 #define LEAST 1000u
@@ -442,7 +443,10 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     copy(self->candidate, self->theta, all + 1u);
     clear_trial(self);
     rewrite(self);
-    self->gate.range = model->kind == MKP ? self->model.total : self->model.total + self->model.total;
+    self->gate.range = self->model.total;
+    if (model->kind != MKP) {
+        self->gate.range += self->model.total;
+    }
     restart(&self->gate);
     (void)hys_start(&self->model, &self->state, turns, count);
     self->learned = ZERO;

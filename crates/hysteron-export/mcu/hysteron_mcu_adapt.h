@@ -1,5 +1,5 @@
 /* Weights that follow the plant while an exported model runs: the normalised gradient (Goodwin & Sin 1984, section 3.3) over
- * all weights and the offset, with dead zone, leakage and a trial against the last good weights. The digits of the library's
+ * all weights and the offset, with dead zone, leakage, a gate and a trial against the last good weights. The digits of the library's
  * `Estimator` with `Method::Gradient`. Its other methods stay on the host: the gradient needs one table, tells its worst case
  * without a look at the input, and knows nothing of the noise.
  *
@@ -38,9 +38,9 @@ typedef struct {
     hys_real dead_zone;     /* 0, from 0: errors up to this are noise, in the output's unit */
     hys_real leakage;       /* 0, 0 to 1: share by which weights return to the off-line ones with each update */
     hys_real movement;      /* 0.05, from 0: levels between two samples that are learned from */
-    hys_real gate;          /* 12, 0 or from 2: larger surprises, in usual ones, are not learned from; 0: all are */
+    hys_real gate;          /* 12, 0 or from 2: surprises above so many usual ones teach nothing; 0: all do */
     uint32_t trial;         /* 256, from 1: samples on which weights are judged against the last good ones */
-    uint32_t burst;         /* 8, from 1: readings in a row beyond the gate that are learned from, where they agree */
+    uint32_t burst;         /* 8, from 1: readings in a row beyond the gate, that agree, are a jump */
 } hys_adapt_options;
 
 /* What was done with a sample. */
@@ -50,7 +50,7 @@ enum {
     HYS_AT_REST = 2,        /* the input did not move */
     HYS_FROZEN = 3,
     HYS_ROLLED_BACK = 4,    /* the weights did far worse than the last good ones, or overflowed: these are back */
-    HYS_REJECTED = 5        /* the reading differs too much from what was expected, and has not done so for long */
+    HYS_REJECTED = 5        /* the reading is too far from what was expected, and not for long */
 };
 
 /* What has been seen of the errors of predictions. */

@@ -16,15 +16,17 @@ use pyo3::types::{PyDict, PyTuple};
 /// What came of an adaptation to a recording.
 #[pyclass(frozen, get_all, module = "pyhysteron")]
 pub(crate) struct Adapted {
-    /// The model with the last weights that are not on probation; `model.fit` tells of them over the whole recording.
+    /// The model with the last weights that are not on probation; `model.fit` tells of them over
+    /// the whole recording.
     model: Model,
     /// Arrays of shape (n,): 'input', 'output', 'output_model' (predicted before the sample was learned from), 'error'
     /// (measured less predicted) and 'outcome' (as in `Learning`).
     table: Py<PyDict>,
     /// Errors of the model that learned ('adapting', before it learned from the samples compared) beside those of the
     /// model left as it was ('fixed'): 'whole', 'thirds' (a list), 'again' (the last weights over the whole recording);
-    /// 'late' (the last third without readings rejected, or None) and whether the model ended 'worse' there than the one left alone;
-    /// 'probation' (samples at the end that the model has nothing of, as no later ones judge them);
+    /// 'late' (the last third without readings rejected, or None) and whether the model ended
+    /// 'worse' there than the one left alone; 'probation' (samples at the end that the model has
+    /// nothing of, as no later ones judge them);
     /// 'counts' of the outcomes; 'drift' of weights and offset, before and after.
     comparison: Py<PyAny>,
 }

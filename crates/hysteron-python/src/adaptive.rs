@@ -57,10 +57,11 @@ use pyo3::types::PyDict;
 /// trial : int, optional
 ///     Samples after which the weights are judged against the last good ones, 1 or more. By default 256.
 /// gate : float, optional
-///     How many times the usual surprise a reading may be off to be learned from, from 2 on; 0: any. By default 12.
+///     How many times the usual surprise a reading may be off to be learned from, from 2 on; 0:
+///     any. By default 12.
 /// burst : int, optional
-///     Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong, more a plant that
-///     jumped. 1 or more, by default 8.
+///     Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
+///     more a plant that jumped. 1 or more, by default 8.
 /// load : float, optional
 ///     'drift' of a model that depends on a load: where the shares start. By default the middle of its range.
 ///

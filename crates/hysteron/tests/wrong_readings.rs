@@ -1,6 +1,8 @@
-//! Wrong readings in what a model is adapted to: a cell of full scale in the last row, some all over, some in a loop.
+//! Wrong readings in what a model is adapted to: a cell of full scale in the last row, some all
+//! over, some in a loop.
 #![allow(clippy::unwrap_used)]
 
+use hysteron::control::{Compensator, Controller, Reading, Rest, Scheme, Target};
 use hysteron::{
     AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Recording, Sign, adapt,
 };
@@ -49,8 +51,8 @@ fn by(learner: Learner) -> AdaptOptions {
     }
 }
 
-/// Both end where they end without wrong readings: to a hundredth of the stroke. A reading refused is one that is not learned from, as if
-/// it had not been taken.
+/// Both end where they end without wrong readings: to a hundredth of the stroke. A reading refused
+/// is one that is not learned from, as if it had not been taken.
 fn same(clean: &Adapted, other: &Adapted, what: &str) {
     let stroke = clean.drift.weights.0;
     let (a, b) = (&clean.drift, &other.drift);
@@ -127,6 +129,44 @@ fn five_wrong_readings_in_a_loop_do_not_move_the_next_prediction() {
             assert!((learning.output - output).abs() < 1e-9, "{learner:?}, {n}");
         }
     }
+}
+
+#[test]
+fn a_controller_says_which_reading_was_rejected() {
+    let recording = recorded(&spring(10.0));
+    let adaptive = by(Learner::Gradient).adaptive(&spring(10.0)).unwrap();
+    let mut controller = Controller::new(Scheme {
+        interval_s: 1.0,
+        compensator: Some(Compensator::adaptive(adaptive)),
+        rest: Rest::Hold,
+        tolerance: 0.0,
+        pid: None,
+        bias: 0.0,
+        commands: (20.0, 80.0),
+        drives: (20.0, 80.0),
+        inner: None,
+        filter_s: 0.0,
+        stuck_s: None,
+    })
+    .unwrap();
+    let target = Target {
+        output: 0.0,
+        heading: None,
+    };
+    let mut rejected = Vec::new();
+    for (n, (&input, &output)) in recording.input.iter().zip(&recording.output).enumerate() {
+        let wrong = (1000..1005).contains(&n);
+        let reading = Reading {
+            output: if wrong { FULL_SCALE } else { output },
+            input: Some(input),
+        };
+        let status = controller.step(target, reading).unwrap().status;
+        assert!(!(status.rejected && status.adapted));
+        if status.rejected {
+            rejected.push(n);
+        }
+    }
+    assert_eq!(rejected, (1000..1005).collect::<Vec<_>>());
 }
 
 #[test]

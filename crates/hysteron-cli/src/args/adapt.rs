@@ -84,11 +84,12 @@ pub(crate) struct Tuning {
     /// Samples learned from after which the weights are judged against the last good ones [default: 256]
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
-    /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all are learned from [default: 12]
+    /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all
+    /// are learned from [default: 12]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = parse_finite)]
     gate: Option<f64>,
-    /// Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong, more a plant that jumped
-    /// [default: 8]
+    /// Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
+    /// more a plant that jumped [default: 8]
     #[arg(long, value_name = "N")]
     burst: Option<u32>,
 }

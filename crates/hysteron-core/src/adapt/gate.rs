@@ -1,21 +1,25 @@
 //! Readings that are not learned from, because they differ too much from what was expected.
 //!
-//! What counts is the *surprise*: the error of a prediction less the error that the last reading believed left behind. What a
-//! model says wrongly again and again, on a branch that it knows badly, is no surprise, however large.
+//! What counts is the *surprise*: the error of a prediction less the error that the last reading
+//! believed left behind. What a model says wrongly again and again, on a branch that it knows
+//! badly, is no surprise, however large.
 //!
-//! The scale is a running mean of the sizes of those surprises that were believed, so that no wrong reading is in it. Two ways
-//! lead back for a plant that is not what it was. Readings refused in a row that agree with each other are a jump, and
-//! believed. Those that do not agree are noise that has grown, and the scale follows it step by step.
+//! The scale is a running mean of the sizes of those surprises that were believed, so that no wrong
+//! reading is in it. Two ways lead back for a plant that is not what it was. Readings refused in a
+//! row that agree with each other are a jump, and believed. Those that do not agree are noise that
+//! has grown, and the scale follows it step by step.
 
 use super::Adaptation;
 use crate::{Model, Real};
 
-/// Surprises that the mean remembers. A branch takes some hundred samples, and its scale is not that of the next one.
+/// Surprises that the mean remembers. A branch takes some hundred samples, and its scale is not
+/// that of the next one.
 const MEMORY: usize = 64;
-/// The scale at the start, in shares of the model's range: usual errors of a fitted model. Worse ones wait for the way back.
+/// The scale at the start, in shares of the model's range: usual errors of a fitted model. Worse
+/// ones wait for the way back.
 const AT_START: usize = 50;
-/// The least scale, in shares of the model's range. Where there is no noise, the scale would vanish and rounding be refused;
-/// readings within a gate of this scale do no harm.
+/// The least scale, in shares of the model's range. Where there is no noise, the scale would vanish
+/// and rounding be refused; readings within a gate of this scale do no harm.
 const LEAST: usize = 1000;
 
 /// What has been seen of the errors.

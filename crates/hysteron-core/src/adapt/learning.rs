@@ -36,7 +36,8 @@ pub enum Outcome {
     Frozen,
     /// The weights did far worse than the last good ones, or were no numbers any more: these are back.
     RolledBack,
-    /// The reading differs too much from what was expected to be learned from, and has not done so for long: [`Adaptation::gate`].
+    /// The reading differs too much from what was expected to be learned from, and has not done so
+    /// for long: [`Adaptation::gate`].
     Rejected,
 }
 
@@ -71,7 +72,8 @@ impl Outcome {
 }
 
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// Learns from a reading, if there is anything to learn and it is to be believed. `above` is what was measured above `H`.
+    /// Learns from a reading, if there is anything to learn and it is to be believed. `above` is
+    /// what was measured above `H`.
     pub(super) fn judge<S>(
         &mut self,
         state: &State<T, S>,
@@ -91,7 +93,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             return Outcome::AtRest;
         }
         if !self.gate.believes(error, &self.options) {
-            // An increment that begins before a jump and ends after it would take the jump for a slope.
+            // An increment that begins before a jump and ends after it would take the jump for a
+            // slope.
             self.increment = None;
             return Outcome::Rejected;
         }
@@ -157,7 +160,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         Outcome::Learned
     }
 
-    /// Whether the input moved since it was learned from: without that, a sample is the same equation again.
+    /// Whether the input moved since it was learned from: without that, a sample is the same
+    /// equation again.
     fn moves(&mut self, position: T) -> bool {
         let way = position - self.learned;
         let moved = way.larger(-way) > self.options.movement;

@@ -70,15 +70,17 @@ pub enum Method<T> {
 /// | `gate` | 12 | 0, or from 2 | a reading further off than so many times the usual is not learned from; 0: none is refused |
 /// | `burst` | 8 | from 1 | readings in a row that the gate refuses before it believes them, where they agree |
 ///
-/// **Gate.** Measured less expected is compared with what the last reading that was believed left of its error, so that it is the
-/// surprise that counts and not what the model says wrongly all the time. The usual size of a surprise is the running mean over the
-/// last 64 or so that were believed. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples at rest are
-/// not judged, as nothing is learned from them.
+/// **Gate.** Measured less expected is compared with what the last reading that was believed left
+/// of its error, so that it is the surprise that counts and not what the model says wrongly all the
+/// time. The usual size of a surprise is the running mean over the last 64 or so that were
+/// believed. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples
+/// at rest are not judged, as nothing is learned from them.
 ///
-/// Readings refused one after the other agree where two surprises differ by half of the larger one at most. The one that
-/// completes `burst` of them is learned from, and surprises of its size are usual then. So a wrong reading held for `burst` samples or
-/// longer is learned as a jump of the plant would be: no reading tells the two apart. Where `burst` are refused in a row
-/// without agreeing, as when noise grows, the usual size doubles.
+/// Readings refused one after the other agree where two surprises differ by half of the larger one
+/// at most. The one that completes `burst` of them is learned from, and surprises of its size are
+/// usual then. So a wrong reading held for `burst` samples or longer is learned as a jump of the
+/// plant would be: no reading tells the two apart. Where `burst` are refused in a row without
+/// agreeing, as when noise grows, the usual size doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
@@ -96,10 +98,11 @@ pub struct Adaptation<T> {
     /// worse than these; and the present ones go back to the good ones if their mean square error was more than four times
     /// as large. Weights from within a burst of wrong readings that is shorter than half a trial do not become good.
     pub trial: u32,
-    /// How many times the usual surprise a reading may differ from what was expected, to be learned from. 0 lets every reading pass.
+    /// How many times the usual surprise a reading may differ from what was expected, to be learned
+    /// from. 0 lets every reading pass.
     pub gate: T,
-    /// Readings beyond the gate in a row that are taken for a jump of the plant, where they agree. Fewer are a burst of wrong ones,
-    /// of which nothing is learned.
+    /// Readings beyond the gate in a row that are taken for a jump of the plant, where they agree.
+    /// Fewer are a burst of wrong ones, of which nothing is learned.
     pub burst: u32,
 }
 

@@ -18,12 +18,12 @@ use std::path::Path;
 /// What came of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adapted {
-    /// The model with the last weights that are not on [probation](Adapted::probation). Its [`FitSummary`] is that of these weights
-    /// over the whole recording; the confidence of the off-line model does not hold any more and is gone; what was done
-    /// stands under `adapted`.
+    /// The model with the last weights that are not on [probation](Adapted::probation). Its
+    /// [`FitSummary`] is that of these weights over the whole recording; the confidence of the
+    /// off-line model does not hold any more and is gone; what was done stands under `adapted`.
     pub model: Model,
-    /// Samples at the end whose teaching the model has nothing of, because none that could judge it comes after them: as many as
-    /// [`Adaptation::burst`], none without a [`Adaptation::gate`].
+    /// Samples at the end whose teaching the model has nothing of, because none that could judge it
+    /// comes after them: as many as [`Adaptation::burst`], none without a [`Adaptation::gate`].
     pub probation: usize,
     /// Output predicted for each sample before it was learned from.
     pub output_model: Vec<f64>,
@@ -35,12 +35,14 @@ pub struct Adapted {
     pub whole: Compared,
     /// Errors over its first, second and last third, by the number of samples; none of fewer than three samples.
     pub thirds: Vec<Compared>,
-    /// Errors over the last third without the readings refused: what [`Adapted::worse`] goes by. None where there are no such samples.
+    /// Errors over the last third without the readings refused: what [`Adapted::worse`] goes by.
+    /// None where there are no such samples.
     pub late: Option<Compared>,
-    /// Whether the model that learned ended worse than the one left alone: whether it erred more on the last third, on samples that
-    /// it had not learned from yet, by more than rounding.
+    /// Whether the model that learned ended worse than the one left alone: whether it erred more on
+    /// the last third, on samples that it had not learned from yet, by more than rounding.
     pub worse: bool,
-    /// Errors of the model's weights over the whole recording, run again from its start: they have seen all of it.
+    /// Errors of the model's weights over the whole recording, run again from its start: they have
+    /// seen all of it.
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
@@ -58,8 +60,8 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Whether the model that learned errs more, by more than a part in 10⁹ of the model's range: the two work out the same sum
-    /// in another order.
+    /// Whether the model that learned errs more, by more than a part in 10⁹ of the model's range:
+    /// the two work out the same sum in another order.
     fn is_worse(&self, (off, on): (f64, f64)) -> bool {
         self.adapting.rmse > self.fixed.rmse + 1e-9 * (on - off).abs()
     }
@@ -85,7 +87,8 @@ impl Adapted {
     }
 
     /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
-    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`).
+    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`,
+    /// `frozen`, `rolled-back`, `rejected`).
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.

@@ -39,7 +39,8 @@ pub enum Learner {
 }
 
 /// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording. `Y` is the range of the
-/// recording's output or that of the model, whichever is larger; single readings far from all others are not of the recording's.
+/// recording's output or that of the model, whichever is larger; single readings far from all
+/// others are not of the recording's.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
@@ -219,7 +220,8 @@ impl AdaptOptions {
     }
 }
 
-/// The range of the values without those that lie further outside of the middle nine tenths than these are wide: wrong readings.
+/// The range of the values without those that lie further outside of the middle nine tenths than
+/// these are wide: wrong readings.
 fn usual_range(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -65,8 +65,8 @@ impl Compensator {
         }
     }
 
-    /// Moves to the input and gives the output expected there and what was done with the one measured, if it was shown to a
-    /// model that learns.
+    /// Moves to the input and gives the output expected there and what was done with the one
+    /// measured, if it was shown to a model that learns.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.

@@ -80,7 +80,8 @@ pub struct AdaptationOptions {
     pub leakage: f64,
     /// Levels that the input has to move before a sample is learned from. Default 0.02.
     pub movement: f64,
-    /// How many times the usual surprise a reading may be off to be learned from; 0: any. Default 12.
+    /// How many times the usual surprise a reading may be off to be learned from; 0: any. Default
+    /// 12.
     pub gate: f64,
     /// Readings in a row beyond the gate that are learned from, where they agree. Default 8.
     pub burst: u32,
