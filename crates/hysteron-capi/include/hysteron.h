@@ -262,6 +262,12 @@
 #define HYSTERON_ROLLED_BACK 4
 
 /**
+ * Outcome of a sample: the reading differs too much from what was expected, and has not done so
+ * for long.
+ */
+#define HYSTERON_REJECTED 5
+
+/**
  * An estimator in the caller's memory.
  */
 typedef struct HysteronCoreEstimator HysteronCoreEstimator;
@@ -328,6 +334,14 @@ typedef struct HysteronAdaptation {
    * Levels between two samples that are learned from, from 0.
    */
   double movement;
+  /**
+   * How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+   */
+  double gate;
+  /**
+   * Readings in a row beyond the gate that are learned from, where they agree, from 1.
+   */
+  uint32_t burst;
 } HysteronAdaptation;
 
 /**

@@ -46,6 +46,9 @@ pub const HYSTERON_AT_REST: i32 = 2;
 pub const HYSTERON_FROZEN: i32 = 3;
 /// Outcome of a sample: the last good weights are back.
 pub const HYSTERON_ROLLED_BACK: i32 = 4;
+/// Outcome of a sample: the reading differs too much from what was expected, and has not done so
+/// for long.
+pub const HYSTERON_REJECTED: i32 = 5;
 
 /// What a model is.
 #[repr(C)]
@@ -103,6 +106,10 @@ pub struct HysteronAdaptation {
     pub leakage: f64,
     /// Levels between two samples that are learned from, from 0.
     pub movement: f64,
+    /// How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+    pub gate: f64,
+    /// Readings in a row beyond the gate that are learned from, where they agree, from 1.
+    pub burst: u32,
 }
 
 /// What a sample taught.
@@ -142,6 +149,8 @@ pub unsafe extern "C" fn hysteron_adaptation_default(
             dead_zone: usual.dead_zone,
             leakage: usual.leakage,
             movement: usual.movement,
+            gate: usual.gate,
+            burst: usual.burst,
         };
         filled.adaptation()?;
         options.set(filled);
@@ -178,6 +187,8 @@ impl HysteronAdaptation {
             leakage: self.leakage,
             movement: self.movement,
             trial: self.trial,
+            gate: self.gate,
+            burst: self.burst,
         })
     }
 }
@@ -193,6 +204,7 @@ impl From<Learning<f64>> for HysteronLearning {
                 Outcome::AtRest => HYSTERON_AT_REST,
                 Outcome::Frozen => HYSTERON_FROZEN,
                 Outcome::RolledBack => HYSTERON_ROLLED_BACK,
+                Outcome::Rejected => HYSTERON_REJECTED,
             },
             clipped: clipped(learning.clipped),
         }

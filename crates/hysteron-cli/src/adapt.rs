@@ -1,7 +1,7 @@
 //! `hysteron adapt`
 
 use crate::{Result, args, print, recording, text};
-use hysteron::{Adapted, Columns, Compared, Model, TableWriter};
+use hysteron::{Adapted, Columns, Compared, Errors, Model, TableWriter};
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -43,19 +43,41 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     if let Some(table) = table {
         adapted.write_table(&recording, table)?;
     }
-    file.commit_with(adapted.model.to_json().as_bytes())?;
+    let refused = adapted.worse && !args.force.force;
+    if !refused {
+        file.commit_with(adapted.model.to_json().as_bytes())?;
+    }
     match args.json.json {
-        true => print(&to_json(args, &adapted).to_string()),
-        false => print(&to_text(args, &adapted)),
+        true => print(&to_json(args, &adapted, refused).to_string())?,
+        false => print(&to_text(args, &adapted, refused))?,
+    }
+    match adapted.late {
+        Some(late) if refused => Err(worse(args, &adapted, &late).into()),
+        _ => Ok(()),
     }
 }
 
-fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
+fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
+    let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
+    format!(
+        "{}: the model is not written, for it ended worse: over the last third it erred by {} \
+         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of --table, \
+         try another --method, or keep the model as it is; --force writes it",
+        args.out.display(),
+        error(late.adapting),
+        error(late.fixed)
+    )
+}
+
+fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
     json!({
-        "model": args.out,
+        "model": (!refused).then_some(&args.out),
         "table": args.table,
         "whole": adapted.whole,
         "thirds": adapted.thirds,
+        "late": adapted.late,
+        "worse": adapted.worse,
+        "probation": adapted.probation,
         "again": adapted.again,
         "counts": adapted.counts,
         "drift": adapted.drift,
@@ -63,7 +85,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
     })
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
+fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -91,11 +113,15 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
     let drift = &adapted.drift;
     let mut lines = vec![
         format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} times rolled back",
-            args.out.display(),
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} readings rejected, {} times rolled back",
+            match refused {
+                true => "not written".into(),
+                false => args.out.display().to_string(),
+            },
             counts.learned,
             counts.waiting,
             counts.at_rest,
+            counts.rejected,
             counts.rolled_back
         ),
         text::table(&rows),
@@ -108,6 +134,12 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
             100.0 * drift.moved
         ),
     ];
+    if adapted.probation > 0 {
+        lines.push(format!(
+            "the last {} samples are on probation, as none judge them: the model has nothing of them",
+            adapted.probation
+        ));
+    }
     if counts.outside > 0 {
         lines.push(format!("{} inputs outside the plane", counts.outside));
     }

@@ -98,7 +98,7 @@ pub(crate) struct Json {
 pub(crate) struct Force {
     /// Replace also what hysteron did not make, or what was changed since
     #[arg(long)]
-    force: bool,
+    pub(crate) force: bool,
 }
 
 impl Force {

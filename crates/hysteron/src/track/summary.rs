@@ -175,6 +175,7 @@ impl Trace {
             "out_of_reach",
             "sensor_fault",
             "adapted",
+            "rejected",
         ])?;
         for n in 0..self.time.len() {
             let numbers = [
@@ -193,6 +194,7 @@ impl Trace {
                 status.out_of_reach,
                 status.sensor_fault,
                 status.adapted,
+                status.rejected,
             ];
             let flags = flags.map(|flag| u8::from(flag).to_string());
             table.row(
