@@ -1,4 +1,7 @@
-"""Hostile cases for the command: each class is a generator that lays files into an empty folder and yields a Case."""
+"""Hostile cases for the command: each class is a generator that lays files into an empty folder and yields a Case.
+
+No case names a place outside of its folder for a result: run by root, a fault could replace a device.
+"""
 
 import json
 import math
@@ -14,7 +17,7 @@ SCENARIOS = ROOT / "crates/hysteron/src/track/builtin"
 
 @dataclass
 class Case:
-    """A call of the command, and what it may leave in its folder."""
+    """A call of the command, and the result that it has to leave where it succeeds."""
 
     arguments: list
     out: str | None = None
@@ -48,8 +51,11 @@ def recording():
     return "\n".join(rows).replace(";", ",").encode() + b"\n"
 
 
-PIECES = [b'"', b'""', b",", b";", b"\t", b"\n", b"\r", b"\r\n", b"\0", b"\xef\xbb\xbf", b"\xff\xfe", b"\xe9", b"#", b"%", b"1e999", b"-",
-          b"NaN", b"inf", b"1,5", b"1 234,5", b"0x10", b"9" * 400, b"," * 3000, b'"' * 500, b"\n" * 500, b"\x1b[2J", "\u202e\u00b0".encode()]
+PIECES = [
+    b'"', b'""', b",", b";", b"\t", b"\n", b"\r", b"\r\n", b"\0", b"\xef\xbb\xbf", b"\xff\xfe", b"\xe9", b"#", b"%", b"-",
+    b"1e999", b"NaN", b"inf", b"1,5", b"1 234,5", b"0x10", b"9" * 400, b"," * 3000, b'"' * 500, b"\n" * 500, b"\x1b[2J",
+    "\u202e\u00b0".encode(),
+]
 
 
 def mutated(rng, data, pieces=()):
@@ -108,8 +114,10 @@ def binary(*names):
     return generate
 
 
-WRONG = [None, True, "", "NaN", "Infinity", "1e999", -1, 0, 1, 0.5, 2**31, 2**53 + 1, 2**64, -2**63, 1e308, 5e-324, [], {}, [None], [[]],
-         "\u0000", "../../x", "x" * 100_000, [1e308] * 15, [-1.0] * 15, list(range(100_000))]
+WRONG = [
+    None, True, "", "NaN", "Infinity", "1e999", -1, 0, 1, 0.5, 2**31, 2**53 + 1, 2**64, -2**63, 1e308, 5e-324, [], {},
+    [None], [[]], "\u0000", "../../x", "x" * 100_000, [1e308] * 15, [-1.0] * 15, list(range(100_000)),
+]
 
 
 def places(value, at=()):
@@ -159,7 +167,8 @@ def model_files(rng):
 
 def scenarios(rng):
     """Each line of each built-in scenario, cut to two short runs, left out, doubled or with a wrong value."""
-    wrong = ["-1", "0", "1e9", "1e308", "5e-324", "nan", "inf", "-inf", '""', '"x"', "[]", "[1]", "{}", "true", "9223372036854775807", "1979-05-27"]
+    wrong = ["-1", "0", "1e9", "1e308", "5e-324", "nan", "inf", "-inf", '""', '"x"', "[]", "[1]", "{}", "true",
+             "9223372036854775807", "1979-05-27"]
     while True:
         lines = rng.choice(sorted(SCENARIOS.glob("*.toml"))).read_text()
         lines = re.sub(r"(?m)^seeds = .*", "seeds = 1", lines)
@@ -168,9 +177,10 @@ def scenarios(rng):
         for _ in range(rng.choice((1, 1, 2))):
             n = rng.choice(settings)
             key, found, _ = lines[n].partition(" = ")
-            lines[n] = rng.choice(("", f"{lines[n]}\n{lines[n]}", f"{key}x{found}1", *[f"{key} = {value}" for value in wrong]))
-        case = Case(["track", "given.toml", "-o", "out"], "out", files(given_toml="\n".join(lines).encode()))
-        yield case
+            others = [f"{key} = {value}" for value in wrong]
+            lines[n] = rng.choice(("", f"{lines[n]}\n{lines[n]}", f"{key}x{found}1", *others))
+        set_up = files(given_toml="\n".join(lines).encode())
+        yield Case(["track", "given.toml", "-o", "out"], "out", set_up)
 
 
 def options(hysteron):
@@ -185,19 +195,21 @@ def options(hysteron):
 def arguments(hysteron):
     """Subcommands with any of their options and words, in any order."""
     known = options(hysteron)
-    words = ["model.json", "table.csv", "nothing.csv", "-", "--", "", ".", "-1", "0", "1", "5", "20,80", "80,20", "nan", "inf", "1e999", "auto", "off", "on",
-             "temperature", "displacement", "time", "x" * 5000, "\u00b0", "mkp", "relay", "4294967296", "99999999999999999999", ",", "1,2,3"]
+    words = ["model.json", "table.csv", "nothing.csv", "-", "--", "", ".", "-1", "0", "1", "5", "20,80", "80,20", "nan", "inf",
+             "1e999", "auto", "off", "on", "temperature", "displacement", "time", "x" * 5000, "\u00b0", "mkp", "relay",
+             "4294967296", "99999999999999999999", ",", "1,2,3"]
+    usual = "model.json table.csv --input temperature --output displacement --target displacement".split()
 
     def generate(rng):
         while True:
             name = rng.choice(sorted(known))
-            given = ["model.json", "table.csv", "--input", "temperature", "--output", "displacement", "--target", "displacement"]
-            given = [word for word in given if rng.random() < 0.7]
+            given = [word for word in usual if rng.random() < 0.7]
             for _ in range(rng.randrange(5)):
                 given.insert(rng.randrange(len(given) + 1), rng.choice([*known[name], *words]))
             # Where it writes is known, and what takes minutes is not asked for.
             given = [word for word in given if word not in ("--force", "--bootstrap", "--runs")]
-            yield Case([name, *given, *rng.choice(([], ["-o", "out"], ["-o", "out.csv"]))], "*", files(table_csv=recording()))
+            out = rng.choice(([], ["-o", "out"], ["-o", "out.csv"]))
+            yield Case([name, *given, *out], None, files(table_csv=recording()))
 
     return generate
 
@@ -205,22 +217,25 @@ def arguments(hysteron):
 def situations(rng):
     """What a file system can have in store for the place that is written to, or read from."""
     table = recording()
+    read = "table.csv --input temperature".split()
+    both = [*read, "--output", "displacement"]
     writers = [
-        lambda out: ["simulate", "model.json", "table.csv", "--input", "temperature", "-o", out],
-        lambda out: ["invert", "model.json", "table.csv", "--target", "displacement", "-o", out],
-        lambda out: ["prepare", "table.csv", "--input", "temperature", "--output", "displacement", "-o", out],
-        lambda out: ["fit", "table.csv", "--input", "temperature", "--output", "displacement", "--levels", "5", "-o", out],
-        lambda out: ["evaluate", "model.json", "table.csv", "--input", "temperature", "--output", "displacement", "--report", out],
-        lambda out: ["export", "c", "model.json", "-o", out],
-        lambda out: ["export", "fmu", "model.json", "-o", out],
-        lambda out: ["demo", "-o", out],
+        ["simulate", "model.json", *read, "-o"],
+        ["invert", "model.json", "table.csv", "--target", "displacement", "-o"],
+        ["prepare", *both, "-o"],
+        ["fit", *both, "--levels", "5", "-o"],
+        ["evaluate", "model.json", *both, "--report"],
+        ["export", "c", "model.json", "-o"],
+        ["export", "fmu", "model.json", "-o"],
+        ["demo", "-o"],
     ]
 
     def lay(change=lambda folder: None):
-        def both(folder):
+        def whole(folder):
             files(table_csv=table)(folder)
             change(folder)
-        return both
+
+        return whole
 
     def put(folder, name, data=b"not made by the command\n"):
         (folder / name).write_bytes(data)
@@ -229,11 +244,14 @@ def situations(rng):
         (folder / name).symlink_to(to)
 
     wrong_places = [
-        ("table.csv", lay()), ("model.json", lay()), (".", lay()), ("no/such/folder/out.csv", lay()), ("table.csv/out.csv", lay()),
-        ("x" * 300 + ".csv", lay()), ("out.csv", lay(lambda f: put(f, "out.csv"))), ("out.csv", lay(lambda f: (f / "out.csv").mkdir())),
-        ("loop.csv", lay(lambda f: linked(f, "loop.csv", "loop.csv"))), ("link.csv", lay(lambda f: linked(f, "link.csv", "table.csv"))),
-        ("gone.csv", lay(lambda f: linked(f, "gone.csv", "no/such/file"))), ("/dev/full", lay()), ("out.xlsx", lay()), ("out.mat", lay()),
-        ("out", lay(lambda f: put(f, "out"))), ("", lay()), ("/proc/nothing", lay()),
+        *((place, lay()) for place in ("table.csv", ".", "", "no/such/folder/out.csv", "table.csv/out.csv", "out.xlsx",
+                                       "out.mat", "out.parquet", "x" * 300 + ".csv")),
+        ("out.csv", lay(lambda f: put(f, "out.csv"))),
+        ("out", lay(lambda f: put(f, "out"))),
+        ("out.csv", lay(lambda f: (f / "out.csv").mkdir())),
+        ("loop.csv", lay(lambda f: linked(f, "loop.csv", "loop.csv"))),
+        ("link.csv", lay(lambda f: linked(f, "link.csv", "table.csv"))),
+        ("gone.csv", lay(lambda f: linked(f, "gone.csv", "no/such/file"))),
     ]
     while True:
         write = rng.choice(writers)
@@ -241,10 +259,9 @@ def situations(rng):
             case 0:
                 # A disk that is full after so many bytes.
                 limits = {"file_size": rng.choice((0, 1, 100, 512, 4096, 20_000))}
-                yield Case(write("out.csv"), "*", lay(), limits)
+                yield Case([*write, "out.csv"], None, lay(), limits)
             case 1:
-                arguments = [word for word in write("out.csv")[:-2]]
-                yield Case(arguments, None, lay(), stdout="/dev/full")
+                yield Case(write[:-1], None, lay(), stdout="/dev/full")
             case 2:
                 gone = rng.choice(("table.csv", "model.json"))
                 becomes = rng.choice((lambda p: p.mkdir(), lambda p: p.touch(), lambda p: p.symlink_to(p.name), lambda p: None))
@@ -253,7 +270,7 @@ def situations(rng):
                     (folder / gone).unlink()
                     becomes(folder / gone)
 
-                yield Case(write("out.csv"), "*", lay(change))
+                yield Case([*write, "out.csv"], None, lay(change))
             case _:
                 place, set_up = rng.choice(wrong_places)
-                yield Case(write(place), "*", set_up)
+                yield Case([*write, place], None, set_up)

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Runs hostile cases through the command, and prints what went wrong as a table: class, cases, faults.
 
-    fuzz/hostile.py [CASES [SEED [HYSTERON]]]     of each class; the command, by default target/release/hysteron
+    fuzz/hostile.py [CASES] [--seed N] [--hysteron COMMAND]     by default 200 of each class, target/release/hysteron
 
 A fault is a panic, a signal, more than SECONDS or MEMORY, an exit code that there is not, a failure without words or with
 something left behind, a file that was there and changed without being asked for, or success with a result that is not whole.
 Calls of the core and of the C interface are drawn by their fuzz targets (fuzz/run builds them).
 """
 
+import argparse
 import csv
 import json
 import os
@@ -55,15 +56,18 @@ def not_whole(path):
             rows = list(csv.reader(text))
         if not rows or any(len(row) != len(rows[0]) for row in rows):
             return "rows of different length"
-        numbers = [n for n, name in enumerate(rows[0]) if name in ("output_model", "input_model")]
-        # A list in brackets is what Python would make of such a number.
-        if any(row[n] in ("NaN", "inf", "-inf", "") for row in rows[1:] for n in numbers[-1:]):
+        added = [n for n, name in enumerate(rows[0]) if name in ("output_model", "input_model")]
+        if added and any(row[added[-1]] in ("NaN", "inf", "-inf", "") for row in rows[1:]):
             return "a result that is no number"
     if path.suffix == ".json":
         try:
             json.loads(path.read_text())
         except ValueError:
             return "JSON that is not whole"
+    if path.suffix == ".parquet" and not (path.read_bytes()[:4] == path.read_bytes()[-4:] == b"PAR1"):
+        return "Parquet that is none"
+    if path.suffix in (".xlsx", ".mat"):
+        return "a format that is not written"
     return None
 
 
@@ -79,9 +83,10 @@ def fault(case, done, before, folder):
         return f"{changed[0]} changed"
     new = [name for name in after if name not in before]
     if done.returncode == 0:
-        wanted = case.out is None or case.out == "*" or case.out in new
+        if case.out and case.out not in new:
+            return "success, and no result"
         broken = [not_whole(folder / name) for name in new if after[name] is not None]
-        return next(filter(None, broken), None) if wanted else "success, and no result"
+        return next(filter(None, broken), None)
     if not done.stderr.strip():
         return "a failure without words"
     return f"{new[0]} left behind" if new else None
@@ -95,8 +100,9 @@ def run(hysteron, case):
         before = contents(folder)
         with open(case.stdout or os.devnull, "wb") as stdout:
             try:
-                done = subprocess.run([hysteron, *case.arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=stdout,
-                                      stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=limited(case.limits), check=False)
+                done = subprocess.run(
+                    [hysteron, *case.arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=stdout,
+                    stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=limited(case.limits), check=False)
             except subprocess.TimeoutExpired:
                 return f"more than {SECONDS} s"
         return fault(case, done, before, folder)
@@ -125,8 +131,11 @@ def through_a_target(name, count, seed, target):
         subprocess.run([cases.ROOT / "tools/skipped", why], check=True)
         return None
     with tempfile.TemporaryDirectory() as artifacts:
-        done = subprocess.run([found[0], f"-runs={count}", f"-seed={seed + 1}", f"-artifact_prefix={artifacts}/", cases.ROOT / f"fuzz/corpus/{name}"],
-                              capture_output=True, text=True, cwd=artifacts, check=False)
+        # libFuzzer takes a seed of 0 for any.
+        flags = [f"-runs={count}", f"-seed={seed + 1}", f"-artifact_prefix={artifacts}/"]
+        done = subprocess.run(
+            [found[0], *flags, cases.ROOT / f"fuzz/corpus/{name}"],
+            capture_output=True, text=True, cwd=artifacts, check=False)
     if done.returncode != 0:
         print(f"{name}: {done.stderr[-2000:]}", file=sys.stderr)
     executions = re.search(r"Done (\d+) runs", done.stderr)
@@ -134,9 +143,15 @@ def through_a_target(name, count, seed, target):
 
 
 def main():
-    count, seed = (int(word) for word in [*sys.argv[1:3], "200", "0"][:2]) if len(sys.argv) != 2 else (int(sys.argv[1]), 0)
-    target = Path(subprocess.run([cases.ROOT / "tools/target"], capture_output=True, text=True, check=True).stdout.strip())
-    hysteron = Path(sys.argv[3] if len(sys.argv) > 3 else target / "release/hysteron").resolve()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("cases", type=int, nargs="?", default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--hysteron", type=Path)
+    given = parser.parse_args()
+    count, seed = given.cases, given.seed
+    told = subprocess.run([cases.ROOT / "tools/target"], capture_output=True, text=True, check=True)
+    target = Path(told.stdout.strip())
+    hysteron = (given.hysteron or target / "release/hysteron").resolve()
     if not hysteron.exists():
         sys.exit(f"{hysteron} is missing: cargo build --release, or name the command")
     fixtures = {

@@ -17,7 +17,14 @@ pub enum Handle {
 
 #[derive(Arbitrary, Debug, Clone)]
 pub enum Call {
-    ModelNew { kind: i8, min: Number, max: Number, levels: u8, weights: Array, sign: i8 },
+    ModelNew {
+        kind: i8,
+        min: Number,
+        max: Number,
+        levels: u8,
+        weights: Array,
+        sign: i8,
+    },
     ModelParse(String),
     ModelFree(Handle),
     ModelInfo(Handle),
@@ -37,9 +44,24 @@ pub enum Call {
     AdaptiveStep(Handle, Number, Number),
     AdaptivePredict(Handle, Number, Array),
     AdaptiveModel(Handle),
-    CoreModel { memory: Slot, kind: i8, min: Number, max: Number, levels: u8, weights: Array },
-    CoreState { model: Slot, memory: Slot },
-    CoreEstimator { model: Slot, memory: Slot, method: i8, weights: Array },
+    CoreModel {
+        memory: Slot,
+        kind: i8,
+        min: Number,
+        max: Number,
+        levels: u8,
+        weights: Array,
+    },
+    CoreState {
+        model: Slot,
+        memory: Slot,
+    },
+    CoreEstimator {
+        model: Slot,
+        memory: Slot,
+        method: i8,
+        weights: Array,
+    },
     CoreStep(Slot, Slot, Number, Array),
     CoreRun(Slot, Slot, Array, Array),
     CoreInverseStep(Slot, Slot, Number, i8, Number, Array),
@@ -58,7 +80,10 @@ pub fn run(calls: &[Call]) {
         let code = user.call(call);
         let known = matches!(code, 0..=11 | 20..=31 | 100..=105);
         assert!(known, "{code} of {call:?}");
-        assert!(code == HYSTERON_OK || user.room.numbers == before, "{code}: {call:?} wrote");
+        assert!(
+            code == HYSTERON_OK || user.room.numbers == before,
+            "{code}: {call:?} wrote"
+        );
     }
     user.free();
 }
@@ -100,16 +125,37 @@ impl User {
     fn call(&mut self, call: &Call) -> i32 {
         // SAFETY: every pointer is null or into the room, which has as many elements from there on as are told; only
         // the interface writes into the slots, whose objects it gave out.
-        unsafe { self.handles(call).or_else(|| self.core(call)).expect("one of both has it") }
+        unsafe {
+            self.handles(call)
+                .or_else(|| self.core(call))
+                .expect("one of both has it")
+        }
     }
 
     unsafe fn handles(&mut self, call: &Call) -> Option<i32> {
         Some(match *call {
-            Call::ModelNew { kind, min, max, levels, weights, sign } => self.made(|user, to| unsafe {
+            Call::ModelNew {
+                kind,
+                min,
+                max,
+                levels,
+                weights,
+                sign,
+            } => self.made(|user, to| unsafe {
                 let (weights, count) = user.room.doubles(weights);
                 let (kind, levels) = (i32::from(kind), usize::from(levels % 8));
                 let sign = i32::from(sign);
-                hysteron_model_new(kind, min.get(), max.get(), levels, weights, count, 1.0, sign, to)
+                hysteron_model_new(
+                    kind,
+                    min.get(),
+                    max.get(),
+                    levels,
+                    weights,
+                    count,
+                    1.0,
+                    sign,
+                    to,
+                )
             }),
             Call::ModelParse(ref text) => self.made(|_, to| {
                 let Ok(text) = std::ffi::CString::new(text.as_str()) else {
@@ -148,7 +194,8 @@ impl User {
                 hysteron_inverse_step(state, target, heading, tolerance.get(), to, &mut 0)
             },
             Call::InverseRun(handle, target, heading, tolerance, to, status) => unsafe {
-                let ((target, a), (heading, b)) = (self.room.doubles(target), self.room.ints(heading));
+                let ((target, a), (heading, b)) =
+                    (self.room.doubles(target), self.room.ints(heading));
                 let ((to, c), (status, d)) = (self.room.doubles(to), self.room.ints(status));
                 let (state, count) = (self.handle(handle), a.min(b).min(c).min(d));
                 hysteron_inverse_run(state, target, heading, tolerance.get(), to, status, count)
@@ -158,7 +205,8 @@ impl User {
                 hysteron_headings(target, a.min(b), band.get(), to)
             },
             Call::Save(handle, points, input) => unsafe {
-                let ((points, capacity), (input, _)) = (self.room.doubles(points), self.room.doubles(input));
+                let ((points, capacity), (input, _)) =
+                    (self.room.doubles(points), self.room.doubles(input));
                 hysteron_state_save(self.handle(handle), points, capacity, &mut 0, input)
             },
             Call::Restore(handle, points, input) => unsafe {
@@ -190,21 +238,44 @@ impl User {
     unsafe fn core(&mut self, call: &Call) -> Option<i32> {
         let room = &mut self.room;
         Some(match *call {
-            Call::CoreModel { memory, kind, min, max, levels, weights } => unsafe {
-                let ((weights, count), (memory, bytes)) = (room.doubles(weights), room.memory(memory));
-                let (kind, levels, mut to) = (i32::from(kind), usize::from(levels % 8), std::ptr::null_mut());
+            Call::CoreModel {
+                memory,
+                kind,
+                min,
+                max,
+                levels,
+                weights,
+            } => unsafe {
+                let ((weights, count), (memory, bytes)) =
+                    (room.doubles(weights), room.memory(memory));
+                let (kind, levels, mut to) = (
+                    i32::from(kind),
+                    usize::from(levels % 8),
+                    std::ptr::null_mut(),
+                );
                 let (min, max) = (min.get(), max.get());
-                hysteron_core_model_init(memory, bytes, kind, min, max, levels, weights, count, &mut to)
+                hysteron_core_model_init(
+                    memory, bytes, kind, min, max, levels, weights, count, &mut to,
+                )
             },
             Call::CoreState { model, memory } => unsafe {
                 let (memory, bytes) = room.memory(memory);
                 let mut to = std::ptr::null_mut();
                 hysteron_core_state_init(room.object(model), memory, bytes, &mut to)
             },
-            Call::CoreEstimator { model, memory, method, weights } => unsafe {
-                let ((weights, count), (memory, bytes)) = (room.doubles(weights), room.memory(memory));
-                let (model, options, mut to) = (room.object(model), options(method), std::ptr::null_mut());
-                hysteron_core_estimator_init(model, &options, weights, count, 0.0, memory, bytes, &mut to)
+            Call::CoreEstimator {
+                model,
+                memory,
+                method,
+                weights,
+            } => unsafe {
+                let ((weights, count), (memory, bytes)) =
+                    (room.doubles(weights), room.memory(memory));
+                let (model, options, mut to) =
+                    (room.object(model), options(method), std::ptr::null_mut());
+                hysteron_core_estimator_init(
+                    model, &options, weights, count, 0.0, memory, bytes, &mut to,
+                )
             },
             Call::CoreStep(model, state, input, to) => unsafe {
                 let (to, _) = room.doubles(to);
@@ -218,7 +289,8 @@ impl User {
             Call::CoreInverseStep(model, state, target, heading, tolerance, to) => unsafe {
                 let (to, _) = room.doubles(to);
                 let (model, state) = (room.object(model), room.object(state));
-                let (target, heading, tolerance) = (target.get(), i32::from(heading), tolerance.get());
+                let (target, heading, tolerance) =
+                    (target.get(), i32::from(heading), tolerance.get());
                 hysteron_core_inverse_step(model, state, target, heading, tolerance, to, &mut 0)
             },
             Call::CoreSave(state, points, input) => unsafe {
@@ -232,9 +304,20 @@ impl User {
             },
             Call::CoreLearn(estimator, model, state, input, measured) => unsafe {
                 let mut learning = std::mem::MaybeUninit::uninit();
-                let (estimator, model, state) = (room.object(estimator), room.object(model), room.object(state));
+                let (estimator, model, state) = (
+                    room.object(estimator),
+                    room.object(model),
+                    room.object(state),
+                );
                 let (input, measured) = (input.get(), measured.get());
-                hysteron_core_estimator_step(estimator, model, state, input, measured, learning.as_mut_ptr())
+                hysteron_core_estimator_step(
+                    estimator,
+                    model,
+                    state,
+                    input,
+                    measured,
+                    learning.as_mut_ptr(),
+                )
             },
             Call::CoreRebase(model, state) => unsafe {
                 hysteron_core_state_rebase(room.object(model), room.object(state))

@@ -1,7 +1,9 @@
 //! Models and inputs as they are drawn.
 
 use arbitrary::Arbitrary;
-use hysteron_core::{Model, Operator, Plane, State, Turn, operator_count, table_len, turn_capacity};
+use hysteron_core::{
+    Model, Operator, Plane, State, Turn, operator_count, table_len, turn_capacity,
+};
 
 /// A number: mostly a plain one, sometimes any that there is.
 #[derive(Arbitrary, Debug, Clone, Copy)]

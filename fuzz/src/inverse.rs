@@ -65,7 +65,11 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
     let policy = match heading {
         None => Policy::Hold { tolerance },
         Some(rising) => Policy::Anticipate {
-            heading: if rising { Direction::Rising } else { Direction::Falling },
+            heading: if rising {
+                Direction::Rising
+            } else {
+                Direction::Falling
+            },
             tolerance,
         },
     };
@@ -83,8 +87,8 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
     let plane = model.plane();
     // The input is rounded to its own unit: on a plane that is narrow for its distance from zero that is a part of a step.
     let largest = plane.max().abs().max(plane.bottom().abs());
-    let rounding = (1e-12 + 4.0 * f64::EPSILON * largest / plane.step()) * (high - low)
-        + f64::MIN_POSITIVE;
+    let rounding =
+        (1e-12 + 4.0 * f64::EPSILON * largest / plane.step()) * (high - low) + f64::MIN_POSITIVE;
     let allowed = tolerance.max(0.0) + rounding;
     let reached = model.output(state);
     match solution.status {
@@ -92,12 +96,22 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
         Status::High => assert!(target > high, "{target:e} is not above {high:e}"),
         // It jumps to the target or past it, to an edge of its own where the target is to turn.
         Status::Ok if model.operator() == Operator::Relay => {
-            let short = if target > now { target - reached } else { reached - target };
-            assert!(heading.is_some() || short <= allowed, "{reached:e} for {target:e}");
+            let short = if target > now {
+                target - reached
+            } else {
+                reached - target
+            };
+            assert!(
+                heading.is_some() || short <= allowed,
+                "{reached:e} for {target:e}"
+            );
         }
         Status::Ok => {
             let off = (reached - target).abs();
-            assert!(off <= allowed, "{reached:e} for {target:e}: off by {off:e} of {allowed:e}");
+            assert!(
+                off <= allowed,
+                "{reached:e} for {target:e}: off by {off:e} of {allowed:e}"
+            );
         }
     }
 }

@@ -16,8 +16,15 @@ fn runs(model: &Model) {
     assert_eq!(again.to_json(), text);
     let plane = model.plane();
     let mut state = model.start();
-    for input in [plane.max(), plane.min(), 0.5 * plane.min() + 0.5 * plane.max()] {
-        let output = model.step(&mut state, input).expect("a finite input").output;
+    for input in [
+        plane.max(),
+        plane.min(),
+        0.5 * plane.min() + 0.5 * plane.max(),
+    ] {
+        let output = model
+            .step(&mut state, input)
+            .expect("a finite input")
+            .output;
         assert!(output.is_finite(), "{output} at {input}");
     }
     if let Ok(inverse) = model.inverse() {

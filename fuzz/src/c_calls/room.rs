@@ -85,7 +85,9 @@ impl Room {
     }
 
     pub fn memory(&mut self, slot: Slot) -> (*mut c_void, usize) {
-        let bytes = 8 * slot.words.map_or(WORDS - 1, |words| usize::from(words) % WORDS);
+        let bytes = 8 * slot
+            .words
+            .map_or(WORDS - 1, |words| usize::from(words) % WORDS);
         (self.object(slot), bytes)
     }
 
