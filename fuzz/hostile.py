@@ -49,25 +49,32 @@ def contents(folder):
     return found
 
 
-def not_whole(path):
-    """What a result lacks."""
-    if path.suffix == ".csv":
-        with path.open(newline="", encoding="utf-8", errors="replace") as text:
-            rows = list(csv.reader(text))
-        if not rows or any(len(row) != len(rows[0]) for row in rows):
-            return "rows of different length"
-        added = [n for n, name in enumerate(rows[0]) if name in ("output_model", "input_model")]
-        if added and any(row[added[-1]] in ("NaN", "inf", "-inf", "") for row in rows[1:]):
-            return "a result that is no number"
-    if path.suffix == ".json":
+def not_whole_table(path):
+    """What a table lacks that a command has written."""
+    if path.suffix in (".xlsx", ".mat"):
+        return "a format that is not written"
+    if path.suffix == ".parquet":
+        data = path.read_bytes()
+        return None if data[:4] == data[-4:] == b"PAR1" else "Parquet that is none"
+    with path.open(newline="", encoding="utf-8", errors="replace") as text:
+        rows = list(csv.reader(text))
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        return "rows of different length"
+    added = [n for n, name in enumerate(rows[0]) if name in ("output_model", "input_model")]
+    if added and any(row[added[-1]] in ("NaN", "inf", "-inf", "") for row in rows[1:]):
+        return "a result that is no number"
+    return None
+
+
+def not_whole(command, path):
+    """The same for any result."""
+    if command in ("simulate", "invert", "prepare"):
+        return not_whole_table(path)
+    if command == "fit":
         try:
             json.loads(path.read_text())
         except ValueError:
             return "JSON that is not whole"
-    if path.suffix == ".parquet" and not (path.read_bytes()[:4] == path.read_bytes()[-4:] == b"PAR1"):
-        return "Parquet that is none"
-    if path.suffix in (".xlsx", ".mat"):
-        return "a format that is not written"
     return None
 
 
@@ -85,7 +92,7 @@ def fault(case, done, before, folder):
     if done.returncode == 0:
         if case.out and case.out not in new:
             return "success, and no result"
-        broken = [not_whole(folder / name) for name in new if after[name] is not None]
+        broken = [not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None]
         return next(filter(None, broken), None)
     if not done.stderr.strip():
         return "a failure without words"

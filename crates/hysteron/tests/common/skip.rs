@@ -11,7 +11,11 @@ pub fn skipped(why: &str) {
     let line = format!("skipped: {}: {why}\n", thread.name().unwrap_or("a test"));
     eprint!("{line}");
     if let Some(path) = std::env::var_os("HYSTERON_SKIPPED") {
-        let mut file = OpenOptions::new().create(true).append(true).open(path).unwrap();
+        let mut file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(path)
+            .unwrap();
         // Tests run side by side: one write, so that the line stays whole.
         file.write_all(line.as_bytes()).unwrap();
     }
