@@ -217,6 +217,11 @@
 #define HYSTERON_HIGH 1
 
 /**
+ * The target lies inside a jump of a relay model: the output lies beyond it.
+ */
+#define HYSTERON_PASSED 2
+
+/**
  * Method of adaptation: normalised gradient.
  */
 #define HYSTERON_GRADIENT 0
@@ -706,7 +711,7 @@ int32_t hysteron_run(uint64_t state,
 
 /**
  * Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
- * `HYSTERON_LOW` or `HYSTERON_HIGH`.
+ * `HYSTERON_LOW`, `HYSTERON_HIGH` or `HYSTERON_PASSED`.
  *
  * `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
  * how far a target may go back and still stand still, in the output's unit.

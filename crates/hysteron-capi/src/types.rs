@@ -26,6 +26,8 @@ pub const HYSTERON_INSIDE: i32 = 0;
 pub const HYSTERON_LOW: i32 = -1;
 /// The target lies above every output, or the input above the plane.
 pub const HYSTERON_HIGH: i32 = 1;
+/// The target lies inside a jump of a relay model: the output lies beyond it.
+pub const HYSTERON_PASSED: i32 = 2;
 
 /// Method of adaptation: normalised gradient.
 pub const HYSTERON_GRADIENT: i32 = 0;
@@ -239,12 +241,9 @@ pub(crate) fn heading(heading: Direction) -> i32 {
     }
 }
 
+/// The numbers of `HYSTERON_INSIDE`, `HYSTERON_LOW`, `HYSTERON_HIGH` and `HYSTERON_PASSED`.
 pub(crate) fn status(status: Status) -> i32 {
-    match status {
-        Status::Ok => HYSTERON_INSIDE,
-        Status::Low => HYSTERON_LOW,
-        Status::High => HYSTERON_HIGH,
-    }
+    status.number().into()
 }
 
 pub(crate) fn clipped(clipped: Option<Clipped>) -> i32 {

@@ -94,8 +94,14 @@ fn through(
             eprintln!("hysteron: {count} of {} {what}", counts.samples);
         }
     }
+    if counts.passed > 0 {
+        eprintln!(
+            "hysteron: {} of {} targets lie inside a jump of the relay model: the output passes them",
+            counts.passed, counts.samples
+        );
+    }
     if json {
-        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "table": out}).to_string())?;
+        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "passed": counts.passed, "table": out}).to_string())?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use common::reference::Number;
 use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Sign};
 use hysteron_core::{
-    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Status, Turn,
+    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Turn,
     estimator_len, table_len, turn_capacity,
 };
 use hysteron_export::CReal;
@@ -126,12 +126,11 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (Strin
                 let raw = sign * target - estimator.offset();
                 let inverse = model.inverse().unwrap();
                 let solution = inverse.step(&mut compensator, raw, policy).unwrap();
-                let status = match solution.status {
-                    Status::Ok => 0,
-                    Status::Low => -1,
-                    Status::High => 1,
+                let status = match falls {
+                    true => solution.status.mirrored(),
+                    false => solution.status,
                 };
-                let status = if falls { -status } else { status };
+                let status = status.number();
                 writeln!(answers, "i 0 {} {status}", solution.input.hex()).unwrap();
             }
             Call::Freeze(frozen) => {

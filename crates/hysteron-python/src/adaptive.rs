@@ -3,7 +3,6 @@
 use crate::adapt::adapt_options;
 use crate::array::samples;
 use crate::error::{Raise, finite, number};
-use crate::inverse::side_of;
 use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
@@ -244,7 +243,8 @@ impl Adaptive {
     /// -------
     /// input : float
     /// status : int
-    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every
+    ///     output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
@@ -267,7 +267,7 @@ impl Adaptive {
         let (target, policy) = (number("target", target)?, policy(heading, band)?);
         let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target, policy);
         let solution = self.inner.with(py, solve).raise()?;
-        Ok((solution.input, side_of(solution.status)))
+        Ok((solution.input, solution.status.number()))
     }
 
     /// Let the inverse set out from where the measured input is.

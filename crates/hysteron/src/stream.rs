@@ -19,6 +19,8 @@ pub struct Counts {
     pub high: u64,
     /// Inputs below or targets short of the range, taken as its lower end.
     pub low: u64,
+    /// Targets inside a jump of a relay model, which the output passes.
+    pub passed: u64,
 }
 
 /// What a simulation reads from a table, and what it adds to it.
@@ -263,18 +265,14 @@ struct Inverting<'m, 'w> {
 impl Inverting<'_, '_> {
     fn row(&mut self, row: &Row, target: f64, policy: Policy<f64>) -> Result<()> {
         let solution = self.inverse.step(&mut self.state, target, policy)?;
-        let status = match solution.status {
-            Status::Ok => "ok",
-            Status::Low => {
-                self.sink.counts.low += 1;
-                "low"
-            }
-            Status::High => {
-                self.sink.counts.high += 1;
-                "high"
-            }
-        };
-        self.sink.write(row, &[&solution.input.to_string(), status])
+        let hysteron_core::Solution { input, status } = solution;
+        match status {
+            Status::Ok => {}
+            Status::Low => self.sink.counts.low += 1,
+            Status::High => self.sink.counts.high += 1,
+            Status::Passed => self.sink.counts.passed += 1,
+        }
+        self.sink.write(row, &[&input.to_string(), status.name()])
     }
 }
 

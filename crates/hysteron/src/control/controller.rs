@@ -3,7 +3,7 @@
 use super::pid::limited;
 use super::watch::{Sight, Watch};
 use super::{LoopStatus, Pid, Reading, Rest, Scheme};
-use crate::{Direction, Result, Status};
+use crate::{Direction, Result};
 
 /// What the output should be, and where it goes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -217,7 +217,7 @@ impl Controller {
         let feedforward = match &mut scheme.compensator {
             Some(compensator) => {
                 let solution = compensator.solve(target.output, heading, scheme.tolerance)?;
-                status.out_of_reach = solution.status != Status::Ok;
+                status.out_of_reach = solution.status.is_out_of_reach();
                 solution.input
             }
             None => scheme.bias,
