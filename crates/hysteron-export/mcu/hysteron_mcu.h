@@ -4,7 +4,10 @@
  * state is one struct and one array of the caller; each actuator needs its own, and several threads need a state each.
  *
  * Same digits as the library on a host. That asks of the compiler what C99's Annex F asks:
- *   - no fused multiply-add (GCC and Clang: -ffp-contract=off), no -ffast-math or what else reorders sums,
+ *   - no fused multiply-add. The source forbids it by pragma. GCC obeys under every flag, Clang under every one but
+ *     -ffp-contract=fast, which nothing in the source can tell; elsewhere use the flag that does what
+ *     -ffp-contract=off does there,
+ *   - no -ffast-math or what else reorders sums,
  *   - results rounded to their type (FLT_EVAL_METHOD 0; on 32-bit x86: -msse2 -mfpmath=sse),
  *   - rounding to nearest, and subnormal numbers kept (both are so after the reset of a Cortex-M).
  * Where the compiler tells of another choice, compilation stops.
