@@ -38,7 +38,7 @@ def run(*command, **options):
 def has(tool, package):
     found = shutil.which(tool)
     if not found:
-        print(f"   skipped: there is no `{tool}` (apt-get install {package})")
+        run(ROOT / "tools/skipped", f"fmu/check.py: there is no `{tool}` (apt-get install {package})")
         SKIPPED.append(tool)
     return found
 

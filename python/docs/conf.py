@@ -5,7 +5,7 @@ absent ones are left out.
 """
 
 import os
-import sys
+import subprocess
 from pathlib import Path
 
 from docutils.nodes import SkipNode
@@ -48,7 +48,8 @@ os.environ.pop("MPLBACKEND", None)  # any other than the notebooks' own would le
 if not DATA.is_dir():
     absent = [page for page in sorted(HERE.glob("gallery/*.md")) if "HYSTERON_DATA" in page.read_text("utf-8")]
     for page in absent:
-        print(f"left out, as there are no recordings in {DATA}: {page.name}", file=sys.stderr)
+        what = f"the notebook {page.name}: there are no recordings in {DATA}"
+        subprocess.run([HERE.parents[1] / "tools/skipped", what], check=True)
         exclude_patterns.append(f"gallery/{page.name}")
 
 

@@ -54,7 +54,7 @@ _Recordings: TypeAlias = Recording | Sequence[Recording] | ArrayLike
 _Flags: TypeAlias = NDArray[bool_]
 _Heading: TypeAlias = Literal["rising", "falling"] | None
 _Method: TypeAlias = Literal["gradient", "increments", "least-squares", "drift"]
-_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back"]
+_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back", "rejected"]
 _Range: TypeAlias = tuple[float, float]
 
 class _Sensor(TypedDict, total=False):
@@ -280,6 +280,7 @@ def read(
     output_name: str | None = None,
     load_name: str | None = None,
     repair: bool = False,
+    max_memory: int | None = None,
 ) -> Recording: ...
 def fit(
     recording: _Recordings,
@@ -379,6 +380,8 @@ class Adaptive:
         leakage: float | None = None,
         movement: float | None = None,
         trial: int | None = None,
+        gate: float | None = None,
+        burst: int | None = None,
         load: float | None = None,
     ) -> Adaptive: ...
     @property
@@ -437,6 +440,8 @@ def adapt(
     leakage: float | None = None,
     movement: float | None = None,
     trial: int | None = None,
+    gate: float | None = None,
+    burst: int | None = None,
     load: float | None = None,
     progress: _Progress = None,
 ) -> Adapted: ...
@@ -552,6 +557,8 @@ class Action:
     def sensor_fault(self) -> bool: ...
     @property
     def adapted(self) -> bool: ...
+    @property
+    def rejected(self) -> bool: ...
 
 @final
 class Controller:
@@ -609,6 +616,8 @@ class Trace:
     def sensor_fault(self) -> _Flags: ...
     @property
     def adapted(self) -> _Flags: ...
+    @property
+    def rejected(self) -> _Flags: ...
     @property
     def snapshots(self) -> list[dict[str, Any]]: ...
     def to_dict(self) -> dict[str, NDArray[Any]]: ...

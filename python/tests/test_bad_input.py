@@ -138,6 +138,7 @@ WHOLE = {
     "bootstrap": lambda n: pyhysteron.fit(RECORDING, levels=2, bootstrap=n),
     "sign": lambda n: pyhysteron.Model([1.0, 2.0, 4.0], (0, 1), sign=n),
     "trial": lambda n: pyhysteron.Adaptive(MODEL, trial=n),
+    "burst": lambda n: pyhysteron.Adaptive(MODEL, burst=n),
     "seeds": lambda n: pyhysteron.track("sine", seeds=n),
     "begin": lambda n: pyhysteron.control.Pid.from_step([0.0, 1.0], n, 1.0, 0.1),
     "fmi": lambda n: MODEL.export_fmu("never.fmu", fmi=n),

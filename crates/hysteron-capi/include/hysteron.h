@@ -219,6 +219,11 @@
 #define HYSTERON_HIGH 1
 
 /**
+ * The target lies inside a jump of a relay model: the output lies beyond it.
+ */
+#define HYSTERON_PASSED 2
+
+/**
  * Method of adaptation: normalised gradient.
  */
 #define HYSTERON_GRADIENT 0
@@ -257,6 +262,12 @@
  * Outcome of a sample: the last good weights are back.
  */
 #define HYSTERON_ROLLED_BACK 4
+
+/**
+ * Outcome of a sample: the reading differs too much from what was expected, and has not done so
+ * for long.
+ */
+#define HYSTERON_REJECTED 5
 
 /**
  * An estimator in the caller's memory.
@@ -325,6 +336,14 @@ typedef struct HysteronAdaptation {
    * Levels between two samples that are learned from, from 0.
    */
   double movement;
+  /**
+   * How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+   */
+  double gate;
+  /**
+   * Readings in a row beyond the gate that are learned from, where they agree, from 1.
+   */
+  uint32_t burst;
 } HysteronAdaptation;
 
 /**
@@ -708,7 +727,7 @@ int32_t hysteron_run(uint64_t state,
 
 /**
  * Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
- * `HYSTERON_LOW` or `HYSTERON_HIGH`.
+ * `HYSTERON_LOW`, `HYSTERON_HIGH` or `HYSTERON_PASSED`.
  *
  * `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
  * how far a target may go back and still stand still, in the output's unit.

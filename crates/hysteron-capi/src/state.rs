@@ -122,7 +122,7 @@ pub unsafe extern "C" fn hysteron_run(
 }
 
 /// Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
-/// `HYSTERON_LOW` or `HYSTERON_HIGH`.
+/// `HYSTERON_LOW`, `HYSTERON_HIGH` or `HYSTERON_PASSED`.
 ///
 /// `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
 /// how far a target may go back and still stand still, in the output's unit.

@@ -26,6 +26,8 @@ pub const HYSTERON_INSIDE: i32 = 0;
 pub const HYSTERON_LOW: i32 = -1;
 /// The target lies above every output, or the input above the plane.
 pub const HYSTERON_HIGH: i32 = 1;
+/// The target lies inside a jump of a relay model: the output lies beyond it.
+pub const HYSTERON_PASSED: i32 = 2;
 
 /// Method of adaptation: normalised gradient.
 pub const HYSTERON_GRADIENT: i32 = 0;
@@ -44,6 +46,9 @@ pub const HYSTERON_AT_REST: i32 = 2;
 pub const HYSTERON_FROZEN: i32 = 3;
 /// Outcome of a sample: the last good weights are back.
 pub const HYSTERON_ROLLED_BACK: i32 = 4;
+/// Outcome of a sample: the reading differs too much from what was expected, and has not done so
+/// for long.
+pub const HYSTERON_REJECTED: i32 = 5;
 
 /// What a model is.
 #[repr(C)]
@@ -101,6 +106,10 @@ pub struct HysteronAdaptation {
     pub leakage: f64,
     /// Levels between two samples that are learned from, from 0.
     pub movement: f64,
+    /// How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+    pub gate: f64,
+    /// Readings in a row beyond the gate that are learned from, where they agree, from 1.
+    pub burst: u32,
 }
 
 /// What a sample taught.
@@ -140,6 +149,8 @@ pub unsafe extern "C" fn hysteron_adaptation_default(
             dead_zone: usual.dead_zone,
             leakage: usual.leakage,
             movement: usual.movement,
+            gate: usual.gate,
+            burst: usual.burst,
         };
         filled.adaptation()?;
         options.set(filled);
@@ -176,6 +187,8 @@ impl HysteronAdaptation {
             leakage: self.leakage,
             movement: self.movement,
             trial: self.trial,
+            gate: self.gate,
+            burst: self.burst,
         })
     }
 }
@@ -191,6 +204,7 @@ impl From<Learning<f64>> for HysteronLearning {
                 Outcome::AtRest => HYSTERON_AT_REST,
                 Outcome::Frozen => HYSTERON_FROZEN,
                 Outcome::RolledBack => HYSTERON_ROLLED_BACK,
+                Outcome::Rejected => HYSTERON_REJECTED,
             },
             clipped: clipped(learning.clipped),
         }
@@ -239,12 +253,9 @@ pub(crate) fn heading(heading: Direction) -> i32 {
     }
 }
 
+/// The numbers of `HYSTERON_INSIDE`, `HYSTERON_LOW`, `HYSTERON_HIGH` and `HYSTERON_PASSED`.
 pub(crate) fn status(status: Status) -> i32 {
-    match status {
-        Status::Ok => HYSTERON_INSIDE,
-        Status::Low => HYSTERON_LOW,
-        Status::High => HYSTERON_HIGH,
-    }
+    status.number().into()
 }
 
 pub(crate) fn clipped(clipped: Option<Clipped>) -> i32 {

@@ -1,22 +1,12 @@
 //! `hysteron adapt`
 
-use crate::{Result, args, keep_apart, print, recording, text};
-use hysteron::{Adapted, AtomicFile, Columns, Compared, Model};
+use crate::{Result, args, print, recording, text};
+use hysteron::{Adapted, Columns, Compared, Errors, Model, TableWriter};
 use serde_json::{Value, json};
-use std::io::Write;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
-    keep_apart(&args.data, &args.out)?;
     if let Some(table) = &args.table {
-        keep_apart(&args.data, table)?;
-        keep_apart(&args.model, table)?;
-        if *table == args.out {
-            return Err(format!(
-                "{}: the model and the table need a file each",
-                table.display()
-            )
-            .into());
-        }
+        hysteron::refuse_one_file(&args.out, table)?;
         if args.json.json && table.as_os_str() == "-" {
             return Err(
                 "with --json nothing but that goes to standard output: name a file for --table"
@@ -25,6 +15,15 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         }
     }
     let model = Model::read(&args.model)?;
+    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
+    let data = [args.data.as_path()];
+    let file = Model::file(args.force.target(&args.out, &data))?;
+    let inputs = [args.model.as_path(), &args.data];
+    let table = args.table.as_ref().map(|table| {
+        let target = args.force.target(table, &inputs);
+        TableWriter::create(Some(target))
+    });
+    let table = table.transpose()?;
     let columns = Columns {
         input: &args.input,
         output: &args.output,
@@ -41,25 +40,44 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     {
         adapted["from"]["model"] = json!(args.model);
     }
-    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
-    let mut model = AtomicFile::create(&args.out)?;
-    if let Some(table) = &args.table {
+    if let Some(table) = table {
         adapted.write_table(&recording, table)?;
     }
-    model.write_all(adapted.model.to_json().as_bytes())?;
-    model.commit()?;
+    let refused = adapted.worse && !args.force.force;
+    if !refused {
+        file.commit_with(adapted.model.to_json().as_bytes())?;
+    }
     match args.json.json {
-        true => print(&to_json(args, &adapted).to_string()),
-        false => print(&to_text(args, &adapted)),
+        true => print(&to_json(args, &adapted, refused).to_string())?,
+        false => print(&to_text(args, &adapted, refused))?,
+    }
+    match adapted.late {
+        Some(late) if refused => Err(worse(args, &adapted, &late).into()),
+        _ => Ok(()),
     }
 }
 
-fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
+fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
+    let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
+    format!(
+        "{}: the model is not written, for it ended worse: over the last third it erred by {} \
+         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of --table, \
+         try another --method, or keep the model as it is; --force writes it",
+        args.out.display(),
+        error(late.adapting),
+        error(late.fixed)
+    )
+}
+
+fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
     json!({
-        "model": args.out,
+        "model": (!refused).then_some(&args.out),
         "table": args.table,
         "whole": adapted.whole,
         "thirds": adapted.thirds,
+        "late": adapted.late,
+        "worse": adapted.worse,
+        "probation": adapted.probation,
         "again": adapted.again,
         "counts": adapted.counts,
         "drift": adapted.drift,
@@ -67,7 +85,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted) -> Value {
     })
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
+fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -95,11 +113,15 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
     let drift = &adapted.drift;
     let mut lines = vec![
         format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} times rolled back",
-            args.out.display(),
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} readings rejected, {} times rolled back",
+            match refused {
+                true => "not written".into(),
+                false => args.out.display().to_string(),
+            },
             counts.learned,
             counts.waiting,
             counts.at_rest,
+            counts.rejected,
             counts.rolled_back
         ),
         text::table(&rows),
@@ -112,6 +134,12 @@ fn to_text(args: &args::Adapt, adapted: &Adapted) -> String {
             100.0 * drift.moved
         ),
     ];
+    if adapted.probation > 0 {
+        lines.push(format!(
+            "the last {} samples are on probation, as none judge them: the model has nothing of them",
+            adapted.probation
+        ));
+    }
     if counts.outside > 0 {
         lines.push(format!("{} inputs outside the plane", counts.outside));
     }

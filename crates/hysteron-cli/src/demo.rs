@@ -2,33 +2,34 @@
 
 use crate::{Result, args, evaluate, print, text};
 use hysteron::rig::{Experiment, Reproduction};
-use hysteron::{Errors, InverseRun};
+use hysteron::{AtomicFolder, Errors, InverseRun};
 use hysteron_report::Report;
 use serde_json::json;
+use std::path::Path;
 
 /// Of the two recordings; any others do as well.
 const SEEDS: [u64; 2] = [1, 2];
 
 pub(crate) fn run(args: &args::Demo) -> Result<()> {
     let folder = &args.out;
+    let mut written = AtomicFolder::create(args.force.target(folder, &[]), None)?;
+    written.claim(["model.json", "report/index.html"])?;
     eprintln!("hysteron: recording a simulated NiTi spring twice, fitting, testing …");
     let demo = Reproduction::run(&Experiment::default(), SEEDS)?;
-    std::fs::create_dir_all(folder).map_err(|source| hysteron::Error::File {
-        path: folder.clone(),
-        source,
-    })?;
     for n in 0..2 {
-        demo.raw[n].write_csv(&folder.join(format!("recording-{}-raw.csv", n + 1)))?;
-        demo.prepared[n].write_csv(&folder.join(format!("recording-{}.csv", n + 1)))?;
+        let [raw, prepared] = ["-raw", ""].map(|end| format!("recording-{}{end}.csv", n + 1));
+        written.file(raw, |path| demo.raw[n].write_csv(path))?;
+        written.file(prepared, |path| demo.prepared[n].write_csv(path))?;
     }
-    demo.model.write(&folder.join("model.json"))?;
+    written.file("model.json", |path| demo.model.write(path))?;
     let report = Report {
         title: "MKP model of a simulated NiTi tension spring",
         model: &demo.model,
         recording: &demo.prepared[1],
         evaluation: &demo.evaluation,
     };
-    report.write(&folder.join("report"))?;
+    report.write_into(&mut written, Path::new("report"))?;
+    written.commit()?;
     if args.json.json {
         let mut object = evaluate::to_json(&demo.evaluation);
         object["simulated"] = json!(true);

@@ -1,29 +1,29 @@
 //! `hysteron design`
 
-use crate::{Result, args, keep_apart, print, text};
+use crate::{Result, args, print, text};
 use hysteron::{
-    AtomicFile, Design, DesignOptions, Excitation, Plane, Quantity, Rates, TableReader,
+    AtomicFile, Design, DesignOptions, Excitation, Own, Plane, Quantity, Rates, TableReader,
+    TableWriter,
 };
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Design) -> Result<()> {
     let (min, max) = args.range;
-    for read in &args.from {
-        for written in [Some(&args.out), args.figure.as_ref()]
-            .into_iter()
-            .flatten()
-        {
-            keep_apart(read, written)?;
-        }
-    }
-    if args.figure.as_ref() == Some(&args.out) {
-        return Err("the profile and the figure need a file each".into());
+    if let Some(figure) = &args.figure {
+        hysteron::refuse_one_file(&args.out, figure)?;
     }
     let to_stdout = args.out == Path::new("-");
     if to_stdout && args.json.json {
         return Err("with --json standard output is for that alone: name a file with -o".into());
     }
+    let inputs: Vec<&Path> = args.from.iter().map(PathBuf::as_path).collect();
+    let table = TableWriter::plain(Some(args.force.target(&args.out, &inputs)))?;
+    let figure = args.figure.as_ref().map(|figure| {
+        let target = args.force.target(figure, &inputs);
+        AtomicFile::create(target, Own::SAME_BYTES)
+    });
+    let figure = figure.transpose()?;
     let options = DesignOptions {
         operator: args.operator.into(),
         budget_s: args.budget.map(|minutes| 60.0 * minutes),
@@ -40,32 +40,32 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     let recorded: Vec<Vec<f64>> = args
         .from
         .iter()
-        .map(|path| input_of(path, column))
+        .map(|path| input_of(path, column, args.memory.max_memory))
         .collect::<Result<_>>()?;
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
     let design = hysteron::design(&options, &inputs)?;
     let profile = (!design.legs.is_empty()).then_some(&args.out);
-    if let Some(path) = profile {
-        design.write_csv(path)?;
+    if profile.is_some() {
+        design.write_to(table)?;
     }
-    if let Some(path) = &args.figure {
+    if let Some(file) = figure {
         let quantity = Quantity::from_column(column);
         let svg = hysteron_report::excitation_map(&design.plane, &design.excitation, &quantity);
-        AtomicFile::write_all(path, svg.as_bytes())?;
+        file.commit_with(svg.as_bytes())?;
     }
     if args.json.json {
         return print(&to_json(&design, profile.map(|path| path.as_path())).to_string());
     }
     let summary = summary(&design, args);
     if to_stdout {
-        eprintln!("{summary}");
+        eprintln!("{}", hysteron::printable(&summary));
         return Ok(());
     }
     print(&summary)
 }
 
-fn input_of(path: &Path, column: &str) -> Result<Vec<f64>> {
-    let mut table = TableReader::open(path)?;
+fn input_of(path: &Path, column: &str, max_memory: u64) -> Result<Vec<f64>> {
+    let mut table = TableReader::open_with(path, max_memory)?;
     let column = table.column(column)?;
     let mut input = Vec::new();
     while table.advance()? {

@@ -1,11 +1,19 @@
 //! `hysteron evaluate`
 
-use crate::{Result, args, print, recording, text};
-use hysteron::{Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
+use crate::{Result, args, print, recording, say, text};
+use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
 use hysteron_report::Report;
 use serde_json::{Value, json};
+use std::path::Path;
 
 pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
+    let inputs = [args.model.as_path(), &args.data];
+    let folder = args.report.as_ref().map(|report| {
+        let folder = AtomicFolder::create(args.force.target(report, &inputs), None)?;
+        folder.claim(["index.html"])?;
+        Ok::<_, hysteron::Error>(folder)
+    });
+    let folder = folder.transpose()?;
     let (model, load) = args.load.apply(Model::read(&args.model)?)?;
     let columns = Columns {
         input: &args.input,
@@ -15,7 +23,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
     let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
-    if let Some(folder) = &args.report {
+    if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let report = Report {
             title: &title,
@@ -23,11 +31,9 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
             recording: &*model.behind_body(&recording)?,
             evaluation: &evaluation,
         };
-        report.write(folder)?;
-        eprintln!(
-            "hysteron: the report is {}",
-            folder.join("index.html").display()
-        );
+        let paths = report.write_into(&mut folder, Path::new(""))?;
+        folder.commit()?;
+        say(format_args!("the report is {}", paths[0].display()));
     }
     if args.json.json {
         return print(&to_json(&evaluation).to_string());

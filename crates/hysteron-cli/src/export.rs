@@ -1,6 +1,6 @@
 //! `hysteron export`
 
-use crate::{Result, args, keep_apart, print};
+use crate::{Result, args, print};
 use hysteron_export::{COptions, Fmu, FmuOptions};
 use serde_json::json;
 
@@ -19,7 +19,9 @@ fn c(args: &args::ExportC) -> Result<()> {
         source: &args.model,
         adaptation: args.adaptation,
     };
-    let export = hysteron_export::c(&model, &args.out, &options)?;
+    let inputs = [args.model.as_path()];
+    let target = args.force.target(&args.out, &inputs);
+    let export = hysteron_export::c(&model, target, &options)?;
     let (memory, worst) = (export.memory, export.worst_case);
     if args.json.json {
         let object = json!({
@@ -58,14 +60,15 @@ fn c(args: &args::ExportC) -> Result<()> {
 }
 
 fn fmu(args: &args::ExportFmu) -> Result<()> {
-    keep_apart(&args.model, &args.out)?;
     let model = model(&args.model, &args.load)?;
     let options = FmuOptions {
         inverse: args.inverse,
         fmi: args.fmi.into(),
         name: args.name.clone(),
     };
-    let fmu = hysteron_export::fmu(&model, &options, &args.out)?;
+    let inputs = [args.model.as_path()];
+    let target = args.force.target(&args.out, &inputs);
+    let fmu = hysteron_export::fmu(&model, &options, target)?;
     let file = args.out.display().to_string();
     let Fmu {
         name,

@@ -1,11 +1,12 @@
 //! `hysteron fit`
 
-use crate::{Result, args, keep_apart, prepare, print, progress, recording, text};
+use crate::{Result, args, prepare, print, progress, recording, say, text};
 use hysteron::{
     Advice, Columns, FirstOrder, FitOptions, FitSummary, Model, Open, Preparation, RateDependence,
     Recording, Sign, Solver, Step,
 };
 use serde_json::json;
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let columns = Columns {
@@ -13,12 +14,13 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         load: args.load.as_deref(),
         ..Columns::new(&args.input, &args.output)
     };
-    if args.out == std::path::Path::new("-") {
+    if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
+    let inputs: Vec<&Path> = args.data.iter().map(PathBuf::as_path).collect();
+    let file = Model::file(args.force.target(&args.out, &inputs))?;
     let mut prepared = Vec::new();
     for data in &args.data {
-        keep_apart(data, &args.out)?;
         let mut recording = recording::read(data, columns, &args.repair)?;
         let units = [
             (&args.input_unit, &mut recording.input_quantity),
@@ -33,11 +35,11 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     }
     let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
     let model = identify(args, &recordings)?;
-    model.write(&args.out)?;
+    file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
     for advice in hysteron::advice(&model, &recordings)? {
-        eprintln!("hysteron: {}", crate::remedy::text_of_advice(&advice));
+        say(format_args!("{}", crate::remedy::text_of_advice(&advice)));
         if let Advice::Clipped { inputs, .. } = advice {
             clipped = inputs;
         }

@@ -22,7 +22,9 @@ pub(crate) fn run(args: &args::Inspect) -> Result<()> {
 
 /// The columns, for whoever does not know their names yet.
 fn columns(args: &args::Inspect) -> Result<()> {
-    let summary = hysteron::inspect_table(&mut TableReader::open(&args.file)?)?;
+    let mut table = TableReader::open_with(&args.file, args.repair.max_memory())?;
+    let summary = hysteron::inspect_table(&mut table)?;
+    recording::tell_of_table(&args.file, &table);
     if args.json.json {
         return print(&json!(summary).to_string());
     }

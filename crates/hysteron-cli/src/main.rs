@@ -19,19 +19,20 @@ mod track;
 use args::{Cli, Command};
 use clap::Parser;
 use std::error::Error;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() -> ExitCode {
-    // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works as well.
+    // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works
+    // as well.
     let _ = ctrlc::set_handler(|| {
         hysteron::discard_unfinished();
         std::process::exit(130);
     });
-    let done = match Cli::parse().command {
+    let done = match parse().command {
         Command::Fit(args) => fit::run(&args),
         Command::Prepare(args) => prepare::run(&args),
         Command::Simulate(args) => table::simulate(&args),
@@ -48,39 +49,65 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("hysteron: {}", remedy::text_of(error.as_ref()));
+            let what = remedy::text_of(error.as_ref());
+            say(format_args!("{what}{}", advice(error.as_ref())));
             ExitCode::FAILURE
         }
     }
 }
 
-/// Whoever read our output, such as `head`, has had enough: that is no fault.
+/// Whoever read our output, such as `head`, has had enough: that is no fault. The reader of a pipe
+/// that was named is one who is missed.
 fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
-    let mut cause = Some(error);
-    while let Some(error) = cause {
-        if let Some(io) = error.downcast_ref::<std::io::Error>() {
-            return io.kind() == std::io::ErrorKind::BrokenPipe;
+    if let Some((path, _)) = of_file(error)
+        && path != Path::new(hysteron::STANDARD_OUTPUT)
+    {
+        return false;
+    }
+    let io = causes(error).find_map(|cause| cause.downcast_ref::<std::io::Error>());
+    io.is_some_and(|io| io.kind() == ErrorKind::BrokenPipe)
+}
+
+/// What to do where a file is kept.
+fn advice(error: &(dyn Error + 'static)) -> &'static str {
+    match of_file(error) {
+        Some((_, ErrorKind::AlreadyExists)) => ": name another, or replace it with --force",
+        _ => "",
+    }
+}
+
+/// The file that an error is about, and what kind of fault it is.
+fn of_file<'a>(error: &'a (dyn Error + 'static)) -> Option<(&'a Path, ErrorKind)> {
+    causes(error).find_map(|cause| match cause.downcast_ref::<hysteron::Error>() {
+        Some(hysteron::Error::File { path, source }) => Some((path.as_path(), source.kind())),
+        _ => None,
+    })
+}
+
+fn causes<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+    std::iter::successors(Some(error), |&error| error.source())
+}
+
+/// The arguments. What is wrong with them may repeat them, so that it is shown as other messages are.
+fn parse() -> Cli {
+    Cli::try_parse().unwrap_or_else(|error| {
+        let text = error.to_string();
+        if error.use_stderr() && hysteron::printable(&text) != text {
+            eprint!("{}", hysteron::printable(&text));
+            std::process::exit(error.exit_code());
         }
-        cause = error.source();
-    }
-    false
+        error.exit()
+    })
 }
 
-/// Refuses to write over a file that is read.
-fn keep_apart(data: &Path, out: &Path) -> Result<()> {
-    let there = out.canonicalize().ok();
-    if there.is_some() && there == data.canonicalize().ok() {
-        let out = out.display();
-        return Err(
-            format!("{out}: this would replace a file that is read: name another one").into(),
-        );
-    }
-    Ok(())
+/// Tells a person something, on standard error.
+fn say(message: std::fmt::Arguments<'_>) {
+    eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));
 }
 
-/// Prints to standard output; an error there is returned, not a panic.
+/// Prints to standard output for people, or JSON; an error there is returned, not a panic.
 fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{text}")?;
+    writeln!(out, "{}", hysteron::printable(text))?;
     Ok(out.flush()?)
 }

@@ -1,23 +1,30 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
-use crate::{Result, args, keep_apart, print, recording, text};
+use crate::{Result, args, print, recording, say, text};
 use hysteron::{
     Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
-    Smoothed, Step,
+    Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Prepare) -> Result<()> {
-    keep_apart(&args.data, &args.out)?;
+    let inputs = [args.data.as_path()];
+    let table = TableWriter::plain(Some(args.force.target(&args.out, &inputs)))?;
     let columns = Columns {
         time: args.time.as_deref(),
         ..Columns::new(&args.input, &args.output)
     };
-    let recording = recording::read(&args.data, columns, &args.repair)?;
+    let (recording, others) = recording::read_with_others(&args.data, columns, &args.repair)?;
     let options = options(&args.steps, PrepareOptions::default());
     let (prepared, report) = hysteron::prepare(&recording, &options)?;
     let rate = hysteron::rate_dependence(&prepared)?;
-    prepared.write_csv(&args.out)?;
+    let left_out = others.write_to(&prepared, recording.time.as_deref(), table)?;
+    if !left_out.is_empty() {
+        let names = left_out.join(", ");
+        say(format_args!(
+            "left out, because text cannot be resampled: {names}"
+        ));
+    }
     if args.json.json {
         return print(
             &json!({"table": args.out, "preparation": report, "rate": rate, "rate_dependent": is_material(&rate)})
@@ -53,14 +60,14 @@ pub(crate) fn before_fit(
         false => {
             let (prepared, report) = hysteron::prepare(&recording, &options)?;
             for line in lines(&report, &recording) {
-                eprintln!("hysteron: {line}");
+                say(format_args!("{line}"));
             }
             (prepared, Some(report))
         }
     };
     let rate = hysteron::rate_dependence(&recording)?;
     if let Some(rate) = rate.as_ref().filter(|rate| rate.is_material()) {
-        eprintln!("hysteron: {}", rate_line(rate));
+        say(format_args!("{}", rate_line(rate)));
     }
     Ok((recording, report, rate))
 }

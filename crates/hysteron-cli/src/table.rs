@@ -1,6 +1,6 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
-use crate::{Result, args, keep_apart, print, progress};
+use crate::{Result, args, print, progress, recording, say};
 use hysteron::{Counts, Model, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
@@ -18,7 +18,8 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
-        args.json.json,
+        &args.force,
+        (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
             let what = hysteron::Simulate {
@@ -53,7 +54,8 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     through(
         [&args.data, &args.model],
         args.out.as_deref(),
-        args.json.json,
+        &args.force,
+        (args.json.json, args.memory.max_memory),
         what,
         |table, out, progress| {
             hysteron::invert_table(&model, table, &args.target, how, out, progress)
@@ -65,37 +67,37 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
 fn through(
     [data, model]: [&Path; 2],
     out: Option<&Path>,
-    json: bool,
+    force: &args::Force,
+    (json, max_memory): (bool, u64),
     what: [&str; 2],
-    work: impl FnOnce(
-        &mut TableReader,
-        Option<&mut TableWriter>,
-        &dyn Fn(u64),
-    ) -> hysteron::Result<Counts>,
+    work: impl FnOnce(&mut TableReader, Option<TableWriter>, &dyn Fn(u64)) -> hysteron::Result<Counts>,
 ) -> Result<()> {
-    // The table itself may be replaced: all its columns are in the new one.
-    out.map_or(Ok(()), |out| keep_apart(model, out))?;
-    let mut table = TableReader::open(data)?;
+    let inputs = [data, model];
     // With --json, standard output is for the JSON alone.
-    let mut writer = match (out, json) {
+    let writer = match (out, json) {
         (None, true) => None,
-        (path, _) => Some(TableWriter::create(path)?),
+        (path, _) => Some(TableWriter::create(
+            path.map(|path| force.target(path, &inputs)),
+        )?),
     };
+    let mut table = TableReader::open_with(data, max_memory)?;
     let bar = progress::bytes_of(data);
-    let counts = work(&mut table, writer.as_mut(), &|bytes| {
-        bar.set_position(bytes)
-    })?;
+    let counts = work(&mut table, writer, &|bytes| bar.set_position(bytes))?;
     bar.finish_and_clear();
-    if let Some(writer) = writer {
-        writer.finish()?;
-    }
+    recording::tell_of_table(data, &table);
     for (count, what) in [counts.high, counts.low].into_iter().zip(what) {
         if count > 0 {
-            eprintln!("hysteron: {count} of {} {what}", counts.samples);
+            say(format_args!("{count} of {} {what}", counts.samples));
         }
     }
+    if counts.passed > 0 {
+        say(format_args!(
+            "{} of {} targets lie inside a jump of the relay model: the output passes them",
+            counts.passed, counts.samples
+        ));
+    }
     if json {
-        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "table": out}).to_string())?;
+        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "passed": counts.passed, "table": out}).to_string())?;
     }
     Ok(())
 }

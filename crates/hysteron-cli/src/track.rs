@@ -1,8 +1,8 @@
 //! `hysteron track`
 
-use crate::{Result, args, print, progress, text};
-use hysteron::track::{Comparison, Scenario, track};
-use hysteron::{AtomicFile, Quantity};
+use crate::{Result, args, print, progress, say, text};
+use hysteron::track::{Comparison, Kind, Scenario, track};
+use hysteron::{AtomicFile, AtomicFolder, Own, Quantity};
 use serde_json::json;
 use std::path::Path;
 
@@ -22,10 +22,14 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     if let Some(seeds) = args.seeds {
         scenario.seeds = seeds;
     }
-    // Before the runs, which can take minutes.
-    if let Some(folder) = &args.out {
-        make_folder(folder)?;
-    }
+    let inputs = [Path::new(name)];
+    let folder = args.out.as_ref().map(|out| {
+        let folder = AtomicFolder::create(args.force.target(out, &inputs), None)?;
+        // Before the runs, which can take minutes.
+        folder.claim(names(&scenario))?;
+        Ok::<_, hysteron::Error>(folder)
+    });
+    let folder = folder.transpose()?;
     let bar = progress::stages();
     let comparison = track(&scenario, &|done, all| {
         progress::stage(&bar, "runs", done as f64 / all as f64);
@@ -33,7 +37,7 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     });
     bar.finish_and_clear();
     let comparison = comparison?;
-    if let Some(folder) = &args.out {
+    if let Some(folder) = folder {
         write(&scenario, &comparison, folder)?;
     }
     if args.json.json {
@@ -42,31 +46,36 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     print(&to_text(&scenario, &comparison))
 }
 
-fn write(scenario: &Scenario, comparison: &Comparison, folder: &Path) -> Result<()> {
-    comparison.write_scores(&folder.join("scores.csv"))?;
-    comparison.model.write(&folder.join("model.json"))?;
-    for (kind, trace) in comparison.controllers.iter().zip(&comparison.traces) {
-        trace.write_csv(&folder.join(format!("{}.csv", kind.name())))?;
-    }
-    let summary = to_json(scenario, comparison).to_string();
-    AtomicFile::write_all(&folder.join("summary.json"), summary.as_bytes())?;
-    let report = folder.join("report");
-    hysteron_report::write_comparison(scenario, comparison, &report)?;
-    eprintln!(
-        "hysteron: the report is {}",
-        report.join("index.html").display()
-    );
-    Ok(())
+const SCORES: &str = "scores.csv";
+const MODEL: &str = "model.json";
+const SUMMARY: &str = "summary.json";
+
+fn trace_name(controller: Kind) -> String {
+    format!("{}.csv", controller.name())
 }
 
-fn make_folder(folder: &Path) -> Result<()> {
-    if folder.exists() && !folder.is_dir() {
-        return Err(format!("{}: this is a file: name a folder", folder.display()).into());
+/// The files of a comparison, but for those of its report, of which the page stands for all.
+fn names(scenario: &Scenario) -> Vec<String> {
+    let fixed = [SCORES, MODEL, SUMMARY, "report/index.html"].map(String::from);
+    let traces = scenario.controllers.iter().copied().map(trace_name);
+    fixed.into_iter().chain(traces).collect()
+}
+
+fn write(scenario: &Scenario, comparison: &Comparison, mut folder: AtomicFolder) -> Result<()> {
+    folder.file(SCORES, |path| comparison.write_scores(path))?;
+    folder.file(MODEL, |path| comparison.model.write(path))?;
+    for (kind, trace) in comparison.controllers.iter().zip(&comparison.traces) {
+        folder.file(trace_name(*kind), |path| trace.write_csv(path))?;
     }
-    std::fs::create_dir_all(folder).map_err(|source| {
-        let path = folder.into();
-        hysteron::Error::File { path, source }.into()
-    })
+    let summary = to_json(scenario, comparison).to_string();
+    folder.file(SUMMARY, |path| {
+        AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(summary.as_bytes())
+    })?;
+    let within = Path::new("report");
+    let paths = hysteron_report::write_comparison(scenario, comparison, &mut folder, within)?;
+    folder.commit()?;
+    say(format_args!("the report is {}", paths[0].display()));
+    Ok(())
 }
 
 fn to_json(scenario: &Scenario, comparison: &Comparison) -> serde_json::Value {

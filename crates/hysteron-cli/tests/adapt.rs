@@ -124,3 +124,80 @@ fn faults_are_named_and_nothing_is_written() {
         assert_eq!(done.status.code(), Some(2), "{wrong}");
     }
 }
+
+/// Readings of full scale, as of a sensor whose wire is off.
+#[test]
+fn wrong_readings_are_refused_counted_and_in_the_table() {
+    let folder = wires();
+    let text_of = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let mut rows: Vec<String> = text_of("after.csv").lines().map(str::to_owned).collect();
+    // The header is line 0: samples 399 and the last.
+    for n in [400, 1500] {
+        let x = rows[n].split(',').nth(1).unwrap().to_owned();
+        rows[n] = format!("{n},{x},4095");
+    }
+    fs::write(folder.path().join("after.csv"), rows.join("\n") + "\n").unwrap();
+    let said = json(folder.path(), &format!("{ADAPT} --table table.csv"));
+    assert_eq!(
+        (&said["probation"], &said["worse"]),
+        (&8.into(), &false.into())
+    );
+    assert_eq!(said["fit"]["adapted"]["options"]["gate"], 12.0);
+    let offset = &said["drift"]["offset"];
+    let [before, after] = [0, 1].map(|n| offset[n].as_f64().unwrap());
+    // All of the plant's output is half as large again, its offset too; its stroke is 18.
+    assert!((after - 1.5 * before).abs() < 1.0, "{said}");
+    let table = text_of("table.csv");
+    let outcome = |n: usize| table.lines().nth(n).unwrap().rsplit(',').next().unwrap();
+    assert_eq!((outcome(400), outcome(1500)), ("rejected", "rejected"));
+    let rejected = table.lines().filter(|line| line.ends_with(",rejected"));
+    assert_eq!(said["counts"]["rejected"], rejected.count());
+    let done = run(folder.path(), ADAPT);
+    let printed = text(&done.stdout);
+    assert!(printed.contains(" readings rejected"), "{printed}");
+    assert!(
+        printed.contains("the last 8 samples are on probation"),
+        "{printed}"
+    );
+}
+
+#[test]
+fn a_model_that_ended_worse_is_not_written_without_force() {
+    let folder = wires();
+    // The plant has not changed; what there is to learn is noise, with a gain that more than
+    // follows it.
+    let mut table = String::from("x,y\n");
+    let mut play = 20.0_f64;
+    for n in 0..1500 {
+        let x = 50.0 - 30.0 * (f64::from(n) * 0.05).cos() * (1.0 - f64::from(n) / 3000.0);
+        play = play.clamp(x - 5.0, x + 5.0);
+        table += &format!("{x},{}\n", play * 0.2 + 0.3 * (1.7 * f64::from(n)).sin());
+    }
+    fs::write(folder.path().join("same.csv"), table).unwrap();
+    let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv --method gradient --gain 1.5 --dead-zone 0";
+    let said = refused(folder.path(), line);
+    assert!(
+        said.contains("adapted.json: the model is not written"),
+        "{said}"
+    );
+    assert!(said.contains("RMSE") && said.contains("--force"), "{said}");
+    let there = |name: &str| folder.path().join(name).exists();
+    assert!(!there("adapted.json") && there("table.csv"));
+
+    let done = run(folder.path(), &format!("{line} --json"));
+    assert_eq!(done.status.code(), Some(1));
+    let said: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
+    assert_eq!(
+        (&said["worse"], &said["model"]),
+        (&true.into(), &Value::Null)
+    );
+    let rmse = |of: &str| said["late"][of]["rmse"].as_f64().unwrap();
+    assert!(rmse("adapting") > rmse("fixed"));
+
+    let said = json(folder.path(), &format!("{line} --force"));
+    assert_eq!(
+        (&said["worse"], &said["model"]),
+        (&true.into(), &"adapted.json".into())
+    );
+    assert!(there("adapted.json"));
+}

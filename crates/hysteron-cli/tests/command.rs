@@ -229,6 +229,7 @@ fn the_demo_reproduces_the_chapter_on_a_simulated_spring() {
     assert!(demo["forward"]["max_abs"].as_f64().unwrap() < 0.5);
     assert!(demo["inverse_hold"]["moving"]["max_abs"].as_f64().unwrap() < 2.0);
     let names = [
+        "hysteron.sha256",
         "model.json",
         "recording-1-raw.csv",
         "recording-1.csv",
@@ -532,7 +533,7 @@ fn links_are_followed_and_devices_written_to() {
     std::os::unix::fs::symlink(bench.path("real.csv"), bench.path("link.csv")).unwrap();
     assert_eq!(
         bench
-            .run("simulate model.json run.csv --input x -o link.csv")
+            .run("simulate model.json run.csv --input x -o link.csv --force")
             .code,
         0
     );
@@ -546,14 +547,6 @@ fn links_are_followed_and_devices_written_to() {
     );
     let said = bench.refused("simulate model.json run.csv --input x -o /dev/full");
     assert!(said.contains("/dev/full"), "{said}");
-    // Over the file that is being read: it is replaced only when all is read.
-    assert_eq!(
-        bench
-            .run("simulate model.json run.csv --input x -o run.csv")
-            .code,
-        0
-    );
-    assert_eq!(bench.read("run.csv").lines().count(), 401);
 }
 
 #[cfg(unix)]

@@ -249,7 +249,7 @@ fn what_cannot_be_is_refused_and_nothing_is_replaced() {
             "does not depend on a load",
         ),
         (
-            "simulate m.json run.csv --input x -o m.json".into(),
+            "simulate m.json run.csv --input x -o run.csv".into(),
             "would replace a file that is read",
         ),
         (
@@ -260,7 +260,10 @@ fn what_cannot_be_is_refused_and_nothing_is_replaced() {
             format!("{design} --from run.csv --input x -o run.csv"),
             "would replace a file that is read",
         ),
-        (format!("{design} -o n.csv --figure n.csv"), "a file each"),
+        (
+            format!("{design} -o n.csv --figure ./n.csv"),
+            "this one file",
+        ),
         (
             format!("{design} --step 1e-9 -o n.csv"),
             "samples, more than",

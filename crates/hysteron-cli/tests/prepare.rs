@@ -52,7 +52,7 @@ fn a_rough_recording_is_prepared_and_what_was_done_is_said() {
     }
     assert!(!said.contains("depend on rate"), "{said}");
     let table = fs::read_to_string(folder.path().join("clean.csv")).unwrap();
-    assert!(table.starts_with("time [s],x,y\n"));
+    assert!(table.starts_with("t,x,y\n"));
     assert_eq!(table.lines().count(), 901);
     let cells: Vec<f64> = table
         .lines()

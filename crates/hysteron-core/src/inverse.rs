@@ -5,7 +5,8 @@
 //! row or column of the Everett table tells the grid cell, and inside the cell there are two linear
 //! pieces to solve. The chapter's minimum (10) and maximum (13) over candidates are that first crossing.
 
-use crate::everett::{Split, table_index};
+use crate::everett::{Grid, Split, table_index};
+use crate::relay;
 use crate::search::{Branch, Goal, along, ceil_index, first_true, within};
 use crate::state::{State, Turn};
 use crate::{Error, Model, Operator, Real};
@@ -40,11 +41,13 @@ pub enum Policy<T> {
         /// How far the target may go back.
         tolerance: T,
     },
-    /// It crosses the dead band at once, to the edge where the output starts to move that way.
+    /// It crosses the dead band at once, to the edge where the output starts to move that way. This
+    /// holds for a target near the output at which the dead band began, as long as the output is
+    /// still there. Any other target is followed as with [`Policy::Hold`].
     Anticipate {
         /// Where the target goes next.
         heading: Direction,
-        /// How far the target may go back, or away from the turning point that it rests at.
+        /// How far the target may go back, or away from the output at which the dead band began.
         tolerance: T,
     },
 }
@@ -63,16 +66,67 @@ pub enum Status {
     Low,
     /// The target lies above every output; the input is the highest one, `T_max`.
     High,
+    /// The target lies inside a jump of a relay model. The input is that of the jump, and the output
+    /// lies beyond the target by more than the tolerance.
+    Passed,
+}
+
+impl Status {
+    /// Its number in files and on surfaces without enumerations: 0 for [`Status::Ok`], −1 for
+    /// [`Status::Low`], 1 for [`Status::High`], 2 for [`Status::Passed`].
+    #[must_use]
+    pub fn number(self) -> i8 {
+        match self {
+            Status::Ok => 0,
+            Status::Low => -1,
+            Status::High => 1,
+            Status::Passed => 2,
+        }
+    }
+
+    /// Its name in tables: `ok`, `low`, `high`, `passed`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Ok => "ok",
+            Status::Low => "low",
+            Status::High => "high",
+            Status::Passed => "passed",
+        }
+    }
+
+    /// Whether the target lies beyond the model's range of outputs, and the policy's tolerance.
+    #[must_use]
+    pub fn is_out_of_reach(self) -> bool {
+        matches!(self, Status::Low | Status::High)
+    }
+
+    /// The status of an output with the opposite sign.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        match self {
+            Status::Low => Status::High,
+            Status::High => Status::Low,
+            other => other,
+        }
+    }
 }
 
 /// An input, and whether it gives the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution<T> {
-    /// The input, in its unit, within the plane's active range `[T_min − ΔT, T_max]`; where a relay model
-    /// holds an input beyond that, it stays.
+    /// The input, in its unit, within the plane's active range `[T_min − ΔT, T_max]`. There are two
+    /// exceptions, both for relays: an input beyond the range stays where the output stays, and one
+    /// that fell to `T_max` has to rise above it by [`Plane::nudge`](crate::Plane::nudge) to switch on again.
     pub input: T,
     /// Whether it reaches the target.
     pub status: Status,
+}
+
+/// Where a way along a branch ends: the input, and `Σ μ γ` there.
+struct Landing<T> {
+    input: T,
+    output: T,
 }
 
 impl<T: Real, C: AsRef<[T]>> Model<T, C> {
@@ -101,7 +155,8 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// Finds the input for `target` and moves `state` there.
     ///
     /// On a flat stretch it is the first input that reaches the target. A relay model moves in
-    /// jumps: the input is that of the first jump that reaches or passes the target.
+    /// jumps: the input is that of the first jump that reaches or passes the target, and the status
+    /// says which ([`Status::Passed`]).
     ///
     /// # Errors
     /// [`Error::InputNotFinite`] for a target that is NaN or infinite, [`Error::StateMismatch`];
@@ -162,58 +217,111 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         };
         let tolerance = unit * tolerance.larger(T::ZERO); // NaN too
         let reach = tolerance.larger(self.slack);
-        if wanted > total + reach {
+        if wanted - total > reach {
             return Ok(Solution {
-                input: plane.max(),
+                input: self.top(state),
                 status: Status::High,
             });
         }
-        if wanted < -reach {
+        if -wanted > reach {
             return Ok(Solution {
                 input: plane.bottom(),
                 status: Status::Low,
             });
         }
-        let wanted = wanted.limited(T::ZERO, total);
+        // Tolerances count from the target itself, not from the end of the range that is nearest to it.
+        let nearest = wanted.limited(T::ZERO, total);
         let now = state.place().y;
-        let rest = heading.map(|heading| (heading, self.rest(state, heading)));
+        if let Some(heading) = heading
+            && let Some(edge) = self.edge(state, heading, wanted, (tolerance, reach))
+        {
+            return Ok(Solution {
+                input: edge,
+                status: Status::Ok,
+            });
+        }
         let goes_back = (wanted > now) != state.is_rising();
-        let input = match rest {
-            Some((heading, rest)) if within(wanted, rest, reach) => match heading {
-                Direction::Rising => self.rising(state, Goal::Leave(rest + tolerance)),
-                Direction::Falling => self.falling(state, Goal::Leave(rest - tolerance)),
-            },
-            _ if within(wanted, now, self.slack) || goes_back && within(wanted, now, tolerance) => {
-                // Beyond the plane only a relay could tell the nearest end from where it stands: on
-                // the way back it switches there.
-                match self.model.operator() {
-                    Operator::Relay => state.input(),
-                    _ => state.input().limited(plane.bottom(), plane.max()),
-                }
-            }
-            _ if wanted > now => self.rising(state, Goal::Reach(wanted, self.slack)),
-            _ => self.falling(state, Goal::Reach(wanted, self.slack)),
+        if within(nearest, now, self.slack) || goes_back && within(wanted, now, tolerance) {
+            return Ok(Solution {
+                input: self.stay(state),
+                status: Status::Ok,
+            });
+        }
+        let goal = Goal::Reach(nearest, self.slack);
+        let Landing { input, output } = match nearest > now {
+            true => self.rising(state, goal),
+            false => self.falling(state, goal),
         };
-        Ok(Solution {
-            input,
-            status: Status::Ok,
-        })
+        let status = match self.model.operator() {
+            Operator::Relay if !within(output, wanted, reach + self.slack) => Status::Passed,
+            _ => Status::Ok,
+        };
+        Ok(Solution { input, status })
     }
 
-    /// The output at which a target that turns to `heading` stands still: where the branch of that
-    /// direction began or, before it has, the present one.
-    fn rest<S>(&self, state: &State<T, S>, heading: Direction) -> T
+    /// The input that switches every operator on. For a relay that fell to `T_max` this is no longer `T_max`.
+    fn top<S>(&self, state: &State<T, S>) -> T
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        match state.turns().last() {
+        let plane = self.model.plane();
+        match self.model.operator() {
+            Operator::Relay => {
+                relay::up_to(plane, (state.input(), state.position()), plane.levels())
+            }
+            _ => plane.max(),
+        }
+    }
+
+    /// The present input. Beyond the plane only a relay can tell the nearest end from where the input
+    /// stands, because on the way back it switches at that end.
+    fn stay<S>(&self, state: &State<T, S>) -> T
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        let plane = self.model.plane();
+        match self.model.operator() {
+            Operator::Relay => state.input(),
+            _ => state.input().limited(plane.bottom(), plane.max()),
+        }
+    }
+
+    /// The edge of the dead band towards `heading`, if `wanted` rests there: it is near the output at
+    /// which the branch of that direction began, and the output has not moved away from there.
+    fn edge<S>(
+        &self,
+        state: &State<T, S>,
+        heading: Direction,
+        wanted: T,
+        (tolerance, reach): (T, T),
+    ) -> Option<T>
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        let now = state.place().y;
+        let rest = match state.turns().last() {
             Some(began) if state.is_rising() == (heading == Direction::Rising) => began.y,
-            _ => state.place().y,
+            _ => now,
+        };
+        if !within(wanted, rest, reach) {
+            return None;
+        }
+        // No further than `tolerance` beyond the target, nor beyond the output that it rests at.
+        match heading {
+            Direction::Rising if now - wanted <= reach => {
+                let last = wanted.smaller(rest) + tolerance;
+                Some(self.rising(state, Goal::Leave(last, self.slack)).input)
+            }
+            Direction::Falling if wanted - now <= reach => {
+                let last = wanted.larger(rest) - tolerance;
+                Some(self.falling(state, Goal::Leave(last, self.slack)).input)
+            }
+            _ => None,
         }
     }
 
     /// The first input on the way up that meets `goal`.
-    fn rising<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
+    fn rising<S>(&self, state: &State<T, S>, goal: Goal<T>) -> Landing<T>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
@@ -221,19 +329,25 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum));
         let x = self.climb(branch.began.x, branch.start, goal.shifted(branch.began.y));
         let x = x.limited(branch.start, branch.end);
-        match self.model.operator() {
-            Operator::Relay => {
-                let level = plane.level(ceil_index(x, plane.levels()));
-                level
-                    .larger(state.input() + plane.nudge())
-                    .smaller(plane.max())
-            }
-            _ => plane.denormalise(x),
+        if self.model.operator() != Operator::Relay {
+            return Landing {
+                input: plane.denormalise(x),
+                output: goal.value(),
+            };
+        }
+        let level = match goal {
+            Goal::Reach(..) => ceil_index(x, plane.levels()),
+            Goal::Leave(..) => x.floor_index(),
+        };
+        let rise = self.everett(T::from_index(level), branch.began.x);
+        Landing {
+            input: relay::up_to(plane, (state.input(), state.position()), level),
+            output: branch.began.y + rise,
         }
     }
 
     /// The first input on the way down that meets `goal`.
-    fn falling<S>(&self, state: &State<T, S>, goal: Goal<T>) -> T
+    fn falling<S>(&self, state: &State<T, S>, goal: Goal<T>) -> Landing<T>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
@@ -241,16 +355,30 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum));
         let x = self.descend(branch.began.x, branch.start, goal.mirrored(branch.began.y));
         let x = x.limited(branch.end, branch.start);
-        match self.model.operator() {
-            // Off at the level itself: one above the last level left on.
-            Operator::Relay => {
-                let level = plane.level(x.floor_index().min(plane.levels() - 1) + 1);
-                level
-                    .smaller(state.input() - plane.nudge())
-                    .larger(plane.bottom())
-            }
-            _ => plane.denormalise(x),
+        if self.model.operator() != Operator::Relay {
+            return Landing {
+                input: plane.denormalise(x),
+                output: goal.value(),
+            };
         }
+        let level = match goal {
+            Goal::Reach(..) => x.floor_index(),
+            Goal::Leave(..) => ceil_index(x, plane.levels()),
+        };
+        let fall = self.everett(branch.began.x, T::from_index(level));
+        Landing {
+            input: relay::down_to(plane, (state.input(), state.position()), level),
+            output: branch.began.y - fall,
+        }
+    }
+
+    fn everett(&self, max: T, min: T) -> T {
+        let levels = self.model.plane().levels();
+        let grid = Grid {
+            table: self.model.table(),
+            levels,
+        };
+        grid.everett(Split::of(max, levels), Split::of(min, levels))
     }
 
     /// The first `x` from `start` up at which `e(x, min)` meets `goal`: along column `q` of the table.

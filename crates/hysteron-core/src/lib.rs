@@ -24,6 +24,7 @@ mod inverse;
 mod model;
 mod operator;
 mod plane;
+mod relay;
 mod renewal;
 mod scalar;
 mod search;

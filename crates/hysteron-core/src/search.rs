@@ -40,30 +40,31 @@ impl<T: Real> Branch<T> {
 /// What an output on the way has to do.
 #[derive(Clone, Copy)]
 pub(crate) enum Goal<T> {
-    /// Come to this value or beyond; short of it by the slack, the second number, is there.
+    /// Come to this value or beyond. Short of it by the slack, the second number, is there.
     Reach(T, T),
-    /// Go beyond this value: its last place on a flat stretch is wanted.
-    Leave(T),
+    /// Go beyond this value: its last place on a flat stretch is wanted. Beyond it by no more than the
+    /// slack, the second number, is still there.
+    Leave(T, T),
 }
 
 impl<T: Real> Goal<T> {
     pub(crate) fn value(self) -> T {
         match self {
-            Goal::Reach(value, _) | Goal::Leave(value) => value,
+            Goal::Reach(value, _) | Goal::Leave(value, _) => value,
         }
     }
 
     pub(crate) fn met_rising(self, output: T) -> bool {
         match self {
             Goal::Reach(value, slack) => output >= value - slack,
-            Goal::Leave(value) => output > value,
+            Goal::Leave(value, slack) => output > value + slack,
         }
     }
 
     pub(crate) fn met_falling(self, output: T) -> bool {
         match self {
             Goal::Reach(value, slack) => output <= value + slack,
-            Goal::Leave(value) => output < value,
+            Goal::Leave(value, slack) => output < value - slack,
         }
     }
 
@@ -71,7 +72,7 @@ impl<T: Real> Goal<T> {
     pub(crate) fn shifted(self, base: T) -> Self {
         match self {
             Goal::Reach(value, slack) => Goal::Reach(value - base, slack),
-            Goal::Leave(value) => Goal::Leave(value - base),
+            Goal::Leave(value, slack) => Goal::Leave(value - base, slack),
         }
     }
 
@@ -79,7 +80,7 @@ impl<T: Real> Goal<T> {
     pub(crate) fn mirrored(self, peak: T) -> Self {
         match self {
             Goal::Reach(value, slack) => Goal::Reach(peak - value, slack),
-            Goal::Leave(value) => Goal::Leave(peak - value),
+            Goal::Leave(value, slack) => Goal::Leave(peak - value, slack),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::branch::{Place, START};
 use crate::everett::{Grid, Split, Triangle};
-use crate::{Error, Operator, Plane, Real};
+use crate::{Error, Operator, Plane, Real, relay};
 
 /// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there with `γ` in `[0, 1]`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -209,7 +209,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     pub(crate) fn step(&mut self, plane: &Plane<T>, table: &[T], input: T) -> T {
         let x = match self.operator {
             Operator::Mkp | Operator::Kp => plane.normalise(input),
-            Operator::Relay => relay_position(plane, (self.input, self.place.x), input),
+            Operator::Relay => relay::position(plane, (self.input, self.place.x), input),
         };
         self.travel(table, x, input);
         self.place.y
@@ -233,7 +233,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
             Operator::Relay => {
                 let mut last = (self.input, self.place.x);
                 let position = |input| {
-                    last = (input, relay_position(plane, last, input));
+                    last = (input, relay::position(plane, last, input));
                     last.1
                 };
                 self.run_by(table, inputs, outputs, position, outward);
@@ -266,17 +266,5 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
             }
         }
         self.place = place;
-    }
-}
-
-/// A relay knows its levels only: rising, the last level reached; falling, the level below the last one left.
-/// On these whole numbers the Everett function is the table itself.
-fn relay_position<T: Real>(plane: &Plane<T>, (last, x): (T, T), input: T) -> T {
-    if input > last {
-        T::from_index(plane.level_at_or_below(input))
-    } else if input < last {
-        T::from_index(plane.level_at_or_above(input) - 1)
-    } else {
-        x
     }
 }

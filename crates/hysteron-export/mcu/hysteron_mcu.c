@@ -37,23 +37,6 @@ static hys_real relay_position(const hys_state *state, hys_real input)
     return number(below);
 }
 
-/* ---- The Everett function: what the output loses when the input falls from a maximum to a minimum ---- */
-
-/* e(M, m) for m <= M: linear on the triangle that (M, m) lies in. */
-static hys_real everett(const hys_model *model, split max, split min)
-{
-    const hys_real *row = model->table + table_index(max.cell, min.cell);
-    hys_real near = row[0];
-    hys_real far = row[max.cell + 2u];
-    if (max.part > min.part) {
-        hys_real mid = row[max.cell + 1u];
-        return near + max.part * (mid - near) + min.part * (far - mid);
-    } else {
-        hys_real mid = row[1];
-        return near + min.part * (mid - near) + max.part * (far - mid);
-    }
-}
-
 /* ---- The turning points ---- */
 
 static void start(hys_state *state)

@@ -4,7 +4,10 @@
  * state is one struct and one array of the caller; each actuator needs its own, and several threads need a state each.
  *
  * Same digits as the library on a host. That asks of the compiler what C99's Annex F asks:
- *   - no fused multiply-add (GCC and Clang: -ffp-contract=off), no -ffast-math or what else reorders sums,
+ *   - no fused multiply-add. The source forbids it by pragma. GCC obeys under every flag, Clang under every one but
+ *     -ffp-contract=fast, which nothing in the source can tell; elsewhere use the flag that does what
+ *     -ffp-contract=off does there,
+ *   - no -ffast-math or what else reorders sums,
  *   - results rounded to their type (FLT_EVAL_METHOD 0; on 32-bit x86: -msse2 -mfpmath=sse),
  *   - rounding to nearest, and subnormal numbers kept (both are so after the reset of a Cortex-M).
  * Where the compiler tells of another choice, compilation stops.
@@ -54,8 +57,8 @@ enum {
     HYS_VALUE = 103             /* not one of the values allowed */
 };
 
-/* What an inverse step says of a target. */
-enum { HYS_LOW = -1, HYS_REACHED = 0, HYS_HIGH = 1 };
+/* What an inverse step says of a target. HYS_PASSED: it lies inside a jump of a relay model, and the output lies beyond it. */
+enum { HYS_LOW = -1, HYS_REACHED = 0, HYS_HIGH = 1, HYS_PASSED = 2 };
 
 /* Where a target goes next; any but HYS_HOLD crosses the dead band at once. */
 enum { HYS_FALLING = -1, HYS_HOLD = 0, HYS_RISING = 1 };
@@ -111,8 +114,9 @@ int hys_step(hys_state *state, hys_real input, hys_real *output);
 
 /* Finds the input that gives `target`, moves there and writes it. `heading` says where the target goes next: HYS_HOLD (the
  * input stands still with the target), HYS_RISING or HYS_FALLING. A target that goes back by up to `tolerance`, in the
- * output's unit, stands still too; below zero it is zero. `*status` is HYS_REACHED, or HYS_LOW or HYS_HIGH for a target
- * that lies below or above every output: the input is then that end of the plane. HYS_VALUE, HYS_NEGATIVE_WEIGHTS,
+ * output's unit, stands still too; below zero it is zero. `*status` is HYS_REACHED where the output is the target, up to
+ * the tolerance; HYS_LOW or HYS_HIGH for a target that lies below or above every output: the input is then that end of
+ * the plane; HYS_PASSED for a target that the output jumps past. HYS_VALUE, HYS_NEGATIVE_WEIGHTS,
  * HYS_INPUT_NOT_FINITE. */
 int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real tolerance, hys_real *input, int *status);
 

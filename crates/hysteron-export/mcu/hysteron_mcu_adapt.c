@@ -3,6 +3,12 @@
 
 #define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
 
+/* Of the gate: surprises that the mean remembers, the scale at the start and the least one, in
+ * shares of the range. */
+#define MEMORY 64u
+#define AT_START 50u
+#define LEAST 1000u
+
 /* Running sums of a long sum: those of the library, whose digits depend on it. */
 #define LANES 8u
 
@@ -184,6 +190,73 @@ static void take_back(hys_adaptive *self)
     clear_trial(self);
 }
 
+/* ---- Gate ---- */
+
+static void restart(hys_gate *gate)
+{
+    gate->scale = gate->range / number(AT_START);
+    gate->left = ZERO;
+    gate->last = ZERO;
+    gate->refused = 0u;
+    gate->agreeing = 0u;
+}
+
+static void rescale(hys_gate *gate, hys_real scale)
+{
+    if (is_finite(scale)) {
+        gate->scale = larger(scale, gate->range / number(LEAST));
+    }
+}
+
+static void believe(hys_gate *gate, hys_real scale)
+{
+    gate->refused = 0u;
+    gate->agreeing = 0u;
+    rescale(gate, scale);
+}
+
+static hys_real size_of(hys_real x)
+{
+    return larger(x, -x);
+}
+
+/* Whether two surprises are of one jump: they differ by at most half of the larger one. */
+static int agree(hys_real a, hys_real b)
+{
+    return size_of(a - b) <= ONE / number(2u) * larger(size_of(a), size_of(b));
+}
+
+/* Whether a reading is believed whose prediction has this error. */
+static int believes(hys_gate *gate, hys_real error, const hys_adapt_options *options)
+{
+    hys_real surprise = error - gate->left, size = size_of(surprise);
+    if (options->gate == ZERO) {
+        return 1;
+    }
+    if (size <= options->gate * gate->scale || gate->scale == ZERO) {
+        believe(gate, gate->scale + (size - gate->scale) / number(MEMORY));
+        return 1;
+    }
+    gate->agreeing = gate->agreeing > 0u && agree(surprise, gate->last) ? gate->agreeing + 1u : 1u;
+    gate->refused += 1u;
+    gate->last = surprise;
+    if (gate->agreeing >= options->burst) {
+        believe(gate, size);
+        return 1;
+    }
+    if (gate->refused >= options->burst) {
+        gate->refused = 0u;
+        rescale(gate, gate->scale + gate->scale);
+    }
+    return 0;
+}
+
+/* What a reading that was believed has left of its error. */
+static void settle(hys_gate *gate, hys_real left)
+{
+    gate->left = is_finite(left) ? left : ZERO;
+}
+
 /* ---- Learning ---- */
 
 /* Adds a sample to the trial. At its end the candidate becomes good where it predicted no worse; says whether the present
@@ -237,7 +310,12 @@ static void update(hys_adaptive *self, hys_real error)
 static int learn(hys_adaptive *self, hys_real measured, hys_real error)
 {
     hys_real rest = measured - self->offset, zone = self->options.dead_zone, counted;
-    hys_real candidate = rest - dot(self, self->candidate), good = rest - dot(self, self->good);
+    hys_real candidate, good;
+    if (!believes(&self->gate, error, &self->options)) {
+        return HYS_REJECTED;
+    }
+    candidate = rest - dot(self, self->candidate);
+    good = rest - dot(self, self->good);
     if (judge(self, error, candidate, good, measured)) {
         return HYS_ROLLED_BACK;
     }
@@ -295,6 +373,8 @@ void hys_adapt_defaults(hys_adapt_options *options)
         options->leakage = ZERO;
         options->movement = number(5u) / number(100u);
         options->trial = 256u;
+        options->gate = number(12u);
+        options->burst = 8u;
     }
 }
 
@@ -320,7 +400,8 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     }
     if (!(options->gain > ZERO && options->gain < number(2u) && from_zero(options->offset_share) &&
           from_zero(options->dead_zone) && options->leakage >= ZERO && options->leakage <= ONE &&
-          from_zero(options->movement) && options->trial > 0u)) {
+          from_zero(options->movement) && options->trial > 0u && options->burst > 0u &&
+          (options->gate == ZERO || (options->gate >= number(2u) && is_finite(options->gate))))) {
         return HYS_ADAPTATION;
     }
     if (!is_finite(offset)) {
@@ -348,6 +429,8 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     self->options.leakage = options->leakage;
     self->options.movement = options->movement;
     self->options.trial = options->trial;
+    self->options.gate = options->gate;
+    self->options.burst = options->burst;
     self->offline = weights;
     inherit(self, model);
     self->offset = model->falls ? -offset : offset;
@@ -360,6 +443,11 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     copy(self->candidate, self->theta, all + 1u);
     clear_trial(self);
     rewrite(self);
+    self->gate.range = self->model.total;
+    if (model->kind != MKP) {
+        self->gate.range += self->model.total;
+    }
+    restart(&self->gate);
     (void)hys_start(&self->model, &self->state, turns, count);
     self->learned = ZERO;
     return HYS_OK;
@@ -411,6 +499,9 @@ int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hy
     if (found == HYS_LEARNED || found == HYS_ROLLED_BACK) {
         (void)hys_rebase(&self->state);
     }
+    if (found == HYS_LEARNED || found == HYS_WAITING || found == HYS_ROLLED_BACK) {
+        settle(&self->gate, measured - own_sum(&self->model, self->state.y) - offset_of(self));
+    }
     expected = own + offset;
     *output = self->model.falls ? -expected : expected;
     *outcome = found;
@@ -448,6 +539,7 @@ int hys_adapt_roll_back(hys_adaptive *adaptive)
     int code = usable(adaptive);
     if (code == HYS_OK) {
         take_back(adaptive);
+        restart(&adaptive->gate);
         rewrite(adaptive);
         (void)hys_rebase(&adaptive->state);
     }

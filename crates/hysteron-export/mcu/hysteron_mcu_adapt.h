@@ -1,5 +1,5 @@
 /* Weights that follow the plant while an exported model runs: the normalised gradient (Goodwin & Sin 1984, section 3.3) over
- * all weights and the offset, with dead zone, leakage and a trial against the last good weights. The digits of the library's
+ * all weights and the offset, with dead zone, leakage, a gate and a trial against the last good weights. The digits of the library's
  * `Estimator` with `Method::Gradient`. Its other methods stay on the host: the gradient needs one table, tells its worst case
  * without a look at the input, and knows nothing of the noise.
  *
@@ -38,7 +38,9 @@ typedef struct {
     hys_real dead_zone;     /* 0, from 0: errors up to this are noise, in the output's unit */
     hys_real leakage;       /* 0, 0 to 1: share by which weights return to the off-line ones with each update */
     hys_real movement;      /* 0.05, from 0: levels between two samples that are learned from */
+    hys_real gate;          /* 12, 0 or from 2: surprises above so many usual ones teach nothing; 0: all do */
     uint32_t trial;         /* 256, from 1: samples on which weights are judged against the last good ones */
+    uint32_t burst;         /* 8, from 1: readings in a row beyond the gate, that agree, are a jump */
 } hys_adapt_options;
 
 /* What was done with a sample. */
@@ -47,8 +49,18 @@ enum {
     HYS_WAITING = 1,        /* the error was within the dead zone */
     HYS_AT_REST = 2,        /* the input did not move */
     HYS_FROZEN = 3,
-    HYS_ROLLED_BACK = 4     /* the weights did far worse than the last good ones, or overflowed: these are back */
+    HYS_ROLLED_BACK = 4,    /* the weights did far worse than the last good ones, or overflowed: these are back */
+    HYS_REJECTED = 5        /* the reading is too far from what was expected, and not for long */
 };
+
+/* What has been seen of the errors of predictions. */
+typedef struct {
+    hys_real range;     /* of the model's output at the start */
+    hys_real scale;     /* usual size of a surprise: an error less the one left before */
+    hys_real left;      /* after the last reading believed */
+    hys_real last;      /* surprise of the last reading refused */
+    uint32_t refused, agreeing; /* in a row */
+} hys_gate;
 
 /* To be read by these functions alone, but for `model`, which is the model as it is now, and `state`. */
 typedef struct {
@@ -65,6 +77,7 @@ typedef struct {
     hys_real floor;
     hys_real learned;           /* position last learned from */
     hys_real now_squares, candidate_squares, good_squares, rounding_squares; /* of the trial */
+    hys_gate gate;
     uint32_t samples;           /* of the trial */
     unsigned char aligned, frozen;
 } hys_adaptive;
@@ -79,7 +92,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
                     const hys_adapt_options *options, hys_real *memory, size_t numbers, hys_turn *turns, size_t count);
 
 /* Moves `adaptive->state` to `input`, writes the output expected there, and learns from the one `measured`. `*outcome` is
- * one of HYS_LEARNED to HYS_ROLLED_BACK. HYS_INPUT_NOT_FINITE. */
+ * one of HYS_LEARNED to HYS_REJECTED. HYS_INPUT_NOT_FINITE. */
 int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hys_real *output, int *outcome);
 
 /* The weights as they are now, N; the offset is adaptive->model.offset. */

@@ -95,6 +95,22 @@ static inline size_t table_index(size_t p, size_t q)
     return p * (p + 1u) / 2u + q;
 }
 
+/* The Everett function: what the output loses when the input falls from a maximum to a minimum, which is not above it. It
+ * is linear on the triangle that both lie in. */
+static inline hys_real everett(const hys_model *model, split max, split min)
+{
+    const hys_real *row = model->table + table_index(max.cell, min.cell);
+    hys_real near = row[0];
+    hys_real far = row[max.cell + 2u];
+    if (max.part > min.part) {
+        hys_real mid = row[max.cell + 1u];
+        return near + max.part * (mid - near) + min.part * (far - mid);
+    } else {
+        hys_real mid = row[1];
+        return near + min.part * (mid - near) + max.part * (far - mid);
+    }
+}
+
 /* The operators' own sum, from that of weights times states in [0, 1]: states of KP and relay run from -1 to 1. */
 static inline hys_real own_sum(const hys_model *model, hys_real sum)
 {

@@ -3,7 +3,8 @@
 
 #define HALF ((hys_real)0.5)
 
-/* What an output on the way has to do: come to `value`, where the slack makes `limit` enough, or, `beyond`, exceed it. */
+/* What an output on the way has to do: come to `value`, where the slack makes `limit` enough, or, `beyond`, exceed it by
+ * more than the slack. */
 typedef struct {
     hys_real value, limit;
     int beyond;
@@ -24,7 +25,7 @@ static goal upward(hys_real value, int beyond, hys_real slack)
 {
     goal to;
     to.value = value;
-    to.limit = beyond ? value : value - slack;
+    to.limit = beyond ? value + slack : value - slack;
     to.beyond = beyond;
     return to;
 }
@@ -173,86 +174,147 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
     return number(q) + v;
 }
 
-/* The first input on the way up at which the sum comes to `value` or goes `beyond` it. */
-static hys_real rising_to(const hys_state *state, hys_real value, int beyond)
+/* Where a way along a branch ends: the input, and the sum there. */
+typedef struct {
+    hys_real input, output;
+} landing;
+
+static hys_real lost(const hys_model *model, hys_real max, hys_real min)
+{
+    return everett(model, split_of(model, max), split_of(model, min));
+}
+
+/* The input that takes a relay up to position `up`; the last input, where it is there or above. A relay switches on only
+ * where the input rises, so the input moves even if the level is the last input. */
+static hys_real relay_up(const hys_state *state, size_t up)
+{
+    const hys_model *model = state->model;
+    if (state->x >= number(up)) {
+        return state->input;
+    }
+    return larger(level(model, up), state->input + model->nudge);
+}
+
+/* The input that takes a relay down to position `down`, where the level above it switches off. */
+static hys_real relay_down(const hys_state *state, size_t down)
+{
+    const hys_model *model = state->model;
+    if (state->x <= number(down)) {
+        return state->input;
+    }
+    return smaller(level(model, down + 1u), state->input - model->nudge);
+}
+
+/* The whole number at or above a position. */
+static size_t whole_above(const hys_model *model, hys_real x)
+{
+    size_t below = whole(x);
+    return number(below) < x && below < model->levels ? below + 1u : below;
+}
+
+/* The first input on the way up at which the sum comes to `value`, or the last one before it goes `beyond` it. */
+static landing rising_to(const hys_state *state, hys_real value, int beyond)
 {
     const hys_model *model = state->model;
     branch on = find(state, 0u, upward(value, beyond, model->slack));
     hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->slack));
+    landing there;
     x = limited(x, on.start, on.end);
     if (model->kind == RELAY) {
-        size_t up = whole(x);
-        up += number(up) < x && up < model->levels ? 1u : 0u;
-        return smaller(larger(level(model, up), state->input + model->nudge), model->max);
+        size_t up = beyond ? whole(x) : whole_above(model, x);
+        there.input = relay_up(state, up);
+        there.output = on.began.y + lost(model, number(up), on.began.x);
+    } else {
+        there.input = denormalise(model, x);
+        there.output = value;
     }
-    return denormalise(model, x);
+    return there;
 }
 
-/* The first input on the way down. */
-static hys_real falling_to(const hys_state *state, hys_real value, int beyond)
+/* The same on the way down. */
+static landing falling_to(const hys_state *state, hys_real value, int beyond)
 {
     const hys_model *model = state->model;
     goal to;
     branch on;
     hys_real x;
+    landing there;
     to.value = value;
-    to.limit = beyond ? value : value + model->slack;
+    to.limit = beyond ? value - model->slack : value + model->slack;
     to.beyond = beyond;
     on = find(state, 1u, to);
     /* What the output lost since the branch began rises. */
     x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->slack));
     x = limited(x, on.end, on.start);
     if (model->kind == RELAY) {
-        /* Off at the level itself: one above the last level left on. */
-        size_t down = whole(x);
-        down = down < model->levels ? down + 1u : model->levels;
-        return larger(smaller(level(model, down), state->input - model->nudge), model->bottom);
+        size_t down = beyond ? whole_above(model, x) : whole(x);
+        there.input = relay_down(state, down);
+        there.output = on.began.y - lost(model, on.began.x, number(down));
+    } else {
+        there.input = denormalise(model, x);
+        there.output = value;
     }
-    return denormalise(model, x);
+    return there;
 }
 
-/* The sum at which a target that turns to `up` stands still: where the branch of that direction began or, before it has,
- * the present one. */
-static hys_real rest_of(const hys_state *state, int up)
+/* The edge of the dead band towards `up` or down, if `wanted` rests there: it is near the sum at which the branch of that
+ * direction began, and the sum has not moved away from there. */
+static int edge(const hys_state *state, int up, hys_real wanted, hys_real tolerance, hys_real reach, hys_real *input)
 {
-    return is_rising(state) == up ? state->began_y : state->y;
+    hys_real rest = is_rising(state) == up ? state->began_y : state->y;
+    if (!within(wanted, rest, reach)) {
+        return 0;
+    }
+    /* No further than `tolerance` beyond the target, nor beyond the sum that it rests at. */
+    if (up && state->y - wanted <= reach) {
+        *input = rising_to(state, smaller(wanted, rest) + tolerance, 1).input;
+        return 1;
+    }
+    if (!up && wanted - state->y <= reach) {
+        *input = falling_to(state, larger(wanted, rest) - tolerance, 1).input;
+        return 1;
+    }
+    return 0;
 }
 
 /* The input for a target of the operators' own sum; `heading` and `status` are of that, too. */
 static hys_real solve(const hys_state *state, hys_real target, int heading, hys_real tolerance, int *status)
 {
     const hys_model *model = state->model;
-    hys_real wanted = target, reach, rest;
-    int back;
+    int relay = model->kind == RELAY, back;
+    hys_real wanted = target, reach, nearest, input;
+    landing there;
     tolerance = larger(tolerance, ZERO); /* NaN too */
     if (model->kind != MKP) {
         wanted = HALF * target + HALF * model->total;
         tolerance = HALF * tolerance;
     }
     reach = larger(tolerance, model->slack);
-    if (wanted > model->total + reach) {
+    if (wanted - model->total > reach) {
         *status = HYS_HIGH;
-        return model->max;
+        /* For a relay that fell to the highest level, this level no longer switches it on. */
+        return relay ? relay_up(state, model->levels) : model->max;
     }
-    if (wanted < -reach) {
+    if (-wanted > reach) {
         *status = HYS_LOW;
         return model->bottom;
     }
     *status = HYS_REACHED;
-    wanted = limited(wanted, ZERO, model->total);
-    if (heading != HYS_HOLD) {
-        rest = rest_of(state, heading == HYS_RISING);
-        if (within(wanted, rest, reach)) {
-            return heading == HYS_RISING ? rising_to(state, rest + tolerance, 1)
-                                         : falling_to(state, rest - tolerance, 1);
-        }
+    /* Tolerances count from the target itself, not from the end of the range that is nearest to it. */
+    nearest = limited(wanted, ZERO, model->total);
+    if (heading != HYS_HOLD && edge(state, heading == HYS_RISING, wanted, tolerance, reach, &input)) {
+        return input;
     }
     back = (wanted > state->y) != is_rising(state);
-    if (within(wanted, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
-        /* Beyond the plane only a relay could tell the nearest end from where it stands: on the way back it switches. */
-        return model->kind == RELAY ? state->input : limited(state->input, model->bottom, model->max);
+    if (within(nearest, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
+        /* Beyond the plane only a relay can tell the nearest end from where the input stands. */
+        return relay ? state->input : limited(state->input, model->bottom, model->max);
     }
-    return wanted > state->y ? rising_to(state, wanted, 0) : falling_to(state, wanted, 0);
+    there = nearest > state->y ? rising_to(state, nearest, 0) : falling_to(state, nearest, 0);
+    if (relay && !within(there.output, wanted, reach + model->slack)) {
+        *status = HYS_PASSED;
+    }
+    return there.input;
 }
 
 int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real tolerance, hys_real *input, int *status)
@@ -283,6 +345,6 @@ int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real to
     to = solve(state, target, heading, tolerance, &found);
     (void)hys_step(state, to, &output);
     *input = to;
-    *status = state->model->falls ? -found : found;
+    *status = state->model->falls && found != HYS_PASSED ? -found : found;
     return HYS_OK;
 }

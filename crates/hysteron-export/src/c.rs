@@ -2,11 +2,11 @@
 
 mod constants;
 mod name;
+mod seal;
 mod text;
 
 use constants::{Constants, Number};
-use hysteron::{AtomicFile, Error, Model, Remedy, Result, Setting};
-use std::io::Write;
+use hysteron::{AtomicFile, AtomicFolder, Error, Model, Own, Remedy, Result, Setting, Target};
 use std::path::{Path, PathBuf};
 
 /// Names and texts of the algorithm's files, the first with the number type.
@@ -35,9 +35,6 @@ const ADAPTATION: [(&str, &str); 2] = [
         include_str!("../mcu/hysteron_mcu_adapt.c"),
     ),
 ];
-
-/// How every file begins that may be replaced.
-const MARK: &str = "/* Written by `hysteron export c`";
 
 /// Of the algorithm; a model is its maker's.
 const LICENCE: &str =
@@ -137,7 +134,7 @@ impl CWorstCase {
     }
 }
 
-/// Writes C99 for `model` into `folder`, which is made if need be: the algorithm as `hysteron_mcu.h`, `.c` and
+/// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as `hysteron_mcu.h`, `.c` and
 /// `hysteron_mcu_inverse.c`, the same for every model of a number type, and the model's constants as files of its name. With
 /// [`COptions::adaptation`] also `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
 /// [`hysteron_core::Method::Gradient`].
@@ -145,21 +142,29 @@ impl CWorstCase {
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign in that type as well. A
 /// model with negative weights has no inverse there either.
 ///
+/// Files that were exported before, and not edited since, are replaced, all together or not at all. A path alone as `target`
+/// replaces others of their names too; [`Target::keeping_foreign`] keeps them.
+///
 /// # Errors
 /// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number type; for a name that cannot
-/// be one in C; for files in the folder that are not from here, or of the other number type. [`Error::File`].
-pub fn c(model: &Model, folder: &Path, options: &COptions<'_>) -> Result<CExport> {
+/// be one in C; for files in the folder that are of the other number type. [`Error::File`].
+pub fn c<'a>(
+    model: &Model,
+    target: impl Into<Target<'a>>,
+    options: &COptions<'_>,
+) -> Result<CExport> {
+    let target = target.into();
     crate::check(model)?;
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => write::<f32>(model, folder, options, name),
-        CReal::Double => write::<f64>(model, folder, options, name),
+        CReal::Float => write::<f32>(model, target, options, name),
+        CReal::Double => write::<f64>(model, target, options, name),
     }
 }
 
 fn write<T: Number>(
     model: &Model,
-    folder: &Path,
+    target: Target<'_>,
     options: &COptions<'_>,
     name: String,
 ) -> Result<CExport> {
@@ -179,7 +184,7 @@ fn write<T: Number>(
     let files = algorithm.iter().map(|(file, _)| *file);
     let files = files.chain(own.iter().map(String::as_str));
     let export = CExport {
-        files: files.map(|file| folder.join(file)).collect(),
+        files: files.map(|file| target.path().join(file)).collect(),
         name,
         real: options.real,
         levels,
@@ -191,57 +196,34 @@ fn write<T: Number>(
     let (float, wanted) = (CReal::Float.line(), options.real.line());
     let texts = algorithm.iter().map(|(_, text)| {
         let text = text.replace(&float, &wanted);
-        format!("{MARK}, hysteron {version}.\n * {LICENCE} */\n{text}")
+        format!("/* hysteron {version}.\n * {LICENCE} */\n{text}")
     });
     let mut texts: Vec<String> = texts.collect();
     texts.push(text::header(&export, &constants, model, options.source));
     texts.push(text::source(&export, &constants));
-    std::fs::create_dir_all(folder).map_err(|source| Error::File {
-        path: folder.to_owned(),
-        source,
-    })?;
     for path in &export.files {
-        may_replace(path, options.real)?;
+        refuse_other_type(path, options.real)?;
     }
-    // All are written beside their places before the first takes its name.
-    let mut written = Vec::new();
+    let mut folder = AtomicFolder::create(target, Some(Own::Marked(seal::is_whole)))?;
     for (path, text) in export.files.iter().zip(texts) {
-        let mut file = AtomicFile::create(path)?;
-        let done = file.write_all(text.as_bytes()).and_then(|()| file.flush());
-        done.map_err(|source| Error::File {
-            path: path.clone(),
-            source,
+        let name = path.file_name().unwrap_or_default();
+        folder.file(name, |path| {
+            AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(seal::sealed(&text).as_bytes())
         })?;
-        written.push(file);
     }
-    written.into_iter().try_for_each(AtomicFile::commit)?;
+    folder.commit()?;
     Ok(export)
 }
 
-/// Refuses to replace what others wrote, and the algorithm that models of the other number type in the folder need.
-fn may_replace(path: &Path, real: CReal) -> Result<()> {
-    let found = match std::fs::read(path) {
-        Ok(found) => found,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(source) => {
-            return Err(Error::File {
-                path: path.to_owned(),
-                source,
-            });
-        }
-    };
-    let found = String::from_utf8_lossy(&found);
-    if !found.starts_with(MARK) {
-        let what = format!("{}: a file that `export c` did not write", path.display());
-        let words = "name another folder, or the model otherwise ({})";
-        let remedy = Remedy::new(words, [Setting::any("name")]);
-        return Err(Error::Export(what).remedied(remedy));
-    }
+/// Refuses to replace the algorithm that models of the other number type in the folder need.
+fn refuse_other_type(path: &Path, real: CReal) -> Result<()> {
     let other = match real {
         CReal::Float => CReal::Double,
         CReal::Double => CReal::Float,
     };
-    if found.contains(&other.line()) {
+    // What cannot be read is refused where it would be replaced.
+    let found = std::fs::read(path).unwrap_or_default();
+    if String::from_utf8_lossy(&found).contains(&other.line()) {
         let name = other.name();
         let what = format!(
             "{}: the models in this folder are of {name}",

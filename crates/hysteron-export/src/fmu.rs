@@ -9,9 +9,8 @@ mod package;
 mod units;
 mod variables;
 
-use hysteron::{AtomicFile, Error, Model, Remedy, Result, Setting};
+use hysteron::{AtomicFile, Error, Model, Own, Remedy, Result, Setting, Target};
 use sha2::{Digest, Sha256};
-use std::path::Path;
 
 /// What an FMU is to be.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -62,7 +61,7 @@ pub struct Fmu {
     pub parameters: Vec<String>,
 }
 
-/// Writes an FMU of `model` to `path`, which must end with `.fmu`.
+/// Writes an FMU of `model` to `target`, whose path must end with `.fmu`. A path alone replaces whatever file is there.
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};
@@ -80,7 +79,9 @@ pub struct Fmu {
 /// # Errors
 /// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C identifier or a path
 /// that does not end with `.fmu`; [`Error::Core`] for the inverse of a model with weights below zero; [`Error::File`].
-pub fn fmu(model: &Model, options: &FmuOptions, path: &Path) -> Result<Fmu> {
+pub fn fmu<'a>(model: &Model, options: &FmuOptions, target: impl Into<Target<'a>>) -> Result<Fmu> {
+    let target = target.into();
+    let path = target.path();
     crate::check(model)?;
     if options.inverse {
         model.inverse()?;
@@ -109,7 +110,7 @@ pub fn fmu(model: &Model, options: &FmuOptions, path: &Path) -> Result<Fmu> {
         model_json: model.to_json(),
     };
     let bytes = package::zip(&files, name, options.fmi)?;
-    AtomicFile::write_all(path, &bytes)?;
+    AtomicFile::create(target, Own::Marked(package::is_ours))?.commit_with(&bytes)?;
     let names = |causality| {
         let named = variables.iter().filter(|v| v.causality == causality);
         named.map(|v| v.name.clone()).collect()

@@ -8,7 +8,7 @@ use common::reference::Number;
 use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Sign};
 use hysteron_core::{
-    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Status, Turn,
+    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Turn,
     estimator_len, table_len, turn_capacity,
 };
 use hysteron_export::CReal;
@@ -36,7 +36,7 @@ struct Case {
 }
 
 /// What the driver has to print: the core, with offset and sign as the façade's adaptive model has them.
-fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (String, String) {
+fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 6]) -> (String, String) {
     let of = T::of;
     let (k, sign) = (case.model.plane().levels(), of(case.model.sign().factor()));
     let falls = case.model.sign() == Sign::Negative;
@@ -64,6 +64,7 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (Strin
                 write!(start, " {}", of(number).hex()).unwrap();
             }
             write!(start, " {}", options.trial).unwrap();
+            write!(start, " {} {}", of(options.gate).hex(), options.burst).unwrap();
             Adaptation {
                 method: Method::Gradient { gain: of(gain) },
                 offset_share: of(options.offset_share),
@@ -71,6 +72,8 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (Strin
                 leakage: of(options.leakage),
                 movement: of(options.movement),
                 trial: options.trial,
+                gate: of(options.gate),
+                burst: options.burst,
             }
         }
     };
@@ -95,6 +98,7 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (Strin
                             Outcome::AtRest => 2,
                             Outcome::Frozen => 3,
                             Outcome::RolledBack => 4,
+                            Outcome::Rejected => 5,
                         };
                         outcomes[outcome] += 1;
                         writeln!(answers, "a 0 {} {outcome}", (sign * learning.output).hex())
@@ -126,12 +130,11 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 5]) -> (Strin
                 let raw = sign * target - estimator.offset();
                 let inverse = model.inverse().unwrap();
                 let solution = inverse.step(&mut compensator, raw, policy).unwrap();
-                let status = match solution.status {
-                    Status::Ok => 0,
-                    Status::Low => -1,
-                    Status::High => 1,
+                let status = match falls {
+                    true => solution.status.mirrored(),
+                    false => solution.status,
                 };
-                let status = if falls { -status } else { status };
+                let status = status.number();
                 writeln!(answers, "i 0 {} {status}", solution.input.hex()).unwrap();
             }
             Call::Freeze(frozen) => {
@@ -179,6 +182,8 @@ fn options(rng: &mut StdRng) -> Option<Adaptation<f64>> {
         leakage: one_of(rng, [0.0, 1e-3, 0.2]),
         movement: one_of(rng, [0.0, 0.05, 0.5]),
         trial: [1, 7, 64][rng.random_range(0..3)],
+        gate: one_of(rng, [0.0, 2.0, 12.0]),
+        burst: [1, 3, 8][rng.random_range(0..3)],
     })
 }
 
@@ -269,9 +274,9 @@ fn cases(seed: u64, count: usize) -> Vec<Case> {
     .collect()
 }
 
-fn compare(exported: &Exported, program: &mut Command, cases: &[Case], what: &str) -> [usize; 5] {
+fn compare(exported: &Exported, program: &mut Command, cases: &[Case], what: &str) -> [usize; 6] {
     let (mut commands, mut expected) = (String::new(), String::new());
-    let mut outcomes = [0; 5];
+    let mut outcomes = [0; 6];
     for (n, case) in cases.iter().enumerate() {
         let (lines, answers) = match exported.real {
             CReal::Float => script::<f32>(n, case, &mut outcomes),

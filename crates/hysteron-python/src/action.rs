@@ -24,6 +24,8 @@ pub(crate) struct Action {
     sensor_fault: bool,
     /// Whether the model learned from the sample.
     adapted: bool,
+    /// Reading rejected: too far from what was expected to be learned from.
+    rejected: bool,
 }
 
 impl From<control::Action> for Action {
@@ -38,6 +40,7 @@ impl From<control::Action> for Action {
             out_of_reach: action.status.out_of_reach,
             sensor_fault: action.status.sensor_fault,
             adapted: action.status.adapted,
+            rejected: action.status.rejected,
         }
     }
 }

@@ -16,13 +16,17 @@ use pyo3::types::{PyDict, PyTuple};
 /// What came of an adaptation to a recording.
 #[pyclass(frozen, get_all, module = "pyhysteron")]
 pub(crate) struct Adapted {
-    /// The model with the last weights; `model.fit` tells of them over the whole recording.
+    /// The model with the last weights that are not on probation; `model.fit` tells of them over
+    /// the whole recording.
     model: Model,
     /// Arrays of shape (n,): 'input', 'output', 'output_model' (predicted before the sample was learned from), 'error'
     /// (measured less predicted) and 'outcome' (as in `Learning`).
     table: Py<PyDict>,
     /// Errors of the model that learned ('adapting', before it learned from the samples compared) beside those of the
     /// model left as it was ('fixed'): 'whole', 'thirds' (a list), 'again' (the last weights over the whole recording);
+    /// 'late' (the last third without readings rejected, or None) and whether the model ended
+    /// 'worse' there than the one left alone; 'probation' (samples at the end that the model has
+    /// nothing of, as no later ones judge them);
     /// 'counts' of the outcomes; 'drift' of weights and offset, before and after.
     comparison: Py<PyAny>,
 }
@@ -72,7 +76,7 @@ impl Adapted {
 ///     Where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less.
 /// progress : callable, bool or None
 ///     As for `fit`. Ctrl-C ends it in any case.
-/// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, load : optional
+/// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
 ///     As for `Adaptive`; what is left out follows from model and recording. The noise is that of the output,
 ///     and at least 2 % of its range or the model's, whichever is larger, for weights, 5 % for shares; the dead zone is twice the output's noise.
 ///
@@ -100,7 +104,7 @@ impl Adapted {
 #[pyfunction]
 #[pyo3(
     signature = (model, recording, output=None, *, time=None, method="drift", start="off", progress=None, **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None, progress=None)"
+    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(
@@ -129,6 +133,9 @@ pub(crate) fn adapt<'py>(
     let comparison = PyDict::new(py);
     comparison.set_item("whole", told(py, &adapted.whole)?)?;
     comparison.set_item("thirds", told(py, &adapted.thirds)?)?;
+    comparison.set_item("late", told(py, &adapted.late)?)?;
+    comparison.set_item("worse", adapted.worse)?;
+    comparison.set_item("probation", adapted.probation)?;
     comparison.set_item("again", told(py, &adapted.again)?)?;
     comparison.set_item("counts", told(py, &adapted.counts)?)?;
     comparison.set_item("drift", told(py, &adapted.drift)?)?;
@@ -153,9 +160,10 @@ pub(crate) fn adapt_options(
     };
     for (name, value) in given.into_iter().flatten() {
         let name: String = name.extract()?;
-        if name == "trial" {
-            let trial: Option<Whole> = value.extract()?;
-            options.trial = trial.map(|trial| trial.of("trial")).transpose()?;
+        let counts = [("trial", &mut options.trial), ("burst", &mut options.burst)];
+        if let Some((_, slot)) = counts.into_iter().find(|(slot, _)| *slot == name) {
+            let count: Option<Whole> = value.extract()?;
+            *slot = count.map(|count| count.of(&name)).transpose()?;
             continue;
         }
         let slots = [
@@ -169,6 +177,7 @@ pub(crate) fn adapt_options(
             ("dead_zone", &mut options.dead_zone),
             ("leakage", &mut options.leakage),
             ("movement", &mut options.movement),
+            ("gate", &mut options.gate),
             ("load", &mut options.load),
         ];
         let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {

@@ -3,7 +3,6 @@
 use crate::adapt::adapt_options;
 use crate::array::samples;
 use crate::error::{Raise, finite, number};
-use crate::inverse::side_of;
 use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
@@ -56,6 +55,12 @@ use pyo3::types::PyDict;
 ///     Levels that the input has to move before a sample is learned from, from 0 on. By default 0.05.
 /// trial : int, optional
 ///     Samples after which the weights are judged against the last good ones, 1 or more. By default 256.
+/// gate : float, optional
+///     How many times the usual surprise a reading may be off to be learned from, from 2 on; 0:
+///     any. By default 12.
+/// burst : int, optional
+///     Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
+///     more a plant that jumped. 1 or more, by default 8.
 /// load : float, optional
 ///     'drift' of a model that depends on a load: where the shares start. By default the middle of its range.
 ///
@@ -103,7 +108,7 @@ impl Adaptive {
     #[new]
     #[pyo3(
         signature = (model, *, method="gradient", start="off", **options),
-        text_signature = "(model, *, method='gradient', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, load=None)"
+        text_signature = "(model, *, method='gradient', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None)"
     )]
     fn new(
         py: Python<'_>,
@@ -244,7 +249,8 @@ impl Adaptive {
     /// -------
     /// input : float
     /// status : int
-    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every
+    ///     output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
@@ -267,7 +273,7 @@ impl Adaptive {
         let (target, policy) = (number("target", target)?, policy(heading, band)?);
         let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target, policy);
         let solution = self.inner.with(py, solve).raise()?;
-        Ok((solution.input, side_of(solution.status)))
+        Ok((solution.input, solution.status.number()))
     }
 
     /// Let the inverse set out from where the measured input is.

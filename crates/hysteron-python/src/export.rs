@@ -4,6 +4,7 @@ use crate::error::Raise;
 use crate::model::Model;
 use crate::whole::Whole;
 use crate::word::choice;
+use hysteron::Target;
 use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,6 +13,8 @@ use std::path::{Path, PathBuf};
 #[pymethods]
 impl Model {
     /// Write the model as C99 for a microcontroller, with the algorithm beside it.
+    ///
+    /// Files exported before are replaced. One that was edited since, or is another's, is kept and a FileError raised.
     ///
     /// Parameters
     /// ----------
@@ -64,7 +67,12 @@ impl Model {
             source,
             adaptation,
         };
-        let export = hysteron_export::c(&self.inner, &folder, &options).raise()?;
+        let export = hysteron_export::c(
+            &self.inner,
+            Target::keeping_foreign(&folder, false),
+            &options,
+        )
+        .raise()?;
         let said = PyDict::new(py);
         said.set_item("files", export.files)?;
         said.set_item("name", export.name)?;
@@ -76,7 +84,8 @@ impl Model {
         Ok(said)
     }
 
-    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools.
+    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools. A file that is there
+    /// already is replaced.
     ///
     /// Parameters
     /// ----------

@@ -34,15 +34,6 @@ impl Inverse {
     }
 }
 
-/// On which side of all outputs a target lies.
-pub(crate) fn side_of(status: Status) -> i8 {
-    match status {
-        Status::Ok => 0,
-        Status::Low => -1,
-        Status::High => 1,
-    }
-}
-
 #[pymethods]
 impl Inverse {
     /// The model that this is the inverse of.
@@ -83,7 +74,8 @@ impl Inverse {
     /// input : ndarray, shape (n,)
     ///     In the input's unit.
     /// status : ndarray of int8, shape (n,)
-    ///     0 where the input gives the target, up to the band, -1 and 1 where it lies below or above every output.
+    ///     0 where the input gives the target, up to the band, -1 and 1 where it lies below or above every
+    ///     output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
@@ -147,7 +139,7 @@ impl Inverse {
         });
         let solutions = solutions.raise_of("target", target)?;
         let input = PyArray1::from_iter(py, solutions.iter().map(|solution| solution.input));
-        let status = PyArray1::from_iter(py, solutions.iter().map(|s| side_of(s.status)));
+        let status = PyArray1::from_iter(py, solutions.iter().map(|s| s.status.number()));
         Ok((input, status))
     }
 
@@ -166,7 +158,8 @@ impl Inverse {
     /// -------
     /// input : float
     /// status : int
-    ///     0 where the input gives the target, -1 and 1 where it lies below or above every output.
+    ///     0 where the input gives the target, -1 and 1 where it lies below or above every
+    ///     output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
@@ -194,6 +187,6 @@ impl Inverse {
         let inverse = self.model.inner.inverse().raise()?;
         let step = |state: &mut _| inverse.step(state, target, policy);
         let solution = state.inner.with(py, step).raise()?;
-        Ok((solution.input, side_of(solution.status)))
+        Ok((solution.input, solution.status.number()))
     }
 }

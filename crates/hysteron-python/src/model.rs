@@ -113,7 +113,7 @@ impl Model {
         Ok(hysteron::Model::read(&path).raise()?.into())
     }
 
-    /// Write the model file, whole or not at all.
+    /// Write the model file, whole or not at all. A file that is there already is replaced.
     ///
     /// Parameters
     /// ----------

@@ -3,27 +3,30 @@
 use crate::error::Raise;
 use crate::recording::Recording;
 use crate::said::warn;
-use hysteron::{Columns, Quantity, Repair};
+use hysteron::{Columns, Quantity, ReadOptions, Repair};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
 /// Read a recording from a CSV, Parquet or MATLAB file.
 ///
-/// Warns (`HysteronWarning`) of rows that were mended and of gaps in time.
+/// Warns (`HysteronWarning`) of what was assumed of the file, of rows that were mended and of gaps in time.
 ///
 /// Parameters
 /// ----------
 /// path : str or path-like
 /// input, output : str
-///     The columns; in a MATLAB file the variables, ``'M:2'`` being the second column of the matrix ``M``.
+///     The columns, by name, with or without the unit in brackets, or by number from 1; in a MATLAB file the
+///     variables, ``'M:2'`` being the second column of the matrix ``M`` and ``'s.x'`` the field ``x`` of the structure ``s``.
 /// time : str, optional
-///     The column of time in seconds.
+///     The column of time: in seconds, or with another unit in its name.
 /// load : str, optional
 ///     The column of the load or stress.
 /// input_name, output_name, load_name : str, optional
 ///     What they are, with their unit in brackets; by default what the file says.
 /// repair : bool
-///     Drop rows without a number, sort times that go back, merge repeated ones. By default they are refused.
+///     Drop rows without a number or cut short, sort times that go back, merge repeated ones. By default they are refused.
+/// max_memory : int, optional
+///     Most memory in bytes that the contents of the file may take; more is refused. By default 4 GiB.
 ///
 /// Returns
 /// -------
@@ -43,7 +46,7 @@ use std::path::PathBuf;
 /// >>> pyhysteron.read(path, input='T [degC]', output='lift').input
 /// array([20.5, 80. ])
 #[pyfunction]
-#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false))]
+#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false, max_memory=None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn read(
     py: Python<'_>,
@@ -56,6 +59,7 @@ pub(crate) fn read(
     output_name: Option<&str>,
     load_name: Option<&str>,
     repair: bool,
+    max_memory: Option<u64>,
 ) -> PyResult<Recording> {
     let columns = Columns {
         input,
@@ -67,8 +71,12 @@ pub(crate) fn read(
         true => Repair::Mend,
         false => Repair::Refuse,
     };
+    let options = ReadOptions {
+        repair,
+        max_memory: max_memory.unwrap_or(ReadOptions::MAX_MEMORY),
+    };
     let (mut recording, notes) =
-        py.detach(|| hysteron::Recording::read(&path, columns, repair).raise())?;
+        py.detach(|| hysteron::Recording::read(&path, columns, options).raise())?;
     for note in notes {
         warn(py, &format!("{}: {note}", path.display()))?;
     }

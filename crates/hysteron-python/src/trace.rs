@@ -108,6 +108,12 @@ impl Trace {
         self.flags(py, |status| status.adapted)
     }
 
+    /// Readings rejected: too far from what was expected to be learned from.
+    #[getter]
+    fn rejected<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.rejected)
+    }
+
     /// The weights over time, of a controller that adapts.
     ///
     /// Dictionaries with 'time' (s), 'offset' and 'weights' (shape (K, K), NaN below the diagonal).
@@ -150,6 +156,7 @@ impl Trace {
         table.set_item("out_of_reach", self.out_of_reach(py))?;
         table.set_item("sensor_fault", self.sensor_fault(py))?;
         table.set_item("adapted", self.adapted(py))?;
+        table.set_item("rejected", self.rejected(py))?;
         Ok(table)
     }
 

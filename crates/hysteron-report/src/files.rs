@@ -1,61 +1,50 @@
-//! The files of a report: each appears complete or not at all.
+//! The files of a report, which appear together.
 
 use crate::error::ReportError;
 use crate::png;
+use hysteron::{AtomicFile, AtomicFolder, Own, printable};
 use std::fmt::Display;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
-/// Writes each of `figures` that there is as SVG and PNG into `dir`, which is made if absent, and around them the page
-/// that `page` makes. Files of the others, which an earlier report may have left, are removed.
+/// Where a report goes: a folder that may hold other results too, and the report's own folder in it.
+pub(crate) struct Place<'a> {
+    pub(crate) folder: &'a mut AtomicFolder,
+    pub(crate) within: &'a Path,
+}
+
+/// Writes each of `figures` that there is as SVG and PNG, and around them the page that `page` makes.
 ///
-/// Returns the paths written, the page first.
+/// Returns the paths that the files will have, the page first.
 pub(crate) fn write_report<F: Display>(
-    dir: &Path,
+    place: Place<'_>,
     figures: impl Iterator<Item = (F, Option<String>)>,
     page: impl FnOnce(&[(F, String)]) -> String,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    fs::create_dir_all(dir).map_err(|source| in_the_way(dir, source))?;
-    let index = dir.join("index.html");
+    let Place { folder, within } = place;
     let mut drawn = Vec::new();
-    let mut written = vec![index.clone()];
+    let mut names = vec![within.join("index.html")];
     for (figure, svg) in figures {
-        let [svg_path, png_path] =
-            ["svg", "png"].map(|extension| dir.join(format!("{figure}.{extension}")));
-        let Some(svg) = svg else {
-            remove_stale(&svg_path)?;
-            remove_stale(&png_path)?;
+        // Names come from anywhere; XML allows no control characters.
+        let Some(svg) = svg.map(|svg| printable(&svg).into_owned()) else {
             continue;
         };
-        write(&svg_path, svg.as_bytes())?;
+        let [svg_name, png_name] =
+            ["svg", "png"].map(|extension| within.join(format!("{figure}.{extension}")));
+        write(folder, &svg_name, svg.as_bytes())?;
         let pixels = png::of_svg(&svg).map_err(|reason| ReportError::Raster {
-            path: png_path.clone(),
+            path: folder.path().join(&png_name),
             reason,
         })?;
-        write(&png_path, &pixels)?;
-        written.extend([svg_path, png_path]);
+        write(folder, &png_name, &pixels)?;
+        names.extend([svg_name, png_name]);
         drawn.push((figure, svg));
     }
-    // The page comes last, so that a page in the directory means a complete report.
-    write(&index, page(&drawn).as_bytes())?;
-    Ok(written)
+    write(folder, &names[0], printable(&page(&drawn)).as_bytes())?;
+    Ok(names.iter().map(|name| folder.path().join(name)).collect())
 }
 
-fn write(path: &Path, content: &[u8]) -> Result<(), ReportError> {
-    Ok(hysteron::AtomicFile::write_all(path, content)?)
-}
-
-fn remove_stale(path: &Path) -> Result<(), ReportError> {
-    match fs::remove_file(path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(in_the_way(path, source)),
-        _ => Ok(()),
-    }
-}
-
-fn in_the_way(path: &Path, source: io::Error) -> ReportError {
-    ReportError::Write(hysteron::Error::File {
-        path: path.to_owned(),
-        source,
-    })
+fn write(folder: &mut AtomicFolder, name: &Path, content: &[u8]) -> Result<(), ReportError> {
+    Ok(folder.file(name, |path| {
+        AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(content)
+    })?)
 }

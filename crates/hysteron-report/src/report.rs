@@ -7,6 +7,7 @@ use crate::{figures, files, page};
 use hysteron::Evaluation;
 use hysteron::Model;
 use hysteron::Recording;
+use hysteron::{AtomicFolder, Target};
 use std::path::{Path, PathBuf};
 
 /// An evaluation of a model on a recording, to be shown.
@@ -26,8 +27,9 @@ impl Report<'_> {
     /// Writes `index.html` and, for each figure, `figNN-name.svg` and `figNN-name.png` into `dir`, which is made if absent.
     ///
     /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page says why. Figures of
-    /// confidence, cross-validation and load need a model that has them. Files of missing figures
-    /// that an earlier report left in `dir` are removed. Each file appears complete or not at all.
+    /// confidence, cross-validation and load need a model that has them. The report appears whole or not at all. Files of
+    /// an earlier report are replaced or removed, those of others stay; a path alone as `dir` replaces these too
+    /// where they are in the way.
     ///
     /// Returns the paths written, the page first.
     ///
@@ -35,10 +37,27 @@ impl Report<'_> {
     ///
     /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
-    pub fn write(&self, dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
+        let mut folder = AtomicFolder::create(dir, None)?;
+        let paths = self.write_into(&mut folder, Path::new(""))?;
+        folder.commit()?;
+        Ok(paths)
+    }
+
+    /// As [`Report::write`], into the folder `within` another one that is being written.
+    ///
+    /// # Errors
+    ///
+    /// As [`Report::write`].
+    pub fn write_into(
+        &self,
+        folder: &mut AtomicFolder,
+        within: &Path,
+    ) -> Result<Vec<PathBuf>, ReportError> {
         let view = self.view()?;
         let figures = Figure::ALL.map(|figure| (figure, figures::svg(figure, &view)));
-        files::write_report(dir, figures.into_iter(), |drawn| {
+        let place = files::Place { folder, within };
+        files::write_report(place, figures.into_iter(), |drawn| {
             page::html(self.title, &view, drawn)
         })
     }

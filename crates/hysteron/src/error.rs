@@ -77,9 +77,13 @@ pub enum Error {
     #[error("controller: {0}")]
     Control(String),
     /// A scenario says something that cannot be.
-    #[error("scenario: `{field}`: {problem}")]
+    #[error("scenario{}{}: `{field}`: {problem}", place(.path), at(line.map(Place::Line), &None))]
     Scenario {
-        /// The field, or the line of the file.
+        /// The file, where there is one.
+        path: Option<PathBuf>,
+        /// The line of its text, where that is known.
+        line: Option<u64>,
+        /// The field; `.` for the whole.
         field: String,
         /// What is wrong with it, and what is expected.
         problem: String,

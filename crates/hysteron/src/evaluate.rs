@@ -5,7 +5,7 @@ use crate::recording::range;
 use crate::turning::{NOISE, Turning};
 use crate::{
     BandEvaluation, Errors, Inverse, Invert, Model, Recording, Remedy, Result, Setting, Solution,
-    Start, State, Status,
+    Start, State,
 };
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
@@ -128,7 +128,7 @@ fn evaluate_inverse(
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
     let run = |how: Invert| -> Result<InverseRun> {
         let solutions = inverse.series(&mut begin.clone(), &recording.output, how)?;
-        let missed = |solution: &&Solution<f64>| solution.status != Status::Ok;
+        let missed = |solution: &&Solution<f64>| solution.status.is_out_of_reach();
         let out_of_reach = solutions.iter().filter(missed).count();
         let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();
         Ok(InverseRun {

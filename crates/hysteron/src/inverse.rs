@@ -1,7 +1,7 @@
 //! The inverse of a model in its own units: of one target, and of a series of them.
 
 use crate::{
-    Direction, Error, Invert, Model, Policy, Remedy, Result, Setting, Sign, Solution, State, Status,
+    Direction, Error, Invert, Model, Policy, Remedy, Result, Setting, Sign, Solution, State,
 };
 
 impl Model {
@@ -46,10 +46,9 @@ impl Sign {
 
     /// The status for the output with its sign.
     pub(crate) fn outward(self, solution: Solution<f64>) -> Solution<f64> {
-        let status = match solution.status {
-            Status::Low if self == Sign::Negative => Status::High,
-            Status::High if self == Sign::Negative => Status::Low,
-            other => other,
+        let status = match self {
+            Sign::Positive => solution.status,
+            Sign::Negative => solution.status.mirrored(),
         };
         Solution { status, ..solution }
     }
@@ -65,7 +64,7 @@ pub struct Inverse<'m> {
 impl Inverse<'_> {
     /// Finds the input for `target` and moves `state` there. `O(log K)`.
     ///
-    /// Status and heading speak of the target as given: with a negative sign, [`Status::Low`] needs an
+    /// Status and heading speak of the target as given: with a negative sign, [`Low`](crate::Status::Low) needs an
     /// input above the plane.
     ///
     /// # Errors

@@ -31,6 +31,7 @@ mod output;
 pub mod plant;
 mod predict;
 mod prepare;
+mod printable;
 mod recording;
 mod remedy;
 pub mod rig;
@@ -69,16 +70,22 @@ pub use load::{LoadDependence, LoadPart};
 pub use metrics::Errors;
 pub use model::{Model, Sign, State};
 pub use monotone::{AGAINST_INPUT, way_against_input};
-pub use output::{AtomicFile, TableWriter, discard_unfinished};
+pub use output::{
+    Added, AtomicFile, AtomicFolder, Cell, Own, STANDARD_OUTPUT, TableWriter, Target,
+    discard_unfinished, refuse_one_file,
+};
 pub use predict::Surroundings;
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
     Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
 };
-pub use recording::{Columns, Note, NoteKind, Origin, Places, Quantity, Recording, Repair, Source};
+pub use printable::printable;
+pub use recording::{
+    Columns, Note, NoteKind, Origin, Others, Places, Quantity, Recording, Repair, Source,
+};
 pub use remedy::{Remedy, Setting, SettingValue};
 pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
-pub use table::{Column, Row, TableReader};
+pub use table::{Column, ReadOptions, Remark, Row, TableReader};
 pub use thermal::{FirstOrder, ThermalState, fit_thermal};
 pub use turning::{Headings, NOISE, Turning, branches, headings, noise_band, remembered};
 

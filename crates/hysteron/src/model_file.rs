@@ -1,7 +1,7 @@
 //! The model file: JSON, versioned, every fault named by its field.
 
 use crate::identify::FitSummary;
-use crate::output::AtomicFile;
+use crate::output::{AtomicFile, Own, Target, is_our_model};
 use crate::recording::{LARGEST, Quantity};
 use crate::{Error, FirstOrder, LoadDependence, LoadPart, Model, Operator, Plane, Result, Sign};
 use serde::{Deserialize, Serialize};
@@ -257,12 +257,20 @@ impl Model {
         serde_json::to_string(&file).unwrap_or_default() + "\n"
     }
 
-    /// Writes this model's file, beside its place first.
+    /// Writes this model's file, beside its place first. A path alone replaces whatever file is there.
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn write(&self, path: &Path) -> Result<()> {
-        AtomicFile::write_all(path, self.to_json().as_bytes())
+    pub fn write<'a>(&self, target: impl Into<Target<'a>>) -> Result<()> {
+        Self::file(target)?.commit_with(self.to_json().as_bytes())
+    }
+
+    /// Starts the file of a model that is not there yet: a place that cannot be is refused before the work.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn file<'a>(target: impl Into<Target<'a>>) -> Result<AtomicFile> {
+        AtomicFile::create(target, Own::Marked(is_our_model))
     }
 }
 

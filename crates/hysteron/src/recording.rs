@@ -1,9 +1,11 @@
 //! Recordings: an input and the output it caused.
 
+mod others;
 mod read;
 mod repair;
 mod samples;
 
+pub use others::Others;
 pub(crate) use repair::gaps;
 pub use repair::{Note, NoteKind, Places, Repair};
 
@@ -124,7 +126,7 @@ pub struct Columns<'a> {
     pub input: &'a str,
     /// The output.
     pub output: &'a str,
-    /// Time in seconds, if wanted.
+    /// Time, if wanted: in seconds, or with another unit behind its name.
     pub time: Option<&'a str>,
     /// The load or stress, if wanted.
     pub load: Option<&'a str>,
@@ -165,23 +167,30 @@ impl Recording {
     }
 
     /// Writes a CSV file with a header row; units stand in brackets behind the names. A simulated
-    /// recording has a last column that says so.
+    /// recording has a last column that says so. Whatever file is there is replaced.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
-        self.write_csv_with(path, &[], |_| [])
+        self.write_to(TableWriter::plain(Some(path.into()))?)
     }
 
-    /// As [`Recording::write_csv`], with more columns.
-    pub(crate) fn write_csv_with<const N: usize>(
+    /// As [`Recording::write_csv`], to a table that was begun before.
+    ///
+    /// # Errors
+    /// As [`Recording::write_csv`].
+    pub fn write_to(&self, table: TableWriter) -> Result<()> {
+        self.write_with(table, &[], |_| [])
+    }
+
+    /// As [`Recording::write_to`], with more columns.
+    pub(crate) fn write_with<const N: usize>(
         &self,
-        path: &Path,
+        mut table: TableWriter,
         added: &[&str; N],
         more: impl Fn(usize) -> [String; N],
     ) -> Result<()> {
         self.check()?;
-        let mut table = TableWriter::create(Some(path))?;
         let simulated = self.origin == Origin::Simulated;
         let names = [
             self.time.as_ref().map(|_| "time [s]".to_owned()),

@@ -1,5 +1,6 @@
 //! What helps against an error, apart from what is wrong: each surface spells the options in its own way.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// What helps, in words, with the options among them as such.
@@ -13,7 +14,7 @@ use std::fmt;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remedy {
-    words: &'static str,
+    words: Cow<'static, str>,
     settings: Vec<Setting>,
 }
 
@@ -42,8 +43,11 @@ pub enum SettingValue {
 impl Remedy {
     /// Words with `{}` where the options stand.
     #[must_use]
-    pub fn new<const N: usize>(words: &'static str, settings: [Setting; N]) -> Self {
-        let settings = settings.into();
+    pub fn new<const N: usize>(
+        words: impl Into<Cow<'static, str>>,
+        settings: [Setting; N],
+    ) -> Self {
+        let (words, settings) = (words.into(), settings.into());
         Self { words, settings }
     }
 

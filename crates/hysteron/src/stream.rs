@@ -4,8 +4,8 @@ use crate::table::{Column, Row};
 use crate::thermal::needs_time;
 use crate::turning::Headings;
 use crate::{
-    Band, Direction, FirstOrder, Inverse, LoadDependence, Model, Policy, Result, State, Status,
-    TableReader, TableWriter, ThermalState,
+    Added, Band, Cell, Direction, FirstOrder, Inverse, LoadDependence, Model, Policy, Result,
+    State, Status, TableReader, TableWriter, ThermalState,
 };
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -19,6 +19,8 @@ pub struct Counts {
     pub high: u64,
     /// Inputs below or targets short of the range, taken as its lower end.
     pub low: u64,
+    /// Targets inside a jump of a relay model, which the output passes.
+    pub passed: u64,
 }
 
 /// What a simulation reads from a table, and what it adds to it.
@@ -34,8 +36,8 @@ pub struct Simulate<'a> {
     pub band: Option<&'a Band>,
 }
 
-/// Copies `table` to `out` with a column `output_model`, the model's output, from every operator off; with a
-/// band, with `output_low` and `output_high` too. `progress` is told the bytes read.
+/// Copies `table` to `out`, which is ended, with a column `output_model`, the model's output, from every operator off;
+/// with a band, with `output_low` and `output_high` too. `progress` is told the bytes read.
 ///
 /// # Errors
 /// [`crate::Error::File`], [`crate::Error::Recording`] with line and column; [`crate::Error::Thermal`] for a model with a
@@ -44,13 +46,13 @@ pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
     what: Simulate<'_>,
-    out: Option<&mut TableWriter>,
+    out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let column = table.column(what.input)?;
     let mut heating = Heating::new(model, table, what.time)?;
     let mut loaded = Loaded::new(model, table, what.load)?;
-    let names = ["output_model", "output_low", "output_high"];
+    let names = ["output_model", "output_low", "output_high"].map(Added::Numbers);
     let added = if what.band.is_some() { 3 } else { 1 };
     let mut sink = Sink::start(table, out, &names[..added])?;
     let mut state = model.start();
@@ -69,18 +71,18 @@ pub fn simulate_table(
             Some(crate::Clipped::Low) => sink.counts.low += 1,
             Some(crate::Clipped::High) => sink.counts.high += 1,
         }
-        let output = step.output.to_string();
+        let output = step.output;
         match &mut band {
-            None => sink.write(table.row(), &[&output])?,
+            None => sink.write(table.row(), &[Cell::Number(output)])?,
             Some((band, states)) => {
                 let half = band.step(states, input)?;
-                let [low, high] = [step.output - half, step.output + half].map(|y| y.to_string());
-                sink.write(table.row(), &[&output, &low, &high])?;
+                let cells = [output, output - half, output + half].map(Cell::Number);
+                sink.write(table.row(), &cells)?;
             }
         }
         progress(table.bytes_read());
     }
-    Ok(sink.counts)
+    sink.finish()
 }
 
 /// A model under a load that changes from row to row: each part of its load dependence runs beside the others.
@@ -142,7 +144,7 @@ impl Heating {
         let Some(body) = model.thermal else {
             return Ok(None);
         };
-        let time = table.column(time.ok_or_else(needs_time)?)?;
+        let time = table.time_column(time.ok_or_else(needs_time)?)?;
         Ok(Some(Self {
             body,
             time,
@@ -200,7 +202,7 @@ fn anticipate(heading: Option<Direction>, tolerance: f64) -> Policy<f64> {
     }
 }
 
-/// Copies `table` to `out` with the columns `input_model` and `status`, the input that gives the
+/// Copies `table` to `out`, which is ended, with the columns `input_model` and `status`, the input that gives the
 /// target in column `target`, from every operator off. `progress` is told the bytes read.
 ///
 /// # Errors
@@ -210,14 +212,18 @@ pub fn invert_table(
     table: &mut TableReader,
     target: &str,
     how: Invert,
-    out: Option<&mut TableWriter>,
+    out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let column = table.column(target)?;
     let mut inverting = Inverting {
         inverse: model.inverse()?,
         state: model.start(),
-        sink: Sink::start(table, out, &["input_model", "status"])?,
+        sink: Sink::start(
+            table,
+            out,
+            &[Added::Numbers("input_model"), Added::Words("status")],
+        )?,
     };
     match how {
         Invert::Hold { band } => {
@@ -251,67 +257,59 @@ pub fn invert_table(
             release(&mut waiting, heading, count)?;
         }
     }
-    Ok(inverting.sink.counts)
+    inverting.sink.finish()
 }
 
-struct Inverting<'m, 'w> {
+struct Inverting<'m> {
     inverse: Inverse<'m>,
     state: State,
-    sink: Sink<'w>,
+    sink: Sink,
 }
 
-impl Inverting<'_, '_> {
+impl Inverting<'_> {
     fn row(&mut self, row: &Row, target: f64, policy: Policy<f64>) -> Result<()> {
         let solution = self.inverse.step(&mut self.state, target, policy)?;
-        let status = match solution.status {
-            Status::Ok => "ok",
-            Status::Low => {
-                self.sink.counts.low += 1;
-                "low"
-            }
-            Status::High => {
-                self.sink.counts.high += 1;
-                "high"
-            }
-        };
-        self.sink.write(row, &[&solution.input.to_string(), status])
+        let hysteron_core::Solution { input, status } = solution;
+        match status {
+            Status::Ok => {}
+            Status::Low => self.sink.counts.low += 1,
+            Status::High => self.sink.counts.high += 1,
+            Status::Passed => self.sink.counts.passed += 1,
+        }
+        let cells = [Cell::Number(input), Cell::Word(status.name())];
+        self.sink.write(row, &cells)
     }
 }
 
-struct Sink<'w> {
-    out: Option<&'w mut TableWriter>,
+struct Sink {
+    out: Option<TableWriter>,
     counts: Counts,
 }
 
-impl<'w> Sink<'w> {
-    fn start(
-        table: &TableReader,
-        mut out: Option<&'w mut TableWriter>,
-        names: &[&str],
-    ) -> Result<Self> {
-        if let Some(name) = names
-            .iter()
-            .find(|name| table.header().iter().any(|h| h == *name))
-        {
+impl Sink {
+    fn start(table: &TableReader, out: Option<TableWriter>, added: &[Added]) -> Result<Self> {
+        let mut names = added.iter().map(Added::name);
+        if let Some(name) = names.find(|name| table.header().iter().any(|h| h == name)) {
             let problem =
                 format!("there is a column `{name}` already: rename it, or name another file");
             return Err(table.fault(None, problem));
         }
-        if let Some(out) = &mut out {
-            let names = names.iter().map(|name| (*name).to_owned());
-            out.row(table.header().iter().cloned().chain(names))?;
-        }
         Ok(Self {
-            out,
+            out: out.map(|out| out.begin(table, added)).transpose()?,
             counts: Counts::default(),
         })
     }
 
-    fn write(&mut self, row: &Row, cells: &[&str]) -> Result<()> {
+    fn write(&mut self, row: &Row, cells: &[Cell<'_>]) -> Result<()> {
         self.counts.samples += 1;
         match &mut self.out {
             Some(out) => out.extend_row(row, cells),
             None => Ok(()),
         }
+    }
+
+    fn finish(self) -> Result<Counts> {
+        self.out.map_or(Ok(()), TableWriter::finish)?;
+        Ok(self.counts)
     }
 }

@@ -205,13 +205,13 @@ fn rows_are_written_with_commas_and_points() {
             "x",
             "t,x,y,n,u,on\n0,20,0,0,18446744073709552000,0\n0.5,35.5,1,1,0,0\n1,50,4,4,1,1\n1.5,80,14,14,2,1\n2,50,13,13,3,1\n2.5,20,,2,4,0\n",
         ),
-        (fixture("v5.mat"), "fs", "fs\n2\n"),
+        (fixture("v5.mat"), "fs", "fs,note.value\n2,3\n"),
     ];
     for (path, column, expected) in expected {
         let mut table = TableReader::open(&path).unwrap();
         table.column(column).unwrap();
         let out = folder.path().join("out.csv");
-        let mut writer = TableWriter::create(Some(&out)).unwrap();
+        let mut writer = TableWriter::plain(Some((&out).into())).unwrap();
         writer.row(table.header()).unwrap();
         while table.advance().unwrap() {
             writer.extend_row(table.row(), &[]).unwrap();

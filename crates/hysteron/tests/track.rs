@@ -47,7 +47,7 @@ fn a_refusal_names_the_line() {
         assert!(whole.contains(from), "{from}");
         let wrong = whole.replace(from, to);
         let said = refusal(&wrong);
-        let line = format!("line {}`", line_of(&wrong, part));
+        let line = format!("line {}:", line_of(&wrong, part));
         assert!(said.contains(&line), "{to}: {said}, not {line}");
     }
     // What is inside a table with a kind is told by its name.
@@ -63,6 +63,27 @@ fn a_refusal_names_the_line() {
         );
     }
     assert!(refusal("title = \"nothing else\"").contains("duration_s"));
+}
+
+#[test]
+fn a_refusal_names_file_line_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let whole = text(&[SPRING, SPRING_SINE]);
+    for (from, to, field) in [
+        ("period_s = 300", "period_s = -1", "reference[1].period_s"),
+        ("smooth = 1e-8", "smooth = -1", "model.smooth"),
+        ("tolerance = 0.1", "tolerance = \"x\"", "loop.tolerance"),
+    ] {
+        let wrong = whole.replace(from, to);
+        std::fs::write(&path, &wrong).unwrap();
+        let said = Scenario::load(path.to_str().unwrap())
+            .unwrap_err()
+            .to_string();
+        let line = 1 + wrong.lines().position(|line| line.contains(to)).unwrap();
+        let expected = format!("scenario {}, line {line}: `{field}`: ", path.display());
+        assert!(said.starts_with(&expected), "{said}, not {expected}");
+    }
 }
 
 #[test]

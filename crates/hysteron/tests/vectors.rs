@@ -6,7 +6,7 @@ mod make;
 #[path = "../examples/vectors/plain.rs"]
 mod plain;
 
-use hysteron::{Direction, Model, Policy, Status};
+use hysteron::{Direction, Model, Policy};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -73,12 +73,12 @@ fn inverse(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
             },
         };
         let solution = inverse.step(&mut state, target, policy).unwrap();
-        let status = match solution.status {
-            Status::Ok => 0,
-            Status::Low => -1,
-            Status::High => 1,
-        };
-        assert_eq!(status, run.status[n], "{}, sample {n}", run.name);
+        assert_eq!(
+            solution.status.number(),
+            run.status[n],
+            "{}, sample {n}",
+            run.name
+        );
         worst = worst.max((solution.input - run.input[n]).abs() / tolerance.input);
         inputs.push(solution.input);
     }

@@ -103,14 +103,11 @@ fn inverse<T: Number>(
         },
     };
     let solution = inverse.step(state, line.sign * (target - line.offset), policy)?;
-    let status = match solution.status {
-        Status::Ok => 0,
-        Status::Low if negative => 1,
-        Status::High if negative => -1,
-        Status::Low => -1,
-        Status::High => 1,
+    let status = match negative {
+        true => solution.status.mirrored(),
+        false => solution.status,
     };
-    Ok((solution.input, status))
+    Ok((solution.input, status.number().into()))
 }
 
 /// Model and inverse, ready to step.

@@ -1,7 +1,7 @@
 //! The two blocks: model and inverse, with offset and sign.
 
 use super::{Problem, Result};
-use hysteron_core::{Clipped, Direction, Model, Policy, Solution, Status, Turn, turn_capacity};
+use hysteron_core::{Clipped, Direction, Model, Policy, Solution, Turn, turn_capacity};
 
 pub(crate) type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
 
@@ -101,14 +101,13 @@ impl Block {
                 let policy = self.policy(inputs);
                 let Solution { input, status } =
                     self.model.inverse()?.step(state, target, policy)?;
-                let flag = match status {
-                    Status::Ok => 0,
-                    Status::Low => -1,
-                    Status::High => 1,
+                let status = match self.sign < 0.0 {
+                    true => status.mirrored(),
+                    false => status,
                 };
                 Ok(Outputs {
                     signal: input,
-                    flag: if self.sign < 0.0 { -flag } else { flag },
+                    flag: status.number().into(),
                 })
             }
         }

@@ -1,7 +1,7 @@
 //! Options of `adapt`.
 
 use super::value::*;
-use super::{Json, Repair};
+use super::{Force, Json, Repair};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub(crate) struct Adapt {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds, for the table
+    /// Column of time, in seconds or with its unit in its name, for the table
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample; `unknown` takes off or on, with which the model errs less
@@ -33,11 +33,14 @@ pub(crate) struct Adapt {
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) tuning: Tuning,
-    /// Where the adapted model goes
+    /// Where the adapted model goes; with --force also one that ended worse than the model left alone
     #[arg(short, value_name = "ADAPTED")]
     pub(crate) out: PathBuf,
-    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`
-    #[arg(long, value_name = "CSV")]
+    #[command(flatten)]
+    pub(crate) force: Force,
+    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`;
+    /// CSV, or Parquet where the name ends with .parquet
+    #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) json: Json,
@@ -81,6 +84,14 @@ pub(crate) struct Tuning {
     /// Samples learned from after which the weights are judged against the last good ones [default: 256]
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
+    /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all
+    /// are learned from [default: 12]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = parse_finite)]
+    gate: Option<f64>,
+    /// Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
+    /// more a plant that jumped [default: 8]
+    #[arg(long, value_name = "N")]
+    burst: Option<u32>,
 }
 
 impl From<&Adapt> for hysteron::AdaptOptions {
@@ -101,6 +112,8 @@ impl From<&Adapt> for hysteron::AdaptOptions {
             offset_share: tuning.offset_share,
             movement: tuning.movement,
             trial: tuning.trial,
+            gate: tuning.gate,
+            burst: tuning.burst,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Arguments of `hysteron export`.
 
-use super::{Json, Load};
+use super::{Force, Json, Load};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -40,6 +40,8 @@ pub(crate) struct ExportC {
     /// Folder for the files: the algorithm (hysteron_mcu…) and the model's
     #[arg(short, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Name of the model in C, and of its files [default: that of the model's file]
     #[arg(long)]
     pub(crate) name: Option<String>,
@@ -62,6 +64,8 @@ pub(crate) struct ExportFmu {
     /// The file, which ends with .fmu
     #[arg(short, value_name = "FMU")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// The inverse instead of the model: from the wanted output to the input
     #[arg(long)]
     pub(crate) inverse: bool,

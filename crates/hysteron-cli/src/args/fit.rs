@@ -1,7 +1,7 @@
 //! Options of `fit` and `prepare`.
 
 use super::value::*;
-use super::{Json, Repair};
+use super::{Force, Json, Repair};
 use clap::Args;
 use hysteron::Step;
 use std::path::PathBuf;
@@ -70,6 +70,8 @@ pub(crate) struct Fit {
     #[arg(short, value_name = "MODEL")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
     pub(crate) json: Json,
 }
 
@@ -83,7 +85,7 @@ pub(crate) struct Prepare {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds
+    /// Column of time, in seconds or with its unit in its name
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     #[command(flatten)]
@@ -94,12 +96,14 @@ pub(crate) struct Prepare {
     #[arg(short, value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
     pub(crate) json: Json,
 }
 
 #[derive(Args)]
 pub(crate) struct PrepareBeforeFit {
-    /// Column of time in seconds, for the preparation, a thermal body and the warning that loops depend on rate
+    /// Column of time, in seconds or with its unit in its name, for the preparation, a thermal body and the warning that loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named

@@ -1,7 +1,8 @@
 //! The command line: its forms, defaults and help.
 
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use hysteron::Target;
+use std::path::{Path, PathBuf};
 
 mod adapt;
 mod export;
@@ -20,7 +21,10 @@ pub(crate) use value::*;
     version,
     arg_required_else_help = true,
     after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs; decimal points or commas;\n\
-                  a row of units; # and % comments), Parquet, or MATLAB files (v5, v7, v7.3). `-` reads CSV from standard input.\n\
+                  a row of units; # and % comments; loggers and LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
+                  A column goes by its name, without its unit if there is no other, or by its number from 1.\n\
+                  `-` reads CSV from standard input.\n\
+                  Results of earlier runs are replaced; any other file is kept, unless --force is given.\n\
                   Exit codes: 0 done, 1 the work failed, 2 wrong usage."
 )]
 pub(crate) struct Cli {
@@ -91,18 +95,51 @@ pub(crate) struct Json {
 }
 
 #[derive(Args)]
-pub(crate) struct Repair {
-    /// Drop rows without a number, sort times that go back, merge repeated ones, and tell of it
+pub(crate) struct Force {
+    /// Replace also what hysteron did not make, or what was changed since
     #[arg(long)]
-    repair: bool,
+    pub(crate) force: bool,
 }
 
-impl From<&Repair> for hysteron::Repair {
+impl Force {
+    /// A place for a result, which replaces none of the files that are read.
+    pub(crate) fn target<'a>(&self, path: &'a Path, inputs: &'a [&'a Path]) -> Target<'a> {
+        Target::keeping_foreign(path, self.force).made_from(inputs)
+    }
+}
+
+#[derive(Args)]
+pub(crate) struct Repair {
+    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and tell of it
+    #[arg(long)]
+    repair: bool,
+    #[command(flatten)]
+    memory: Memory,
+}
+
+#[derive(Args)]
+pub(crate) struct Memory {
+    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is refused
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_bytes)]
+    pub(crate) max_memory: u64,
+}
+
+impl From<&Repair> for hysteron::ReadOptions {
     fn from(args: &Repair) -> Self {
-        match args.repair {
-            true => Self::Mend,
-            false => Self::Refuse,
+        Self {
+            repair: match args.repair {
+                true => hysteron::Repair::Mend,
+                false => hysteron::Repair::Refuse,
+            },
+            max_memory: args.memory.max_memory,
         }
+    }
+}
+
+impl Repair {
+    /// For tables that are read without repair.
+    pub(crate) fn max_memory(&self) -> u64 {
+        self.memory.max_memory
     }
 }
 
@@ -141,12 +178,17 @@ pub(crate) struct Simulate {
     /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
-    /// Column of time in seconds, for a model with a thermal body
+    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the table goes [default: standard output; with --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
+    /// --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -172,9 +214,14 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Where the table goes [default: standard output; with --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
+    /// --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -191,7 +238,7 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time in seconds, for the report's figures and for a model with a thermal body
+    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample
@@ -204,6 +251,8 @@ pub(crate) struct Evaluate {
     /// Write a page and its figures (SVG, PNG) into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -218,7 +267,7 @@ pub(crate) struct Inspect {
     /// Column of the output
     #[arg(long, value_name = "COL", requires = "input")]
     pub(crate) output: Option<String>,
-    /// Column of time in seconds
+    /// Column of time, in seconds or with its unit in its name
     #[arg(long, value_name = "COL", requires = "input")]
     pub(crate) time: Option<String>,
     #[command(flatten)]
@@ -265,9 +314,13 @@ pub(crate) struct Design {
     /// Where the profile goes, with the columns `time [s]` and `input`
     #[arg(short, value_name = "PROFILE")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Draw the plane with what is known of each operator
     #[arg(long, value_name = "SVG")]
     pub(crate) figure: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) json: Json,
 }
@@ -290,6 +343,8 @@ pub(crate) struct Track {
     #[arg(short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
     pub(crate) json: Json,
 }
 
@@ -298,6 +353,8 @@ pub(crate) struct Demo {
     /// Folder for the recordings, the model and the report
     #[arg(short, value_name = "DIR", default_value = "hysteron-demo")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     #[command(flatten)]
     pub(crate) json: Json,
 }

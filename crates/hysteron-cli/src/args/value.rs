@@ -135,6 +135,24 @@ pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of bytes, with K, M or G for powers of 1024.
+pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let units = [("K", 10), ("M", 20), ("G", 30)];
+    let parts = units.into_iter().find_map(|(unit, power)| {
+        let number = text
+            .strip_suffix(unit)
+            .or(text.strip_suffix(&unit.to_lowercase()))?;
+        Some((number, power))
+    });
+    let (number, power) = parts.unwrap_or((text, 0));
+    let bytes = number.trim().parse::<u64>().ok();
+    let bytes = bytes.and_then(|bytes| bytes.checked_mul(1 << power));
+    bytes
+        .filter(|bytes| *bytes > 0)
+        .ok_or_else(|| "a number of bytes is needed, such as 512M or 8G".into())
+}
+
 pub(super) fn parse_band(text: &str) -> Result<f64, String> {
     let band = parse_finite(text)?;
     if band < 0.0 {

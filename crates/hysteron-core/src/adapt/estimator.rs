@@ -1,5 +1,6 @@
 //! The estimator: a method, its guards, and the model that it keeps up to date.
 
+use super::gate::Gate;
 use super::increments::Increment;
 use super::memory::{Layout, Slices};
 use super::trial::Trial;
@@ -59,6 +60,7 @@ pub struct Estimator<T, M> {
     pub(super) trial: Trial<T>,
     /// That of the offset alone, where it is learned apart.
     pub(super) level: Trial<T>,
+    pub(super) gate: Gate<T>,
     pub(super) frozen: bool,
 }
 
@@ -105,22 +107,14 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         let above = measured - output.output;
         let offset = self.offset();
         let error = above - offset;
-        let moved = self.moves(state.position());
-        let outcome = if self.frozen {
-            Outcome::Frozen
-        } else {
-            match self.options.method {
-                Method::Increments { gain, span } => {
-                    let position = (state.position(), moved);
-                    self.learn_increment(position, (measured, above), (gain, span))
-                }
-                _ if moved => self.learn(state, measured, error),
-                _ => Outcome::AtRest,
-            }
-        };
+        let outcome = self.judge(state, measured, (above, error));
         let (outcome, changed) = self.renew(model, outcome);
         if changed {
             model.rebase(state)?;
+        }
+        if outcome.is_of_believed() {
+            self.gate
+                .settle(measured - model.output(state) - self.offset());
         }
         Ok(Learning {
             output: output.output + offset,
@@ -170,6 +164,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// Goes back to the last good weights.
     pub fn roll_back<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
         self.take_back();
+        self.gate.restart();
         self.rewrite(model);
     }
 
@@ -211,16 +206,6 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             operators::follow(slices.gamma, levels, from, state.position());
         }
         self.place = Some(state.place());
-    }
-
-    /// Whether the input moved since it was learned from: without that, a sample is the same equation again.
-    fn moves(&mut self, position: T) -> bool {
-        let way = position - self.learned;
-        let moved = way.larger(-way) > self.options.movement;
-        if moved {
-            self.learned = position;
-        }
-        moved
     }
 
     /// Lets the model's table follow the parameters, and takes them back where it would not be one of numbers; says what

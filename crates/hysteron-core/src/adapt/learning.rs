@@ -36,19 +36,23 @@ pub enum Outcome {
     Frozen,
     /// The weights did far worse than the last good ones, or were no numbers any more: these are back.
     RolledBack,
+    /// The reading differs too much from what was expected to be learned from, and has not done so
+    /// for long: [`Adaptation::gate`].
+    Rejected,
 }
 
 impl Outcome {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Learned,
         Self::Waiting,
         Self::AtRest,
         Self::Frozen,
         Self::RolledBack,
+        Self::Rejected,
     ];
 
-    /// Its name in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`.
+    /// Its name in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -57,12 +61,59 @@ impl Outcome {
             Self::AtRest => "at-rest",
             Self::Frozen => "frozen",
             Self::RolledBack => "rolled-back",
+            Self::Rejected => "rejected",
         }
+    }
+
+    /// Whether the reading passed the gate.
+    pub(super) fn is_of_believed(self) -> bool {
+        matches!(self, Self::Learned | Self::Waiting | Self::RolledBack)
     }
 }
 
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    pub(super) fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
+    /// Learns from a reading, if there is anything to learn and it is to be believed. `above` is
+    /// what was measured above `H`.
+    pub(super) fn judge<S>(
+        &mut self,
+        state: &State<T, S>,
+        measured: T,
+        (above, error): (T, T),
+    ) -> Outcome
+    where
+        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    {
+        let position = state.position();
+        let moved = self.moves(position);
+        if self.frozen {
+            return Outcome::Frozen;
+        }
+        let ends = self.increment_ends(position);
+        if !(moved || ends) {
+            return Outcome::AtRest;
+        }
+        if !self.gate.believes(error, &self.options) {
+            // An increment that begins before a jump and ends after it would take the jump for a
+            // slope.
+            self.increment = None;
+            return Outcome::Rejected;
+        }
+        let Method::Increments { gain, .. } = self.options.method else {
+            return self.learn(state, measured, error);
+        };
+        let wrong_level = moved && self.learn_level(measured, above, gain);
+        let outcome = match ends {
+            true => self.learn_slope(position, measured, gain),
+            false => Outcome::Waiting,
+        };
+        match outcome {
+            _ if wrong_level => Outcome::RolledBack,
+            Outcome::Waiting if !moved => Outcome::AtRest,
+            outcome => outcome,
+        }
+    }
+
+    fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
@@ -109,34 +160,38 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         Outcome::Learned
     }
 
-    /// `above` is what was measured above `H`.
-    pub(super) fn learn_increment(
-        &mut self,
-        (position, moved): (T, bool),
-        (measured, above): (T, T),
-        (gain, span): (T, T),
-    ) -> Outcome {
-        let wrong_level = moved && self.learn_level(measured, above, gain);
-        match self.learn_slope(position, measured, (gain, span)) {
-            _ if wrong_level => Outcome::RolledBack,
-            Outcome::Waiting if !moved => Outcome::AtRest,
-            outcome => outcome,
+    /// Whether the input moved since it was learned from: without that, a sample is the same
+    /// equation again.
+    fn moves(&mut self, position: T) -> bool {
+        let way = position - self.learned;
+        let moved = way.larger(-way) > self.options.movement;
+        if moved {
+            self.learned = position;
+        }
+        moved
+    }
+
+    /// Whether an increment ends at a position, or one can begin there.
+    fn increment_ends(&mut self, position: T) -> bool {
+        let Method::Increments { span, .. } = self.options.method else {
+            return false;
+        };
+        let least = span.larger(self.options.movement);
+        match &mut self.increment {
+            Some(increment) => increment.extend(position, least),
+            None => true,
         }
     }
 
-    fn learn_slope(&mut self, position: T, measured: T, (gain, span): (T, T)) -> Outcome {
+    fn learn_slope(&mut self, position: T, measured: T, gain: T) -> Outcome {
         let (operator, levels, options) = (self.operator, self.levels, self.options);
         let start = Increment::start(measured, position);
         let mut slices = self.layout.cut(self.memory.as_mut());
-        let Some(mut increment) = self.increment else {
+        let Some(increment) = self.increment else {
             slices.anchor.copy_from_slice(slices.gamma);
             self.increment = Some(start);
             return Outcome::Waiting;
         };
-        if !increment.extend(position, span.larger(options.movement)) {
-            self.increment = Some(increment);
-            return Outcome::Waiting;
-        }
         self.increment = Some(start);
         let finished = increment.finish(&slices, operator, levels, measured);
         let errors = finished.errors;

@@ -5,6 +5,7 @@
 //! inverse exists at every instant.
 
 mod estimator;
+mod gate;
 mod gradient;
 mod increments;
 mod learning;

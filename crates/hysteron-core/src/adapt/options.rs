@@ -67,6 +67,20 @@ pub enum Method<T> {
 /// | `leakage` | 0 | 0 to 1 | share by which weights return to the off-line ones with each update (Ioannou & Kokotović 1984) |
 /// | `movement` | 0.05 | from 0 | levels between two samples that are learned from: less is no excitation |
 /// | `trial` | 256 | from 1 | samples on which weights are judged against the last good ones |
+/// | `gate` | 12 | 0, or from 2 | a reading further off than so many times the usual is not learned from; 0: none is refused |
+/// | `burst` | 8 | from 1 | readings in a row that the gate refuses before it believes them, where they agree |
+///
+/// **Gate.** Measured less expected is compared with what the last reading that was believed left
+/// of its error, so that it is the surprise that counts and not what the model says wrongly all the
+/// time. The usual size of a surprise is the running mean over the last 64 or so that were
+/// believed. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples
+/// at rest are not judged, as nothing is learned from them.
+///
+/// Readings refused one after the other agree where two surprises differ by half of the larger one
+/// at most. The one that completes `burst` of them is learned from, and surprises of its size are
+/// usual then. So a wrong reading held for `burst` samples or longer is learned as a jump of the
+/// plant would be: no reading tells the two apart. Where `burst` are refused in a row without
+/// agreeing, as when noise grows, the usual size doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
@@ -84,6 +98,12 @@ pub struct Adaptation<T> {
     /// worse than these; and the present ones go back to the good ones if their mean square error was more than four times
     /// as large. Weights from within a burst of wrong readings that is shorter than half a trial do not become good.
     pub trial: u32,
+    /// How many times the usual surprise a reading may differ from what was expected, to be learned
+    /// from. 0 lets every reading pass.
+    pub gate: T,
+    /// Readings beyond the gate in a row that are taken for a jump of the plant, where they agree.
+    /// Fewer are a burst of wrong ones, of which nothing is learned.
+    pub burst: u32,
 }
 
 impl<T: Real> Default for Adaptation<T> {
@@ -98,6 +118,8 @@ impl<T: Real> Default for Adaptation<T> {
             leakage: T::ZERO,
             movement: hundredths(5),
             trial: 256,
+            gate: T::from_index(12),
+            burst: 8,
         }
     }
 }
@@ -140,7 +162,10 @@ impl<T: Real> Adaptation<T> {
         require(from_zero(self.dead_zone), "dead_zone")?;
         require(self.leakage >= T::ZERO && self.leakage <= T::ONE, "leakage")?;
         require(from_zero(self.movement), "movement")?;
-        require(self.trial > 0, "trial")
+        require(self.trial > 0, "trial")?;
+        let shut = self.gate >= two && self.gate.is_finite();
+        require(shut || self.gate == T::ZERO, "gate")?;
+        require(self.burst > 0, "burst")
     }
 
     /// What an error counts beyond the dead zone.
@@ -158,7 +183,8 @@ pub(crate) fn range_of(option: &str) -> &'static str {
         "noise" | "spread" => "above 0, and its square a number too",
         "correlation" => "a finite number from 0 on, and 0 where shares are adapted",
         "leakage" => "from 0 to 1",
-        "trial" => "1 or more",
+        "trial" | "burst" => "1 or more",
+        "gate" => "a finite number from 2 on, or 0 for none",
         "method" => "gradient or least squares where shares are adapted",
         "shares" => "finite numbers from 0 on, at least one",
         _ => "a finite number from 0 on",

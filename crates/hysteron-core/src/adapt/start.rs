@@ -1,6 +1,7 @@
 //! How an estimator is set up.
 
 use super::estimator::Estimator;
+use super::gate::Gate;
 use super::memory::Layout;
 use super::trial::Trial;
 use super::{Adaptation, Method, least_squares, parameters};
@@ -31,6 +32,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         refuse_negative(levels, weights)?;
         estimator.begin(weights);
         model.set_weights(weights)?;
+        estimator.gate = Gate::over(model);
         Ok(estimator)
     }
 
@@ -82,6 +84,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         }
         estimator.begin(shares);
         estimator.rewrite(model);
+        estimator.gate = Gate::over(model);
         Ok(estimator)
     }
 
@@ -114,6 +117,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             rows_due: 0,
             trial: Trial::default(),
             level: Trial::default(),
+            gate: Gate::new(T::ZERO),
             frozen: false,
         })
     }

@@ -109,9 +109,14 @@ impl<T: Number> Constants<T> {
         let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
         let model = aligned(2 * WORD + 10 * T::BYTES + 3);
         let state = 4 * WORD + 6 * T::BYTES;
-        let options = aligned(5 * T::BYTES + WORD);
+        let options = aligned(6 * T::BYTES + 2 * WORD);
+        let gate = aligned(4 * T::BYTES + 2 * WORD);
         let adaptive = aligned(
-            aligned(model + state + options + 3 * T::BYTES + 8 * WORD) + 7 * T::BYTES + WORD + 2,
+            aligned(model + state + options + 3 * T::BYTES + 8 * WORD)
+                + 7 * T::BYTES
+                + gate
+                + WORD
+                + 2,
         );
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {

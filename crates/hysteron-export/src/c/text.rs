@@ -1,7 +1,7 @@
 //! The files that hold a model.
 
+use super::CExport;
 use super::constants::{Constants, Number};
-use super::{CExport, MARK};
 use hysteron::{Model, Operator, Quantity, Sign};
 use hysteron_core::{operator_index, table_index, turn_capacity};
 use std::fmt::Write;
@@ -80,7 +80,7 @@ pub(super) fn header<T: Number>(
     }
     let lines: String = lines.iter().map(|line| format!(" * {line}\n")).collect();
     format!(
-        "{MARK}, hysteron {version}.
+        "/* hysteron {version}.
 {lines} */
 #ifndef {shout}_H
 #define {shout}_H
@@ -118,7 +118,7 @@ pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> S
     let real = real.name();
     let plane = constants.core.plane();
     let mut text = format!(
-        "{MARK}, hysteron {version}. */
+        "/* hysteron {version}. */
 #include \"{name}.h\"
 
 /* The constants below are of {real}. */

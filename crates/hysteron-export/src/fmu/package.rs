@@ -2,13 +2,18 @@
 
 use super::Fmi;
 use hysteron::{Error, Result};
-use std::io::{Cursor, Write};
+use std::fs::File;
+use std::io::{self, Cursor, Read, Write};
+use std::path::Path;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 const LINUX: &[u8] = include_bytes!("../../binaries/linux64/hysteron.so");
 const WINDOWS: &[u8] = include_bytes!("../../binaries/win64/hysteron.dll");
 const LICENCE: &str = include_str!("../../LICENSE-MIT");
+
+const DESCRIPTION: &str = "modelDescription.xml";
+const ENTRIES: usize = 6;
 
 pub(super) struct Files {
     pub(super) description: String,
@@ -27,8 +32,8 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
          https://github.com/rust-lang/rust/blob/HEAD/COPYRIGHT), that for Windows also of mingw-w64 and of GCC's runtime (GCC Runtime \
          Library Exception). The model in resources/ is its maker's.\n\n{LICENCE}"
     );
-    let entries: [(String, &[u8]); 6] = [
-        ("modelDescription.xml".into(), files.description.as_bytes()),
+    let entries: [(String, &[u8]); ENTRIES] = [
+        (DESCRIPTION.into(), files.description.as_bytes()),
         (format!("binaries/{linux}/{name}.so"), LINUX),
         (format!("binaries/{windows}/{name}.dll"), WINDOWS),
         ("resources/model.txt".into(), files.model_text.as_bytes()),
@@ -57,4 +62,27 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
             "the archive cannot be made: {error}"
         ))),
     }
+}
+
+/// Whether an archive is one of ours as it was written: the description says so, and no file was
+/// added or, as its time would tell, exchanged.
+pub(super) fn is_ours(path: &Path) -> io::Result<bool> {
+    let Ok(mut archive) = ZipArchive::new(File::open(path)?) else {
+        return Ok(false);
+    };
+    if archive.len() != ENTRIES {
+        return Ok(false);
+    }
+    for n in 0..ENTRIES {
+        let untouched = archive
+            .by_index_raw(n)
+            .is_ok_and(|entry| entry.last_modified() == Some(DateTime::default()));
+        if !untouched {
+            return Ok(false);
+        }
+    }
+    let mut text = String::new();
+    let description = archive.by_name(DESCRIPTION);
+    let read = description.is_ok_and(|mut entry| entry.read_to_string(&mut text).is_ok());
+    Ok(read && text.contains("generationTool=\"hysteron "))
 }

@@ -75,7 +75,7 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
             flag(
                 3,
                 "status",
-                "whether the wanted output can be reached: 0, or -1 below and 1 above every output",
+                "whether the wanted output is reached: 0; -1 below and 1 above every output; 2 where a relay jumps past it",
             ),
             heading(),
             band(&model.output),

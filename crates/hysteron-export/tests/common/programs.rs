@@ -1,31 +1,22 @@
 //! Programs that tests start, and what happens where one is missing. The tests of the C interface share this file.
 #![allow(clippy::unwrap_used, dead_code)]
 
+#[path = "../../../hysteron/tests/common/skip.rs"]
+mod skipping;
+
 use std::path::Path;
 use std::process::Command;
 
 /// Whether a tool can be started; says so if not, and fails where nothing may be skipped.
 pub fn has(tool: &str) -> bool {
-    starts(tool) || skip(&format!("there is no `{tool}`"))
-}
-
-/// The same for what is welcome and not needed.
-pub fn happens_to_have(what: &str, there: bool) -> bool {
-    if !there {
-        eprintln!("skipped: {what} is not there");
-    }
-    there
-}
-
-pub fn starts(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output();
-    found.is_ok_and(|done| done.status.success())
+    found.is_ok_and(|done| done.status.success()) || skip(&format!("there is no `{tool}`"))
 }
 
 /// What is missing is skipped, or fails where nothing may be.
 pub fn skip(why: &str) -> bool {
     assert!(std::env::var_os("HYSTERON_NO_SKIP").is_none(), "{why}");
-    eprintln!("skipped: {why}");
+    skipping::skipped(why);
     false
 }
 

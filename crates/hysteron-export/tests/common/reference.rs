@@ -2,7 +2,7 @@
 
 use hysteron::{Model, Sign};
 use hysteron_core::{
-    Direction, Plane, Policy, Real, State, Status, Turn, table_len, turn_capacity,
+    Direction, Plane, Policy, Real, State, Turn, table_len, turn_capacity,
 };
 use std::fmt::Write;
 
@@ -127,12 +127,11 @@ impl<T: Number> Reference<T> {
         let inverse = self.model.inverse().map_err(|e| e.code())?;
         let solution = inverse.step(&mut self.state, raw, policy);
         let solution = solution.map_err(|e| e.code())?;
-        let status = match solution.status {
-            Status::Ok => 0,
-            Status::Low => -1,
-            Status::High => 1,
+        let status = match falls {
+            true => solution.status.mirrored(),
+            false => solution.status,
         };
-        Ok((solution.input, if falls { -status } else { status }))
+        Ok((solution.input, status.number().into()))
     }
 
     /// What the driver prints for the call.

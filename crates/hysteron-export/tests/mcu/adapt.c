@@ -30,6 +30,8 @@ int main(void)
                 options.leakage = number(word());
                 options.movement = number(word());
                 options.trial = (uint32_t)atoi(word());
+                options.gate = number(word());
+                options.burst = (uint32_t)atoi(word());
             }
             k = models[n]->levels;
             /* Exactly what is asked for, in memory that held something else. */

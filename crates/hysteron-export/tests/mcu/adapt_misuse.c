@@ -58,6 +58,11 @@ int main(void)
     REFUSED(movement, -1);
     REFUSED(movement, infinity);
     REFUSED(trial, 0);
+    REFUSED(gate, 1);
+    REFUSED(gate, -8);
+    REFUSED(gate, nan);
+    REFUSED(gate, infinity);
+    REFUSED(burst, 0);
     hys_adapt_defaults(&options);
     memset(bad, 0, sizeof bad);
     bad[1] = -1;

@@ -2,18 +2,20 @@
 
 use super::report::{NamedTrace, TrackReport, TrackTable};
 use crate::error::ReportError;
-use hysteron::Quantity;
 use hysteron::track::{Comparison, Median, Scenario};
+use hysteron::{AtomicFolder, Quantity};
 use std::path::{Path, PathBuf};
 
-/// Writes the report of `comparison`, which `scenario` gave, into `dir`. See [`TrackReport::write`].
+/// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one. See
+/// [`TrackReport::write_into`].
 ///
 /// # Errors
 /// As [`TrackReport::write`].
 pub fn write_comparison(
     scenario: &Scenario,
     comparison: &Comparison,
-    dir: &Path,
+    folder: &mut AtomicFolder,
+    within: &Path,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let [drive, input, output] = scenario.plant.quantities();
     let runs = comparison.controllers.iter().zip(&comparison.traces);
@@ -37,7 +39,7 @@ pub fn write_comparison(
         table: &table,
         plane: comparison.model.plane(),
     }
-    .write(dir)
+    .write_into(folder, within)
 }
 
 /// Tracking errors in every window; prediction error and lag in the first and the last.

@@ -135,6 +135,7 @@ fn trace(controller: &Controller, samples: usize, plane: &Plane) -> Trace {
         out_of_reach: reference(t) > 11.2,
         sensor_fault: (610.0..625.0).contains(&t),
         adapted: controller.adapts,
+        rejected: controller.adapts && (500.0..504.0).contains(&t),
     };
     Trace {
         reference: each(&reference),

@@ -22,7 +22,7 @@ const WORD: f64 = 10.5;
 type Flag = fn(&LoopStatus) -> bool;
 
 /// What a loop can say: the word of its row, what that means, its colour, and whether it holds.
-const FLAGS: [(&str, &str, &str, Flag); 3] = [
+const FLAGS: [(&str, &str, &str, Flag); 4] = [
     ("limit", "drive at a limit", "#8fb6d2", |status| {
         status.saturated
     }),
@@ -31,6 +31,9 @@ const FLAGS: [(&str, &str, &str, Flag); 3] = [
     }),
     ("sensor", "sensor fault", "#12233a", |status| {
         status.sensor_fault
+    }),
+    ("reading", "reading rejected", "#8a5fa8", |status| {
+        status.rejected
     }),
 ];
 

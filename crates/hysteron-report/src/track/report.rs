@@ -6,7 +6,7 @@ use super::view::View;
 use crate::error::ReportError;
 use crate::files;
 use hysteron::control::Trace;
-use hysteron::{Plane, Quantity};
+use hysteron::{AtomicFolder, Plane, Quantity, Target};
 use std::path::{Path, PathBuf};
 
 /// One controller's run.
@@ -96,8 +96,8 @@ impl TrackReport<'_> {
     /// Writes `index.html` and the figures `track-*.svg` and `track-*.png` into `dir`, which is made if absent.
     ///
     /// Samples that are not finite leave gaps. What no run has (predictions, snapshots, reversals of the reference) has no
-    /// figure; files of missing figures that an earlier report left in `dir` are removed. Each file appears
-    /// complete or not at all.
+    /// figure. The report appears whole or not at all. Files of an earlier report are replaced or removed, those of
+    /// others stay; a path alone as `dir` replaces these too where they are in the way.
     ///
     /// Returns the paths written, the page first.
     ///
@@ -106,11 +106,28 @@ impl TrackReport<'_> {
     /// [`ReportError::NoRun`], [`ReportError::EmptyRun`], [`ReportError::RunLength`], [`ReportError::Snapshot`] and
     /// [`ReportError::Row`] where the parts do not fit together, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
-    pub fn write(&self, dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
+        let mut folder = AtomicFolder::create(dir, None)?;
+        let paths = self.write_into(&mut folder, Path::new(""))?;
+        folder.commit()?;
+        Ok(paths)
+    }
+
+    /// As [`TrackReport::write`], into the folder `within` another one that is being written.
+    ///
+    /// # Errors
+    ///
+    /// As [`TrackReport::write`].
+    pub fn write_into(
+        &self,
+        folder: &mut AtomicFolder,
+        within: &Path,
+    ) -> Result<Vec<PathBuf>, ReportError> {
         self.check()?;
         let view = View::new(self);
         let figures = Figure::ALL.map(|figure| (figure, figure.svg(&view)));
-        files::write_report(dir, figures.into_iter(), |drawn| page::html(&view, drawn))
+        let place = files::Place { folder, within };
+        files::write_report(place, figures.into_iter(), |drawn| page::html(&view, drawn))
     }
 
     fn check(&self) -> Result<(), ReportError> {

@@ -144,7 +144,8 @@ fn a_drive_that_is_the_input_has_no_figure_of_its_own() {
         let view = View::new(&report);
         assert!(Figure::Drive.svg(&view).is_none());
         // The status goes with the input then.
-        assert!(Figure::Input.svg(&view).unwrap().contains("sensor fault"));
+        let input = Figure::Input.svg(&view).unwrap();
+        assert!(input.contains("sensor fault") && input.contains("reading rejected"));
     });
 }
 

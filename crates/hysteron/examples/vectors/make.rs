@@ -165,14 +165,25 @@ fn targets(model: &Model) -> Vec<(&'static str, Vec<Wanted>)> {
         heading: 0,
         tolerance: 0.0,
     };
+    let anywhere = (0..SAMPLES).map(anywhere).collect();
+    // Jumps among a few targets, so that many are those at which a branch began or a target rested.
+    let tolerance = short(0.01 * (on - off).abs()) + GRAIN / 2.0;
+    let mut told = |tolerance: f64| {
+        let jump = |_| Wanted {
+            target: at((uniform(&mut random) * 7.99).floor() / 6.0 - 0.0625),
+            heading: (uniform(&mut random) * 2.999) as i8 - 1,
+            tolerance,
+        };
+        (0..SAMPLES).map(jump).collect()
+    };
+    let (jumps, loose) = (told(0.0), told(tolerance));
     vec![
         ("hold: ramps with rests", ramps(false)),
         ("anticipate: the same ramps", ramps(true)),
         ("hold with a tolerance: a noisy target", noisy),
-        (
-            "hold: anywhere, also out of reach",
-            (0..SAMPLES).map(anywhere).collect(),
-        ),
+        ("hold: anywhere, also out of reach", anywhere),
+        ("any heading: jumps among a few targets", jumps),
+        ("any heading, with a tolerance: jumps among a few targets", loose),
     ]
 }
 

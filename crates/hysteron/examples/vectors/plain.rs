@@ -69,13 +69,21 @@ impl<'m> Search<'m> {
             self.output
         };
         let apart = (target - self.output).abs();
+        // How far the output has moved on from the target that way.
+        let way = f64::from(heading);
+        let away = way * (self.output - target);
         let (input, status) = if target > greatest + reach {
             (highest, 1)
         } else if target < least - reach {
             (lowest, -1)
-        } else if heading != 0 && (target - rest).abs() <= reach {
-            // To the edge of the dead band.
-            let left = |output| f64::from(heading) * (output - rest) > tolerance;
+        } else if heading != 0 && (target - rest).abs() <= reach && away <= reach {
+            // To the edge of the dead band, no further than the tolerance from target and rest.
+            let from = if way > 0.0 {
+                target.min(rest)
+            } else {
+                target.max(rest)
+            };
+            let left = |output| way * (output - from) > tolerance;
             (self.first(heading, left)?, 0)
         } else if apart <= same || direction != self.branch.0 && apart <= tolerance {
             (self.input, 0)

@@ -1,24 +1,30 @@
 //! An estimator over a recording: each sample is predicted, then learned from.
 
+mod counts;
 mod options;
 mod parts;
 
+pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
 use crate::{
-    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start, Watch,
+    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start,
+    TableWriter, Watch,
 };
 use serde::Serialize;
 use serde_json::json;
-use std::path::Path;
 
 /// What came of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adapted {
-    /// The model with the last weights. Its [`FitSummary`] is that of the last weights over the whole recording; the
-    /// confidence of the off-line model does not hold any more and is gone; what was done stands under `adapted`.
+    /// The model with the last weights that are not on [probation](Adapted::probation). Its
+    /// [`FitSummary`] is that of these weights over the whole recording; the confidence of the
+    /// off-line model does not hold any more and is gone; what was done stands under `adapted`.
     pub model: Model,
+    /// Samples at the end whose teaching the model has nothing of, because none that could judge it
+    /// comes after them: as many as [`Adaptation::burst`], none without a [`Adaptation::gate`].
+    pub probation: usize,
     /// Output predicted for each sample before it was learned from.
     pub output_model: Vec<f64>,
     /// What was done with each sample.
@@ -29,7 +35,14 @@ pub struct Adapted {
     pub whole: Compared,
     /// Errors over its first, second and last third, by the number of samples; none of fewer than three samples.
     pub thirds: Vec<Compared>,
-    /// Errors of the last weights over the whole recording, run again from its start: they have seen all of it.
+    /// Errors over the last third without the readings refused: what [`Adapted::worse`] goes by.
+    /// None where there are no such samples.
+    pub late: Option<Compared>,
+    /// Whether the model that learned ended worse than the one left alone: whether it erred more on
+    /// the last third, on samples that it had not learned from yet, by more than rounding.
+    pub worse: bool,
+    /// Errors of the model's weights over the whole recording, run again from its start: they have
+    /// seen all of it.
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
@@ -46,19 +59,12 @@ pub struct Compared {
     pub fixed: Errors,
 }
 
-/// How often each [`Outcome`] was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct OutcomeCounts {
-    /// Samples learned from.
-    pub learned: usize,
-    /// Errors within the dead zone, or increments that were not finished.
-    pub waiting: usize,
-    /// Samples at which the input did not move.
-    pub at_rest: usize,
-    /// Times the weights went back to the last good ones.
-    pub rolled_back: usize,
-    /// Inputs outside the plane, taken as its end; they are among the others too.
-    pub outside: usize,
+impl Compared {
+    /// Whether the model that learned errs more, by more than a part in 10⁹ of the model's range:
+    /// the two work out the same sum in another order.
+    fn is_worse(&self, (off, on): (f64, f64)) -> bool {
+        self.adapting.rmse > self.fixed.rmse + 1e-9 * (on - off).abs()
+    }
 }
 
 /// How far a model has gone from the one that it was.
@@ -81,11 +87,12 @@ impl Adapted {
     }
 
     /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
-    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`).
+    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`,
+    /// `frozen`, `rolled-back`, `rejected`).
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
-    pub fn write_table(&self, recording: &Recording, path: &Path) -> Result<()> {
+    pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
         if recording.len() != self.outcomes.len() {
             return Err(Error::Recording {
                 path: recording.source.as_ref().map(|source| source.path.clone()),
@@ -100,7 +107,7 @@ impl Adapted {
         }
         let added = ["output_model", "error", "outcome"];
         let errors = self.errors(recording);
-        recording.write_csv_with(path, &added, |n| {
+        recording.write_with(table, &added, |n| {
             let outcome = self.outcomes[n].name().to_owned();
             [
                 self.output_model[n].to_string(),
@@ -152,34 +159,29 @@ pub fn adapt_watched(
     if from_on {
         adaptive.saturate()?;
     }
-    let learned = adaptive.run(&recording.input, &recording.output, watch)?;
+    let count = recording.len();
+    let probation = on_probation(&adaptation, count);
+    let (input, late_input) = recording.input.split_at(count - probation);
+    let (output, late_output) = recording.output.split_at(count - probation);
+    let mut learned = adaptive.run(input, output, watch)?;
+    let mut last = adaptive.model()?;
+    learned.extend(adaptive.run(late_input, late_output, &|what, _| watch(what, 1.0))?);
     let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
     let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
-    let mut counts = OutcomeCounts::default();
-    for learning in &learned {
-        counts.outside += usize::from(learning.clipped.is_some());
-        match learning.outcome {
-            Outcome::Learned => counts.learned += 1,
-            Outcome::Waiting => counts.waiting += 1,
-            // Nothing freezes an estimator here.
-            Outcome::AtRest | Outcome::Frozen => counts.at_rest += 1,
-            Outcome::RolledBack => counts.rolled_back += 1,
-        }
-    }
-    let compare = |from: usize, to: usize| {
-        let inside = |n: usize| (from..to).contains(&n);
+    let counts = OutcomeCounts::of(&learned);
+    let compare = |which: &dyn Fn(usize) -> bool| {
         Some(Compared {
-            adapting: Errors::between(&recording.output, &output_model, inside)?,
-            fixed: Errors::between(&recording.output, &fixed, inside)?,
+            adapting: Errors::between(&recording.output, &output_model, which)?,
+            fixed: Errors::between(&recording.output, &fixed, which)?,
         })
     };
-    let count = recording.len();
-    let whole = compare(0, count).ok_or_else(no_samples)?;
+    let whole = compare(&|_| true).ok_or_else(no_samples)?;
+    let third = |k: usize| k * count / 3..(k + 1) * count / 3;
     let thirds = (0..3)
-        .map(|n| compare(n * count / 3, (n + 1) * count / 3))
+        .map(|k| compare(&|n| third(k).contains(&n)))
         .collect::<Option<_>>()
         .unwrap_or_default();
-    let mut last = adaptive.model()?;
+    let late = compare(&|n| third(2).contains(&n) && outcomes[n] != Outcome::Rejected);
     let again = run_from(&last, from_on, recording)?;
     let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
     last.fit = Some(summary(
@@ -193,14 +195,25 @@ pub fn adapt_watched(
     Ok(Adapted {
         drift: Drift::between(&offline, &last),
         model: last,
+        probation,
         output_model,
         outcomes,
         counts,
         whole,
         thirds,
+        late,
+        worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
         again,
         options: adaptation,
     })
+}
+
+/// How many of `count` samples are at the end and on probation.
+fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
+    match options.gate > 0.0 {
+        true => count.min(options.burst as usize),
+        false => 0,
+    }
 }
 
 /// Weights whose squares are no numbers leave errors that are none, and without any there is nothing to take shares of.
@@ -309,6 +322,8 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
     object["leakage"] = json!(options.leakage);
     object["movement"] = json!(options.movement);
     object["trial"] = json!(options.trial);
+    object["gate"] = json!(options.gate);
+    object["burst"] = json!(options.burst);
     object
 }
 

@@ -39,7 +39,8 @@ pub enum Learner {
 }
 
 /// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording. `Y` is the range of the
-/// recording's output or that of the model, whichever is larger.
+/// recording's output or that of the model, whichever is larger; single readings far from all
+/// others are not of the recording's.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
@@ -57,6 +58,8 @@ pub enum Learner {
 /// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
 /// | `movement` | 0.05 | from 0 on | levels that the input has to move before a sample is learned from |
 /// | `trial` | 256 | from 1 on | samples after which the weights are judged against the last good ones |
+/// | `gate` | 12 | 0, or from 2 on | a reading that surprises so many times more than usual is not learned from; 0: all are learned from |
+/// | `burst` | 8 | from 1 on | readings in a row beyond the gate that are learned from, where they agree; samples at the end on probation |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptOptions {
     /// What follows the error, and how.
@@ -87,6 +90,10 @@ pub struct AdaptOptions {
     pub movement: Option<f64>,
     /// Samples after which the weights are judged.
     pub trial: Option<u32>,
+    /// How many times the usual surprise a reading may be off; see [`Adaptation`].
+    pub gate: Option<f64>,
+    /// Readings in a row beyond the gate that are a jump.
+    pub burst: Option<u32>,
 }
 
 impl AdaptOptions {
@@ -96,8 +103,8 @@ impl AdaptOptions {
     /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of range is refused
     /// when an estimator is made.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
-        let (low, high) = range(&recording.output);
-        self.resolved(model, noise(&recording.output), high - low)
+        let output = &recording.output;
+        self.resolved(model, noise(output), usual_range(output))
     }
 
     /// The estimator's options for `model` before anything was measured: `Y` is the model's range, and the output is taken to
@@ -179,6 +186,8 @@ impl AdaptOptions {
             leakage: self.leakage.unwrap_or(usual.leakage),
             movement: self.movement.unwrap_or(usual.movement),
             trial: self.trial.unwrap_or(usual.trial),
+            gate: self.gate.unwrap_or(usual.gate),
+            burst: self.burst.unwrap_or(usual.burst),
         })
     }
 
@@ -209,6 +218,20 @@ impl AdaptOptions {
             None => Ok(()),
         }
     }
+}
+
+/// The range of the values without those that lie further outside of the middle nine tenths than
+/// these are wide: wrong readings.
+fn usual_range(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let cut = sorted.len() / 20;
+    let (low, high) = range(&sorted[cut..sorted.len() - cut]);
+    let width = high - low;
+    let near = |value: &f64| (low - width..=high + width).contains(value);
+    let kept: Vec<f64> = sorted.into_iter().filter(near).collect();
+    let (low, high) = range(&kept);
+    high - low
 }
 
 /// The variance of the sum of all weights, for a variance of one of each and the estimator's correlation between them.

@@ -65,24 +65,29 @@ impl Compensator {
         }
     }
 
-    /// Moves to the input and gives the output expected there and whether anything was learned from the one measured.
+    /// Moves to the input and gives the output expected there and what was done with the one
+    /// measured, if it was shown to a model that learns.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
-    pub(super) fn follow(&mut self, input: f64, measured: Option<f64>) -> Result<(f64, bool)> {
+    pub(super) fn follow(
+        &mut self,
+        input: f64,
+        measured: Option<f64>,
+    ) -> Result<(f64, Option<Outcome>)> {
         let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
-            (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, false)),
+            (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, None)),
             (Kind::Adaptive(adaptive), measured) => {
                 self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
                     true => JUMP,
                     false => self.resting.saturating_sub(1),
                 };
                 let Some(measured) = measured.filter(|_| self.resting == 0) else {
-                    return Ok((adaptive.predict(input)?, false));
+                    return Ok((adaptive.predict(input)?, None));
                 };
                 let learning = adaptive.step(input, measured)?;
-                Ok((learning.output, learning.outcome == Outcome::Learned))
+                Ok((learning.output, Some(learning.outcome)))
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::pid::limited;
 use super::watch::{Sight, Watch};
 use super::{LoopStatus, Pid, Reading, Rest, Scheme};
-use crate::{Direction, Result, Status};
+use crate::{Direction, Outcome, Result};
 
 /// What the output should be, and where it goes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,7 +124,10 @@ impl Controller {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
-                (self.prediction, status.adapted) = compensator.follow(input, output.value())?;
+                let (prediction, outcome) = compensator.follow(input, output.value())?;
+                self.prediction = prediction;
+                status.adapted = outcome == Some(Outcome::Learned);
+                status.rejected = outcome == Some(Outcome::Rejected);
             }
             self.lost |= input == Some(Sight::Blind);
         }
@@ -217,7 +220,7 @@ impl Controller {
         let feedforward = match &mut scheme.compensator {
             Some(compensator) => {
                 let solution = compensator.solve(target.output, heading, scheme.tolerance)?;
-                status.out_of_reach = solution.status != Status::Ok;
+                status.out_of_reach = solution.status.is_out_of_reach();
                 solution.input
             }
             None => scheme.bias,

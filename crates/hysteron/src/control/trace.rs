@@ -16,6 +16,9 @@ pub struct LoopStatus {
     pub sensor_fault: bool,
     /// The model learned from the sample.
     pub adapted: bool,
+    /// Reading rejected: the model did not learn from it, because it was too far from what was
+    /// expected.
+    pub rejected: bool,
 }
 
 /// The adapted weights at one time.

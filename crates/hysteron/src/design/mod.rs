@@ -99,12 +99,19 @@ impl Design {
         self.excitation.iter().filter(|e| **e == class).count()
     }
 
-    /// Writes the profile as CSV with the columns `time [s]` and `input`.
+    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is replaced.
     ///
     /// # Errors
     /// [`Error::File`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
-        let mut table = TableWriter::create(Some(path))?;
+        self.write_to(TableWriter::plain(Some(path.into()))?)
+    }
+
+    /// As [`Design::write_csv`], to a table that was begun before.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write_to(&self, mut table: TableWriter) -> Result<()> {
         table.row(["time [s]", "input"])?;
         for (time, input) in self.time.iter().zip(&self.input) {
             table.row([time.to_string(), input.to_string()])?;

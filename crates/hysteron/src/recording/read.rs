@@ -2,26 +2,35 @@
 
 use super::repair::{Note, NoteKind, Repair};
 use super::samples::{Samples, interpolate};
-use super::{Columns, Origin, Quantity, Recording, Source};
+use super::{Columns, Origin, Others, Quantity, Recording, Source};
 use crate::table::{Column, TableReader};
-use crate::{Remedy, Result, Setting};
+use crate::{ReadOptions, Remedy, Result, Setting};
 use std::path::Path;
 
 impl Recording {
     /// Reads a recording from a CSV, Parquet or MATLAB file; `-` is CSV from standard input.
     ///
-    /// CSV has a header row; its cells stand between commas, semicolons or tabs, with a decimal point
-    /// or, where commas do not separate them, a decimal comma; a row of units may stand below the
-    /// header, and lines beginning with `#` or `%` are comments. In a MATLAB file vectors have their
-    /// variable's name, and the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues
-    /// DataValues]` asked for as `M` is its data, and its times are used where no time is asked for.
+    /// CSV has cells between commas, semicolons or tabs, with a decimal point or, where commas do not
+    /// separate them, a decimal comma; a row of units may stand below the header, and lines beginning
+    /// with `#` or `%` are comments. What a logger or LabVIEW writes above the header is skipped;
+    /// without a header, columns go by number, from 1. The text is UTF-8, UTF-16 with a byte order
+    /// mark, or else Windows-1252.
     ///
-    /// The notes tell what was mended, and of gaps in time.
+    /// In a MATLAB file vectors have their variable's name, fields of structures are `name.field`, and
+    /// the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues DataValues]` asked for as
+    /// `M` is its data, and its times are used where no time is asked for.
+    ///
+    /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, by its
+    /// name or the row of units, is turned into seconds.
+    ///
+    /// The notes tell what was assumed and mended, and of gaps in time.
     ///
     /// # Errors
     /// [`crate::Error::File`]; [`crate::Error::Recording`] with row and column where a column is missing, a row is
     /// ragged, or there are no rows; and, to be refused and not mended, where a cell is no finite
-    /// number, times go back or are repeated, or input and output have different times.
+    /// number, a row has more or fewer cells than the header, times go back or are repeated, or input
+    /// and output have different times; also where the file's contents take more memory than
+    /// [`ReadOptions::max_memory`].
     ///
     /// ```
     /// use hysteron::{Columns, Recording, Repair};
@@ -37,8 +46,36 @@ impl Recording {
     /// # std::fs::remove_file(&path)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn read(path: &Path, columns: Columns<'_>, repair: Repair) -> Result<(Self, Vec<Note>)> {
-        let mut table = TableReader::open_hashed(path)?;
+    pub fn read(
+        path: &Path,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Self, Vec<Note>)> {
+        let (recording, _, notes) = Self::read_as(path, columns, options.into(), false)?;
+        Ok((recording, notes))
+    }
+
+    /// As [`Recording::read`], with the other columns of the file.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn read_with_others(
+        path: &Path,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Self, Others, Vec<Note>)> {
+        let (recording, others, notes) = Self::read_as(path, columns, options.into(), true)?;
+        Ok((recording, others.unwrap_or_default(), notes))
+    }
+
+    fn read_as(
+        path: &Path,
+        columns: Columns<'_>,
+        options: ReadOptions,
+        with_others: bool,
+    ) -> Result<(Self, Option<Others>, Vec<Note>)> {
+        let repair = options.repair;
+        let mut table = TableReader::open_recording(path, options)?;
         let named = [
             Some(columns.input),
             Some(columns.output),
@@ -83,28 +120,55 @@ impl Recording {
             Some(_) => input_at,
             None => table.column(columns.output)?,
         };
-        let mut asked = vec![input_at, output_at];
-        let time_at = time.map(|name| table.column(&name)).transpose()?;
+        let time_at = time.map(|name| table.time_column(&name)).transpose()?;
         let load_at = columns.load.map(|name| table.column(name)).transpose()?;
-        asked.extend(time_at.into_iter().chain(load_at));
-        let quantity = |name: &str, at: Column| {
-            let mut quantity = Quantity::from_column(name);
+        let all = [Some(input_at), Some(output_at), time_at, load_at];
+        for (n, at) in all.iter().enumerate() {
+            if at.is_some() && interpolated.is_none() && all[..n].contains(at) {
+                let names = [columns.input, columns.output, "the time", "the load"];
+                let problem = format!(
+                    "the column meant by `{}` is that of another series: input, output, time and load are four things",
+                    names[n]
+                );
+                return Err(table.fault(*at, problem));
+            }
+        }
+        let asked: Vec<Column> = all.into_iter().flatten().collect();
+        let quantity = |asked: &str, at: Column| {
+            // The data of a matrix `[TimeValues DataValues]` have the matrix' name.
+            let own = match table.name(at) {
+                own if own.strip_suffix(":2") == Some(asked) => asked,
+                own => own,
+            };
+            let mut quantity = Quantity::from_column(own);
             quantity.unit = quantity.unit.or(table.unit(at).map(str::to_owned));
             quantity
         };
         let input_quantity = quantity(columns.input, input_at);
-        let output_quantity = quantity(columns.output, output_at);
+        let output_quantity = match interpolated {
+            Some(_) => Quantity::from_column(columns.output),
+            None => quantity(columns.output, output_at),
+        };
         let load_quantity = match (columns.load, load_at) {
             (Some(name), Some(at)) => quantity(name, at),
             _ => Quantity::named("load"),
         };
-        let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref())?;
-        let mut notes = samples.mend(&table, time_at, repair)?;
+        let others = with_others.then(|| Others::of(&table, all));
+        let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
+        let mut of_rows = samples.mend(&table, time_at, repair)?;
         if interpolated.is_some() {
-            let kind = NoteKind::Interpolated;
             let places = samples.places.iter().copied().collect();
-            notes.push(Note { kind, places });
+            of_rows.push((NoteKind::Interpolated, places));
         }
+        if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
+            table.judge_time(at, time);
+        }
+        let remarks = table.remarks().cloned().map(Note::File);
+        let of_rows = of_rows
+            .into_iter()
+            .map(|(kind, places)| Note::Rows { kind, places });
+        let notes = remarks.chain(of_rows).collect();
+        let others = samples.others.take();
         let mut series = samples.series.into_iter();
         let mut next = || series.next().unwrap_or_default();
         let recording = Self {
@@ -122,7 +186,7 @@ impl Recording {
             }),
         };
         recording.check()?;
-        Ok((recording, notes))
+        Ok((recording, others, notes))
     }
 }
 

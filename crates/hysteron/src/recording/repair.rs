@@ -1,6 +1,6 @@
 //! Rows of a recording that cannot be used as they are, and what is done about them.
 
-use crate::Place;
+use crate::{Place, Remark};
 use std::fmt;
 
 /// What becomes of rows that cannot be used as they are.
@@ -9,23 +9,31 @@ pub enum Repair {
     /// They are refused, with their places.
     #[default]
     Refuse,
-    /// Those without a number are dropped; those whose times go back are sorted; those at one time
+    /// Those without a number, or with more or fewer cells than the header, are dropped; those whose times go back are sorted; those at one time
     /// become one, with the mean of their values.
     Mend,
 }
 
-/// What was noted about the rows of a recording: it was mended, or is worth knowing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Note {
-    /// What it is.
-    pub kind: NoteKind,
-    /// The rows.
-    pub places: Places,
+/// What was noted about a recording: it was mended, or is worth knowing.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// Of its rows.
+    Rows {
+        /// What it is.
+        kind: NoteKind,
+        /// The rows.
+        places: Places,
+    },
+    /// Of how its file was understood.
+    File(Remark),
 }
 
 /// What can be noted about rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoteKind {
+    /// There are more or fewer cells than in the header: dropped.
+    Ragged,
     /// There is no finite number in a column that was asked for: dropped.
     Dropped,
     /// The time goes back: sorted.
@@ -40,8 +48,9 @@ pub enum NoteKind {
 
 impl NoteKind {
     /// What is wrong with so many rows that were not mended.
-    fn fault(self) -> &'static str {
+    pub(super) fn fault(self) -> &'static str {
         match self {
+            Self::Ragged => "with more or fewer cells than the header",
             Self::Dropped => "without a number",
             Self::Sorted => "going back in time",
             Self::Merged => "at the time of the row before",
@@ -52,7 +61,7 @@ impl NoteKind {
 
     fn mended(self) -> &'static str {
         match self {
-            Self::Dropped => ": dropped",
+            Self::Ragged | Self::Dropped => ": dropped",
             Self::Sorted => ": sorted",
             Self::Merged => ": merged to their mean",
             Self::Interpolated => ": interpolated onto the times of the input",
@@ -61,16 +70,14 @@ impl NoteKind {
     }
 }
 
-impl Note {
-    /// The note as a fault that was not mended.
-    pub(super) fn as_fault(&self) -> String {
-        format!("{} {}", self.places, self.kind.fault())
-    }
-}
-
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.as_fault(), self.kind.mended())
+        match self {
+            Self::Rows { kind, places } => {
+                write!(f, "{places} {}{}", kind.fault(), kind.mended())
+            }
+            Self::File(remark) => remark.fmt(f),
+        }
     }
 }
 
@@ -87,7 +94,7 @@ impl Places {
     /// How many are named.
     const NAMED: usize = 3;
 
-    pub(super) fn push(&mut self, place: Place) {
+    pub(crate) fn push(&mut self, place: Place) {
         self.count += 1;
         if self.first.len() < Self::NAMED {
             self.first.push(place);

@@ -1,11 +1,12 @@
 //! The samples of a recording on their way from a table: gathered, then mended or refused.
 
-use super::repair::{Note, NoteKind, Places, Repair, gaps};
+use super::Others;
+use super::repair::{NoteKind, Places, Repair, gaps};
 use crate::table::{Column, TableReader};
 use crate::{Error, Place, Remedy, Result, Setting};
 
 /// Where the time is among the series.
-const TIME: usize = 2;
+pub(super) const TIME: usize = 2;
 
 /// The rows that have a number in every column asked for.
 pub(super) struct Samples {
@@ -13,6 +14,10 @@ pub(super) struct Samples {
     pub(super) series: Vec<Vec<f64>>,
     /// Where each row is.
     pub(super) places: Vec<Place>,
+    /// All cells of the rows, where they are wanted.
+    pub(super) others: Option<Others>,
+    /// The rows that have more or fewer cells than the header.
+    ragged: Places,
     /// The other rows, and what is wrong with the first of them.
     missing: Places,
     fault: Option<Error>,
@@ -20,15 +25,18 @@ pub(super) struct Samples {
 
 impl Samples {
     /// Reads the columns `asked`: input, output, then time and load where there are. With `output`,
-    /// that stands for the second.
+    /// that stands for the second; with `others`, these take whole rows.
     pub(super) fn gather(
         table: &mut TableReader,
         asked: &[Column],
         output: Option<&[f64]>,
+        others: Option<Others>,
     ) -> Result<Self> {
         let mut samples = Self {
             series: vec![Vec::new(); asked.len()],
             places: Vec::new(),
+            others,
+            ragged: Places::default(),
             missing: Places::default(),
             fault: None,
         };
@@ -46,17 +54,44 @@ impl Samples {
                 samples.missing.push(table.row_place());
                 continue;
             }
+            samples.make_room(table)?;
             for (series, value) in samples.series.iter_mut().zip(row.iter().flatten()) {
                 series.push(*value);
             }
             samples.places.push(table.row_place());
         }
+        samples.ragged = table.ragged();
         if samples.places.is_empty() && samples.fault.is_none() {
             let place = Some(table.row_place()).filter(|place| *place != Place::Row(0));
             let problem = "there are no rows below the header".into();
             return Err(table.fault_at(place, None, problem));
         }
         Ok(samples)
+    }
+
+    /// Memory for another row, which the table's budget has to have. Sorting takes a copy.
+    fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
+        let count = self.places.len();
+        let capacity = self.places.capacity();
+        if count == capacity {
+            let more = capacity.max(1024);
+            let row = size_of::<f64>() * self.series.len() + size_of::<Place>();
+            let taken = table
+                .budget()
+                .take(2 * (row * more) as u128, "the recording");
+            taken.map_err(|problem| table.fault(None, problem))?;
+            self.places.reserve_exact(more);
+            for series in &mut self.series {
+                series.reserve_exact(more);
+            }
+        }
+        if let Some(others) = &mut self.others {
+            let row = table.row().clone();
+            let taken = table.budget().take(row.size() as u128, "the recording");
+            taken.map_err(|problem| table.fault(None, problem))?;
+            others.push(row);
+        }
+        Ok(())
     }
 
     /// Mends what has to be, or refuses it, and says what there was; gaps are only told of.
@@ -69,14 +104,14 @@ impl Samples {
         table: &TableReader,
         time_at: Option<Column>,
         repair: Repair,
-    ) -> Result<Vec<Note>> {
+    ) -> Result<Vec<(NoteKind, Places)>> {
         let mut notes = Vec::new();
         let mut note = |kind, places: &Places| {
-            let places = places.clone();
             if places.count > 0 {
-                notes.push(Note { kind, places });
+                notes.push((kind, places.clone()));
             }
         };
+        note(NoteKind::Ragged, &self.ragged);
         note(NoteKind::Dropped, &self.missing);
         if time_at.is_some() {
             let (back, fault) = self.steps(table, time_at, |before, now| now < before);
@@ -104,8 +139,7 @@ impl Samples {
             && !gaps.is_empty()
         {
             let places = gaps.into_iter().map(|n| self.places[n]).collect();
-            let kind = NoteKind::Gap;
-            notes.push(Note { kind, places });
+            notes.push((NoteKind::Gap, places));
         }
         Ok(notes)
     }
@@ -137,7 +171,15 @@ impl Samples {
         for series in &mut self.series {
             *series = order.iter().map(|&n| series[n]).collect();
         }
+        self.pick(&order);
+    }
+
+    /// Keeps the places and other cells of these rows, in this order.
+    fn pick(&mut self, order: &[usize]) {
         self.places = order.iter().map(|&n| self.places[n]).collect();
+        if let Some(others) = &mut self.others {
+            others.keep(order);
+        }
     }
 
     /// One row, with the mean of their values, for rows at one time.
@@ -156,12 +198,12 @@ impl Samples {
                 .collect();
         }
         starts.pop();
-        self.places = starts.iter().map(|&n| self.places[n]).collect();
+        self.pick(&starts);
     }
 }
 
 /// A fault with all the rows that have one.
-fn refusal(fault: Error, notes: &[Note]) -> Error {
+fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
     let Error::Recording {
         path,
         row,
@@ -171,8 +213,9 @@ fn refusal(fault: Error, notes: &[Note]) -> Error {
     else {
         return fault;
     };
-    let count: u64 = notes.iter().map(|note| note.places.count).sum();
-    let all: Vec<String> = notes.iter().map(Note::as_fault).collect();
+    let count: u64 = notes.iter().map(|(_, places)| places.count).sum();
+    let of_kind = |(kind, places): &(NoteKind, Places)| format!("{places} {}", kind.fault());
+    let all: Vec<String> = notes.iter().map(of_kind).collect();
     let (problem, words) = match count {
         1 => (problem, "mend or remove the row, or use {}"),
         _ => (

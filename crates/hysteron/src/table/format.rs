@@ -1,10 +1,12 @@
 //! Which format a file is of, and how each is opened.
 
-use super::text::{Hashing, Text};
-use super::{Source, dialect, mat, mat_v5, mat_v73, parquet};
-use crate::{Error, Result};
+use super::budget::Budget;
+use super::hashing::{Hash, Hashing};
+use super::text::{self, Text};
+use super::{Source, mat, parquet};
+use crate::{Error, Repair, Result};
 use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// What the first bytes of a file, or else the end of its name, say it is.
@@ -43,7 +45,12 @@ impl Format {
 }
 
 /// Opens a file of any format: its columns' names and its rows.
-pub(super) fn open(path: &Path, hashed: bool) -> Result<(Vec<String>, Source)> {
+pub(super) fn open(
+    path: &Path,
+    repair: Option<Repair>,
+    hash: Option<Hash>,
+    budget: &mut Budget,
+) -> Result<(Vec<String>, Source)> {
     let failed = |source| Error::File {
         path: path.to_owned(),
         source,
@@ -67,30 +74,36 @@ pub(super) fn open(path: &Path, hashed: bool) -> Result<(Vec<String>, Source)> {
         seekable = about.is_file();
         Box::new(file)
     };
-    let mut file = Hashing::new(file, hashed);
-    let (head, whole) = dialect::head(&mut file).map_err(failed)?;
+    let mut file = Hashing::new(file, hash);
+    let (head, whole) = text::head(&mut file).map_err(failed)?;
     let format = Format::of(path, &head).map_err(|problem| refused(problem.to_owned()))?;
-    match format {
+    let (header, numbers) = match format {
         Format::Csv => {
-            let dialect = dialect::Dialect::of(&head, whole);
-            let (header, text) = Text::open(path, Cursor::new(head).chain(file), dialect)?;
-            Ok((header, Source::Text(Box::new(text))))
+            let rest = file;
+            let source = text::Source { head, whole, rest };
+            let (header, text) = Text::open(path, source, repair, budget)?;
+            return Ok((header, Source::Text(Box::new(text))));
         }
         _ if !seekable => {
             let problem = "only CSV can be read from a pipe: name the file";
-            Err(refused(problem.to_owned()))
+            return Err(refused(problem.to_owned()));
         }
-        binary => {
-            let table = match binary {
-                Format::Parquet => parquet::open(path),
-                Format::MatV73 => mat_v73::read(path).and_then(mat::table),
-                _ => {
-                    let bytes = std::fs::read(path).map_err(failed)?;
-                    mat_v5::read(&bytes).and_then(mat::table)
-                }
-            };
-            let (header, numbers) = table.map_err(refused)?;
-            Ok((header, Source::Numbers(numbers)))
+        Format::Parquet => {
+            let opened = parquet::open(path, *budget).map_err(refused)?;
+            (opened.header, opened.numbers.with_times(opened.times))
         }
-    }
+        Format::MatV73 => {
+            let variables = mat::v73::read(path, budget).map_err(refused)?;
+            mat::table(variables, budget).map_err(refused)?
+        }
+        Format::MatV5 => {
+            let size = std::fs::metadata(path).map_err(failed)?.len();
+            budget.take(u128::from(size), "the file").map_err(refused)?;
+            let bytes = std::fs::read(path).map_err(failed)?;
+            let variables = mat::v5::read(&bytes, budget).map_err(refused)?;
+            budget.give_back(u128::from(size));
+            mat::table(variables, budget).map_err(refused)?
+        }
+    };
+    Ok((header, Source::Numbers(numbers)))
 }

@@ -1,18 +1,31 @@
 //! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through one reader.
 
-mod dialect;
+mod budget;
+mod columns;
 mod format;
+mod hashing;
 mod mat;
-mod mat_v5;
-mod mat_v73;
+mod names;
 mod numbers;
+mod options;
 mod parquet;
+mod remark;
 mod text;
+mod time;
 
-use crate::{Error, Place, Result};
+pub use options::ReadOptions;
+pub use remark::Remark;
+
+pub(crate) use budget::Budget;
+
+use crate::recording::Places;
+use crate::{Error, Place, Repair, Result};
+use hashing::Hash;
 use numbers::Numbers;
+pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
 use text::Text;
+use time::TimeUnit;
 
 /// Reads a table with named columns, one row at a time.
 ///
@@ -23,7 +36,12 @@ pub struct TableReader {
     path: PathBuf,
     header: Vec<String>,
     source: Source,
-    hashed: bool,
+    hash: Option<Hash>,
+    budget: Budget,
+    /// What was assumed of the columns asked for.
+    remarks: Vec<Remark>,
+    /// The column of time that is not in seconds.
+    time: Option<(usize, TimeUnit)>,
 }
 
 enum Source {
@@ -35,6 +53,13 @@ enum Source {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column(usize);
 
+impl Column {
+    /// Its place in the header, from 0.
+    pub(crate) fn place(self) -> usize {
+        self.0
+    }
+}
+
 /// A row of a table as it was read, with decimal points.
 #[derive(Debug, Clone, Default)]
 pub struct Row(csv::ByteRecord);
@@ -44,111 +69,88 @@ impl Row {
     pub fn cells(&self) -> impl Iterator<Item = &[u8]> {
         self.0.iter()
     }
+
+    /// About how many bytes of memory it takes.
+    pub(crate) fn size(&self) -> usize {
+        self.0.as_slice().len() + (self.0.len() + 16) * size_of::<usize>()
+    }
 }
 
 impl TableReader {
-    /// Opens a file and reads its header; `-` is standard input, for CSV only.
+    /// Opens a file and reads its header; `-` is standard input, for text only.
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] for an empty file, a header that cannot be, or a file
-    /// that is not of the format it seems to be of.
+    /// [`Error::File`]; [`Error::Recording`] for an empty file, a header that cannot be, a file
+    /// that is not of the format it seems to be of, or one that takes more memory than
+    /// [`ReadOptions::MAX_MEMORY`].
     pub fn open(path: &Path) -> Result<Self> {
-        Self::open_with(path, false)
+        Self::open_with(path, ReadOptions::MAX_MEMORY)
     }
 
-    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end.
-    pub(crate) fn open_hashed(path: &Path) -> Result<Self> {
-        Self::open_with(path, true)
+    /// As [`TableReader::open`], where the file's contents may take `max_memory` bytes.
+    ///
+    /// # Errors
+    /// As [`TableReader::open`].
+    pub fn open_with(path: &Path, max_memory: u64) -> Result<Self> {
+        Self::open_as(path, max_memory, None, None)
     }
 
-    fn open_with(path: &Path, hashed: bool) -> Result<Self> {
-        let (header, source) = format::open(path, hashed)?;
+    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end, and with what becomes
+    /// of rows that are cut short.
+    pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
+        let (repair, hash) = (Some(options.repair), Some(Hash::default()));
+        Self::open_as(path, options.max_memory, repair, hash)
+    }
+
+    fn open_as(
+        path: &Path,
+        max_memory: u64,
+        repair: Option<Repair>,
+        hash: Option<Hash>,
+    ) -> Result<Self> {
+        let mut budget = Budget::new(max_memory);
+        let (header, source) = format::open(path, repair, hash.clone(), &mut budget)?;
         Ok(Self {
             path: path.to_owned(),
             header,
             source,
-            hashed,
+            hash,
+            budget,
+            remarks: Vec::new(),
+            time: None,
         })
+    }
+
+    /// The file, as it was named.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What was assumed in reading the file, for a message; all of it is known at the end of the table.
+    pub fn remarks(&self) -> impl Iterator<Item = &Remark> {
+        let of_text: &[Remark] = match &self.source {
+            Source::Text(text) => text.remarks(),
+            Source::Numbers(_) => &[],
+        };
+        of_text.iter().chain(&self.remarks)
+    }
+
+    pub(crate) fn budget(&mut self) -> &mut Budget {
+        &mut self.budget
+    }
+
+    /// The rows that were dropped because they have more or fewer cells than the header.
+    pub(crate) fn ragged(&self) -> Places {
+        match &self.source {
+            Source::Text(text) => text.ragged().clone(),
+            Source::Numbers(_) => Places::default(),
+        }
     }
 
     /// The columns' names. Asking for a column of a MATLAB file leaves those that are as long.
     #[must_use]
     pub fn header(&self) -> &[String] {
         &self.header
-    }
-
-    /// Finds a column. In a MATLAB file a matrix `[TimeValues DataValues]` of two columns is found
-    /// under its own name as well, and means its data; and the first column found decides how many
-    /// rows there are: shorter and longer ones are then left out.
-    ///
-    /// # Errors
-    /// [`Error::Recording`] where there is none of that name, naming those that there are, or two,
-    /// or where it is not as long as the first one.
-    pub fn column(&mut self, name: &str) -> Result<Column> {
-        let mut place = self.place(name)?;
-        if let (None, Some([_, data])) = (place, self.pair_at(name)) {
-            place = Some(data);
-        }
-        let Some(place) = place else {
-            return Err(self.fault_at(None, None, self.no_column(name)));
-        };
-        let Source::Numbers(numbers) = &mut self.source else {
-            return Ok(Column(place));
-        };
-        let kept = numbers.keep_as_long_as(place, &mut self.header);
-        Ok(Column(kept))
-    }
-
-    fn place(&self, name: &str) -> Result<Option<usize>> {
-        let mut places = (0..self.header.len()).filter(|&n| self.header[n] == name);
-        match (places.next(), places.next()) {
-            (_, Some(_)) => {
-                Err(self.fault_at(None, None, format!("two columns are called `{name}`")))
-            }
-            (place, None) => Ok(place),
-        }
-    }
-
-    fn no_column(&self, name: &str) -> String {
-        if let Source::Numbers(numbers) = &self.source
-            && let Some((length, expected)) = numbers.left_out(name)
-        {
-            return format!(
-                "`{name}` has {length} values where the column asked for before it has {expected}: \
-                 name columns that were sampled together"
-            );
-        }
-        const MOST: usize = 20;
-        let names = self.header.iter().take(MOST);
-        let names: Vec<String> = names.map(|n| format!("`{}`", shortened(n))).collect();
-        let more = match self.header.len().saturating_sub(MOST) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        format!("no column `{name}`: there are {}{more}", names.join(", "))
-    }
-
-    /// Where the two columns of a matrix `[TimeValues DataValues]` are.
-    fn pair_at(&self, name: &str) -> Option<[usize; 2]> {
-        let at = |n: usize| {
-            let name = format!("{name}:{n}");
-            self.header.iter().position(|h| *h == name)
-        };
-        match (&self.source, at(1), at(2), at(3)) {
-            (Source::Numbers(numbers), Some(time), Some(data), None) if numbers.has_matrices() => {
-                Some([time, data])
-            }
-            _ => None,
-        }
-    }
-
-    /// Times and data of a matrix `[TimeValues DataValues]` asked for by its name alone.
-    pub(crate) fn pair(&self, name: &str) -> Option<[Vec<f64>; 2]> {
-        let at = self.pair_at(name)?;
-        match (&self.source, self.header.iter().any(|h| h == name)) {
-            (Source::Numbers(numbers), false) => Some(at.map(|at| numbers.held(at).to_vec())),
-            _ => None,
-        }
     }
 
     /// Reads the next row; false at the end.
@@ -158,7 +160,7 @@ impl TableReader {
     /// a part of the file that cannot be read.
     pub fn advance(&mut self) -> Result<bool> {
         match &mut self.source {
-            Source::Text(text) => text.advance(self.header.len()),
+            Source::Text(text) => text.advance(&self.header),
             Source::Numbers(numbers) => {
                 let read = numbers.advance();
                 read.map_err(|problem| self.fault(None, problem))
@@ -172,6 +174,10 @@ impl TableReader {
         let value = match &self.source {
             Source::Text(text) => std::str::from_utf8(text.cell(column.0)).ok()?.parse().ok(),
             Source::Numbers(numbers) => numbers.value(column.0),
+        };
+        let value = match &self.time {
+            Some((time, unit)) if *time == column.0 => value.map(|value| unit.in_seconds(value)),
+            _ => value,
         };
         value.filter(|value: &f64| value.is_finite())
     }
@@ -230,7 +236,7 @@ impl TableReader {
     pub(crate) fn unit(&self, column: Column) -> Option<&str> {
         match &self.source {
             Source::Text(text) => text.unit(column.0),
-            Source::Numbers(_) => None,
+            Source::Numbers(numbers) => numbers.unit(column.0),
         }
     }
 
@@ -247,11 +253,11 @@ impl TableReader {
     /// # Errors
     /// [`Error::File`].
     pub(crate) fn sha256(self) -> Result<Option<String>> {
-        match self.source {
-            _ if !self.hashed => Ok(None),
-            Source::Text(text) => Ok(text.sha256()),
-            Source::Numbers(_) => {
-                text::Hashing::file(&self.path)
+        match (self.hash, self.source) {
+            (None, _) => Ok(None),
+            (Some(hash), Source::Text(_)) => Ok(Some(hash.finish())),
+            (Some(_), Source::Numbers(_)) => {
+                Hash::file(&self.path)
                     .map(Some)
                     .map_err(|source| Error::File {
                         path: self.path,
@@ -286,6 +292,11 @@ impl TableReader {
             problem,
         }
     }
+}
+
+/// SHA-256 in hexadecimal of a whole file.
+pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
+    text::Hashing::file(path)
 }
 
 /// At most 40 characters of a text, for a message.

@@ -16,6 +16,8 @@ pub(super) struct Numbers {
     rows: u64,
     bytes: u64,
     matrices: bool,
+    /// Columns that are times in seconds for certain.
+    times: Vec<usize>,
     /// Names and lengths of the columns that are not as long as those asked for.
     left_out: Vec<(String, usize)>,
     row: Row,
@@ -36,6 +38,7 @@ impl Numbers {
             rows,
             bytes,
             matrices: false,
+            times: Vec::new(),
             left_out: Vec::new(),
             row: Row::default(),
         }
@@ -50,6 +53,16 @@ impl Numbers {
             matrices: true,
             ..Self::in_groups(std::iter::empty(), rows, bytes)
         }
+    }
+
+    /// The same with columns that are times in seconds.
+    pub(super) fn with_times(self, times: Vec<usize>) -> Self {
+        Self { times, ..self }
+    }
+
+    /// The unit of a column that is a time.
+    pub(super) fn unit(&self, column: usize) -> Option<&str> {
+        self.times.contains(&column).then_some("s")
     }
 
     pub(super) fn has_matrices(&self) -> bool {

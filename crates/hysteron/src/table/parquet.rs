@@ -1,6 +1,11 @@
 //! Parquet files, one row group at a time.
 
+mod claims;
+mod thrift;
+
+use super::budget::Budget;
 use super::numbers::{Group, Numbers};
+use claims::{Claims, Refusal};
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, Int96};
@@ -12,10 +17,21 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+/// What is read of a file.
+pub(super) struct Opened {
+    pub(super) header: Vec<String>,
+    /// Columns of times, which are in seconds.
+    pub(super) times: Vec<usize>,
+    pub(super) numbers: Numbers,
+}
+
 /// The numeric columns of a file: their names and rows. Times are in seconds.
-pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
+pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_or(0, |about| about.len());
+    let second = file.try_clone().map_err(|error| error.to_string())?;
+    let mut claims = Claims::new(second, budget).map_err(refused)?;
+    claims.check_footer().map_err(refused)?;
     let reader = caught(|| SerializedFileReader::new(file))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let numeric: Vec<(usize, Scale)> = (0..schema.num_columns())
@@ -26,8 +42,17 @@ pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
     if header.is_empty() {
         return Err("there is no column of numbers in this file".into());
     }
+    let times = (0..numeric.len())
+        .filter(|n| numeric[*n].1.is_time)
+        .collect();
     let rows = reader.metadata().file_metadata().num_rows();
+    let columns: Vec<usize> = numeric.iter().map(|(column, _)| *column).collect();
     let groups = (0..reader.num_row_groups()).map(move |n| {
+        // Negative sizes make the library panic here as well.
+        let about = &reader.metadata().row_groups()[n];
+        let fits = catch_unwind(AssertUnwindSafe(|| claims.check_group(about, &columns)));
+        fits.map_err(|_| damaged("it contradicts itself"))?
+            .map_err(refused)?;
         caught(|| {
             let group = reader.get_row_group(n)?;
             let columns = numeric.iter();
@@ -35,14 +60,22 @@ pub(super) fn open(path: &Path) -> Result<(Vec<String>, Numbers), String> {
             columns.collect::<Result<Group, _>>()
         })
     });
-    Ok((
+    Ok(Opened {
         header,
-        Numbers::in_groups(groups, rows.max(0) as u64, bytes),
-    ))
+        times,
+        numbers: Numbers::in_groups(groups, rows.max(0) as u64, bytes),
+    })
+}
+
+fn refused(refusal: Refusal) -> String {
+    match refusal {
+        Refusal::Damaged(problem) => damaged(problem),
+        Refusal::TooLarge(problem) => problem,
+    }
 }
 
 /// What a use of the library gives. It panics where a damaged file contradicts itself.
-fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
+pub(crate) fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
     match catch_unwind(AssertUnwindSafe(use_it)) {
         Ok(result) => result.map_err(damaged),
         Err(_) => Err(damaged("it contradicts itself")),
@@ -58,6 +91,7 @@ fn damaged(error: impl Display) -> String {
 struct Scale {
     factor: f64,
     unsigned: bool,
+    is_time: bool,
 }
 
 impl Scale {
@@ -89,6 +123,7 @@ impl Scale {
         Some(Self {
             factor,
             unsigned: matches!(converted, UINT_8 | UINT_16 | UINT_32 | UINT_64),
+            is_time: factor != 1.0 && converted != DECIMAL,
         })
     }
 

@@ -231,6 +231,8 @@ fn require(fine: bool, field: &str, problem: &str) -> Result<()> {
 
 fn refuse<T>(field: &str, problem: &str) -> Result<T> {
     Err(Error::Scenario {
+        path: None,
+        line: None,
         field: field.into(),
         problem: problem.into(),
     })

@@ -7,6 +7,7 @@ mod check;
 mod identify;
 mod kind;
 mod options;
+mod place;
 mod plant;
 mod reference;
 mod scenario;
@@ -129,6 +130,8 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
     let scores = (0..scenario.controllers.len()).map(of_controller).collect();
     let mut seeds = seeds.into_iter();
     let (model, runs) = seeds.next().ok_or_else(|| Error::Scenario {
+        path: None,
+        line: None,
         field: "seeds".into(),
         problem: "at least one run is needed".into(),
     })?;

@@ -80,6 +80,11 @@ pub struct AdaptationOptions {
     pub leakage: f64,
     /// Levels that the input has to move before a sample is learned from. Default 0.02.
     pub movement: f64,
+    /// How many times the usual surprise a reading may be off to be learned from; 0: any. Default
+    /// 12.
+    pub gate: f64,
+    /// Readings in a row beyond the gate that are learned from, where they agree. Default 8.
+    pub burst: u32,
 }
 
 /// Name of a method of adaptation.
@@ -108,6 +113,8 @@ impl Default for AdaptationOptions {
             dead_zone: 0.0,
             leakage: 0.0,
             movement: 0.02,
+            gate: 12.0,
+            burst: 8,
         }
     }
 }
@@ -139,6 +146,8 @@ impl From<AdaptationOptions> for Adaptation<f64> {
             dead_zone: options.dead_zone,
             leakage: options.leakage,
             movement: options.movement,
+            gate: options.gate,
+            burst: options.burst,
             ..Self::default()
         }
     }

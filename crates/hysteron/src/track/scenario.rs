@@ -1,5 +1,6 @@
 //! A scenario: a plant, what acts on it, a reference, and the controllers to compare.
 
+use super::place::{line_at, line_of};
 use super::{AdaptationOptions, Event, Kind, LoopOptions, ModelOptions, PlantOptions, Reference};
 use crate::{Error, Result};
 use serde::Deserialize;
@@ -79,6 +80,8 @@ impl Scenario {
         let path = Path::new(name);
         let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
             std::io::ErrorKind::NotFound => Error::Scenario {
+                path: None,
+                line: None,
                 field: name.into(),
                 problem: format!(
                     "no such file, and no such built-in scenario: {}",
@@ -90,27 +93,46 @@ impl Scenario {
                 source,
             },
         })?;
-        Self::parse(&text, path.parent().unwrap_or(Path::new("")))
+        let parsed = Self::parse(&text, path.parent().unwrap_or(Path::new("")));
+        parsed.map_err(|error| match error {
+            Error::Scenario {
+                line,
+                field,
+                problem,
+                ..
+            } => Error::Scenario {
+                path: Some(path.into()),
+                line,
+                field,
+                problem,
+            },
+            other => other,
+        })
     }
 
     /// A scenario from its text; files that it names are looked for from `folder`.
     ///
     /// # Errors
-    /// [`Error::Scenario`] tells the line, or the field.
+    /// [`Error::Scenario`] tells the line and the field.
     pub fn parse(text: &str, folder: &Path) -> Result<Self> {
-        let mut scenario: Self = toml::from_str(text).map_err(|error| Error::Scenario {
-            field: match error.span() {
-                Some(span) => format!("line {}", 1 + text[..span.start].matches('\n').count()),
-                None => ".".into(),
-            },
-            problem: error.message().into(),
-        })?;
+        let fields =
+            toml::Deserializer::parse(text).map_err(|error| unreadable(text, ".", &error))?;
+        let mut scenario: Self = serde_path_to_error::deserialize(fields)
+            .map_err(|error| unreadable(text, &error.path().to_string(), error.inner()))?;
         let read = scenario.reference.into_iter().map(|part| part.read(folder));
         scenario.reference = read.collect::<Result<_>>()?;
         if let Some(file) = &mut scenario.model.file {
             *file = folder.join(&*file);
         }
-        scenario.check()?;
+        scenario.check().map_err(|error| match error {
+            Error::Scenario { field, problem, .. } => Error::Scenario {
+                path: None,
+                line: line_of(text, &field),
+                field,
+                problem,
+            },
+            other => other,
+        })?;
         Ok(scenario)
     }
 
@@ -121,6 +143,16 @@ impl Scenario {
         let time = (0..count).map(|n| n as f64 * self.interval_s);
         time.map(|t| self.reference.iter().map(|part| part.at(t)).sum())
             .collect()
+    }
+}
+
+/// A text that is no scenario.
+fn unreadable(text: &str, field: &str, error: &toml::de::Error) -> Error {
+    Error::Scenario {
+        path: None,
+        line: error.span().map(|span| line_at(text, span.start)),
+        field: field.into(),
+        problem: error.message().into(),
     }
 }
 

@@ -111,7 +111,7 @@ impl Comparison {
     /// # Errors
     /// [`crate::Error::File`].
     pub fn write_scores(&self, path: &Path) -> Result<()> {
-        let mut table = TableWriter::create(Some(path))?;
+        let mut table = TableWriter::plain(Some(path.into()))?;
         table.row([
             "controller",
             "seed",
@@ -161,7 +161,7 @@ impl Trace {
     /// # Errors
     /// [`crate::Error::File`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
-        let mut table = TableWriter::create(Some(path))?;
+        let mut table = TableWriter::plain(Some(path.into()))?;
         table.row([
             "time_s",
             "reference",
@@ -175,6 +175,7 @@ impl Trace {
             "out_of_reach",
             "sensor_fault",
             "adapted",
+            "rejected",
         ])?;
         for n in 0..self.time.len() {
             let numbers = [
@@ -193,6 +194,7 @@ impl Trace {
                 status.out_of_reach,
                 status.sensor_fault,
                 status.adapted,
+                status.rejected,
             ];
             let flags = flags.map(|flag| u8::from(flag).to_string());
             table.row(

@@ -1,5 +1,7 @@
 //! Measured recordings, which stay outside of the repository.
 
+mod skip;
+
 use std::path::{Path, PathBuf};
 
 /// A file of `../shared/data`, or `None` after saying that it is skipped.
@@ -9,6 +11,6 @@ pub fn shared(name: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("skipped: {} is not there", path.display());
+    skip::skipped(&format!("there is no recording {}", path.display()));
     None
 }

@@ -46,6 +46,8 @@ fn no_answer(what: &str, samples: usize, scenario: &Scenario) -> Error {
 
 fn refused(field: &str, problem: String) -> Error {
     Error::Scenario {
+        path: None,
+        line: None,
         field: field.into(),
         problem,
     }

@@ -1,0 +1,110 @@
+//! Columns of Parquet files: their types, and a group of their rows.
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
+use parquet::file::writer::SerializedRowGroupWriter;
+use parquet::schema::types::{Type, TypePtr};
+use std::io;
+use std::io::Write;
+use std::sync::Arc;
+
+/// How the name of the writer begins that our files carry.
+pub(super) const PROGRAM: &str = "hysteron ";
+
+/// How our files are written.
+pub(super) fn properties() -> WriterPropertiesPtr {
+    let properties = WriterProperties::builder()
+        .set_created_by(format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION")))
+        .set_compression(Compression::SNAPPY);
+    Arc::new(properties.build())
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Numbers,
+    Text,
+    /// Text that is not UTF-8, as it stands.
+    Bytes,
+}
+
+/// A column whose cells may be empty.
+pub(super) fn field(name: &str, kind: Kind) -> Result<TypePtr> {
+    let (physical, logical) = match kind {
+        Kind::Numbers => (Physical::DOUBLE, None),
+        Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        Kind::Bytes => (Physical::BYTE_ARRAY, None),
+    };
+    let field = Type::primitive_type_builder(name, physical)
+        .with_repetition(Repetition::OPTIONAL)
+        .with_logical_type(logical);
+    Ok(Arc::new(field.build()?))
+}
+
+/// The cells of a column in a group of rows.
+pub(super) struct Cells {
+    kind: Kind,
+    numbers: Vec<f64>,
+    texts: Vec<ByteArray>,
+    /// 1 for each cell with a value, 0 for each without.
+    defined: Vec<i16>,
+}
+
+impl Cells {
+    pub(super) fn new(kind: Kind) -> Self {
+        Self {
+            kind,
+            numbers: Vec::new(),
+            texts: Vec::new(),
+            defined: Vec::new(),
+        }
+    }
+
+    pub(super) fn push_number(&mut self, number: Option<f64>) {
+        self.defined.push(number.is_some().into());
+        self.numbers.extend(number);
+    }
+
+    pub(super) fn push_text(&mut self, text: Option<&[u8]>) {
+        self.defined.push(text.is_some().into());
+        self.texts
+            .extend(text.map(|text| ByteArray::from(text.to_vec())));
+    }
+
+    /// Writes the cells as the next column of a group, and forgets them.
+    pub(super) fn write<W: Write + Send>(
+        &mut self,
+        group: &mut SerializedRowGroupWriter<'_, W>,
+    ) -> Result<()> {
+        let column = group.next_column()?;
+        let mut column = column.ok_or_else(|| ParquetError::General("no column is left".into()))?;
+        let defined = Some(&self.defined[..]);
+        match self.kind {
+            Kind::Numbers => {
+                column
+                    .typed::<DoubleType>()
+                    .write_batch(&self.numbers, defined, None)?
+            }
+            Kind::Text | Kind::Bytes => {
+                column
+                    .typed::<ByteArrayType>()
+                    .write_batch(&self.texts, defined, None)?
+            }
+        };
+        *self = Self::new(self.kind);
+        column.close()
+    }
+}
+
+/// The system's error, where that is what it was.
+pub(super) fn io_error(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+            Ok(inner) => *inner,
+            Err(other) => io::Error::other(other),
+        },
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,217 @@
+//! Rows of cells on their way into a Parquet file.
+//!
+//! What a column holds is known only at its last cell. So the rows wait in a file without a name,
+//! which the system removes with the program, and memory does not grow with their number.
+
+use super::AtomicFile;
+use super::parquet::{Cells, Kind, field, io_error, properties};
+use parquet::errors::ParquetError;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use std::collections::HashSet;
+use std::fs::File;
+use std::hash::Hash;
+use std::io::{self, BufReader, BufWriter, Seek};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A group of rows is written once its cells take so many bytes.
+const GROUP: usize = 1 << 24;
+
+/// The rows that wait; the first of them is the header.
+pub(super) struct Spool {
+    rows: csv::Writer<BufWriter<File>>,
+    header: Option<Vec<String>>,
+    kinds: Vec<Kind>,
+}
+
+impl Spool {
+    /// In a folder that has the room.
+    pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
+        let file = BufWriter::new(tempfile::tempfile_in(folder)?);
+        Ok(Self {
+            rows: csv::Writer::from_writer(file),
+            header: None,
+            kinds: Vec::new(),
+        })
+    }
+
+    pub(super) fn row<C: AsRef<[u8]>>(
+        &mut self,
+        cells: impl Iterator<Item = C>,
+    ) -> csv::Result<()> {
+        if self.header.is_none() {
+            let names = cells.map(|name| String::from_utf8_lossy(name.as_ref()).into_owned());
+            let names: Vec<String> = names.collect();
+            self.kinds = vec![Kind::Numbers; names.len()];
+            self.header = Some(names);
+            return Ok(());
+        }
+        let mut kinds = self.kinds.iter_mut();
+        for cell in cells {
+            if let Some(kind) = kinds.next() {
+                *kind = kind.with(cell.as_ref());
+            }
+            self.rows.write_field(cell)?;
+        }
+        self.rows.write_record(None::<&[u8]>)
+    }
+
+    /// Writes all rows as Parquet.
+    pub(super) fn finish(self, out: AtomicFile) -> io::Result<AtomicFile> {
+        let mut file = self
+            .rows
+            .into_inner()
+            .map_err(|error| error.into_error())?
+            .into_inner()
+            .map_err(|error| error.into_error())?;
+        file.rewind()?;
+        let header = self.header.unwrap_or_default();
+        distinct(header.iter())?;
+        let fields = header.iter().zip(&self.kinds);
+        let fields: Result<_, _> = fields.map(|(name, kind)| field(name, *kind)).collect();
+        let schema = fields.and_then(|fields| {
+            Type::group_type_builder("table")
+                .with_fields(fields)
+                .build()
+        });
+        let schema = Arc::new(schema.map_err(io_error)?);
+        let writer = SerializedFileWriter::new(out, schema, properties()).map_err(io_error)?;
+        write(writer, &self.kinds, file)
+    }
+}
+
+fn write(
+    mut writer: SerializedFileWriter<AtomicFile>,
+    kinds: &[Kind],
+    rows: File,
+) -> io::Result<AtomicFile> {
+    let mut rows = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(BufReader::new(rows));
+    let mut columns: Vec<Cells> = kinds.iter().map(|kind| Cells::new(*kind)).collect();
+    let (mut row, mut bytes) = (csv::ByteRecord::new(), 0);
+    while rows.read_byte_record(&mut row)? {
+        for ((column, kind), cell) in columns.iter_mut().zip(kinds).zip(&row) {
+            let cell = Some(cell).filter(|cell| !cell.is_empty());
+            bytes += cell.map_or(0, <[u8]>::len) + size_of::<f64>();
+            match kind {
+                Kind::Numbers => column.push_number(cell.and_then(number)),
+                Kind::Text | Kind::Bytes => column.push_text(cell),
+            }
+        }
+        if bytes > GROUP {
+            write_group(&mut writer, &mut columns).map_err(io_error)?;
+            bytes = 0;
+        }
+    }
+    if bytes > 0 {
+        write_group(&mut writer, &mut columns).map_err(io_error)?;
+    }
+    writer.into_inner().map_err(io_error)
+}
+
+fn write_group(
+    writer: &mut SerializedFileWriter<AtomicFile>,
+    columns: &mut [Cells],
+) -> Result<(), ParquetError> {
+    let mut group = writer.next_row_group()?;
+    for column in columns {
+        column.write(&mut group)?;
+    }
+    group.close().map(|_| ())
+}
+
+impl Kind {
+    /// What a column holds once this cell belongs to it. An empty cell has no value.
+    fn with(self, cell: &[u8]) -> Self {
+        match self {
+            Self::Numbers if cell.is_empty() || number(cell).is_some() => Self::Numbers,
+            Self::Numbers | Self::Text if std::str::from_utf8(cell).is_ok() => Self::Text,
+            _ => Self::Bytes,
+        }
+    }
+}
+
+/// The number in a cell, where a `f64` holds all that is written there: numerals such as `007` and
+/// whole numbers beyond 2⁵³ are text.
+fn number(cell: &[u8]) -> Option<f64> {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let text = std::str::from_utf8(cell).ok()?.trim();
+    let value: f64 = text.parse().ok()?;
+    let digits = text.trim_start_matches(['+', '-']);
+    let whole = digits.bytes().all(|byte| byte.is_ascii_digit());
+    let padded = digits.len() > 1 && digits.starts_with('0') && !digits.starts_with("0.");
+    let exact = !whole || value.abs() <= EXACT;
+    (exact && !padded).then_some(value)
+}
+
+/// Refuses two columns of one name, which readers of Parquet do not tell apart.
+pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
+    names: impl Iterator<Item = N>,
+) -> io::Result<()> {
+    let mut seen = HashSet::new();
+    for name in names {
+        if let Some(name) = seen.replace(name) {
+            let name = name.as_ref();
+            let text =
+                format!("two columns are called `{name}`, which Parquet cannot hold: write CSV");
+            return Err(io::Error::other(text));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_that_lose_nothing() {
+        for cell in [
+            "0",
+            "-0",
+            "0.5",
+            "-0.25",
+            "1e-9",
+            "NaN",
+            "inf",
+            "+3",
+            " 7 ",
+            "9007199254740992",
+            "0.10",
+        ] {
+            assert!(number(cell.as_bytes()).is_some(), "{cell}");
+        }
+        for cell in [
+            "",
+            "007",
+            "-01",
+            "00",
+            "9007199254740993",
+            "ok",
+            "1,5",
+            "2026-01-01",
+            "0x10",
+        ] {
+            assert!(number(cell.as_bytes()).is_none(), "{cell}");
+        }
+    }
+
+    #[test]
+    fn a_column_is_of_the_kind_that_holds_all_its_cells() {
+        let cases: [(&[&[u8]], Kind); 5] = [
+            (&[b"1", b"", b"2"], Kind::Numbers),
+            (&[b"", b""], Kind::Numbers),
+            (&[b"1", b"on"], Kind::Text),
+            (&[b"1", b"\xff"], Kind::Bytes),
+            (&[b"\xff", b"1", b"on"], Kind::Bytes),
+        ];
+        for (cells, kind) in cases {
+            let found = cells
+                .iter()
+                .fold(Kind::Numbers, |kind, cell| kind.with(cell));
+            assert_eq!(found, kind, "{cells:?}");
+        }
+    }
+}

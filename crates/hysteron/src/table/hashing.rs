@@ -1,0 +1,50 @@
+//! The hash of a file that is read once only, and may be a pipe.
+
+use sha2::{Digest, Sha256};
+use std::cell::RefCell;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::rc::Rc;
+
+/// The hash of what has passed through a [`Hashing`].
+#[derive(Clone, Default)]
+pub(super) struct Hash(Rc<RefCell<Sha256>>);
+
+impl Hash {
+    /// SHA-256 of a whole file, in hexadecimal.
+    pub(super) fn file(path: &Path) -> std::io::Result<String> {
+        let hash = Self::default();
+        let mut file = Hashing::new(File::open(path)?, Some(hash.clone()));
+        std::io::copy(&mut file, &mut std::io::sink())?;
+        Ok(hash.finish())
+    }
+
+    /// In hexadecimal; from here on it is that of nothing.
+    pub(super) fn finish(&self) -> String {
+        let bytes = self.0.take().finalize();
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// Hashes what passes through, where asked to.
+pub(super) struct Hashing<R> {
+    file: R,
+    hash: Option<Hash>,
+}
+
+impl<R: Read> Hashing<R> {
+    pub(super) fn new(file: R, hash: Option<Hash>) -> Self {
+        Self { file, hash }
+    }
+}
+
+impl<R: Read> Read for Hashing<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        if let Some(hash) = &self.hash {
+            hash.0.borrow_mut().update(&buffer[..count]);
+        }
+        Ok(count)
+    }
+}

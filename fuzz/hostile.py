@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Runs hostile cases through the command, and prints what went wrong as a table: class, cases, faults.
+
+    fuzz/hostile.py [CASES] [--seed N] [--hysteron COMMAND]     by default 200 of each class, target/release/hysteron
+
+A fault is a panic, a signal, more than SECONDS or MEMORY, an exit code that there is not, a failure without words or with
+something left behind, a file that was there and changed without being asked for, or success with a result that is not whole.
+Calls of the core and of the C interface are drawn by their fuzz targets (fuzz/run builds them).
+"""
+
+import argparse
+import csv
+import json
+import os
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import cases
+
+SECONDS = 60
+MEMORY = 4 << 30
+TARGETS = ("core_walk", "inverse", "c_calls")
+
+
+def limited(limits):
+    """What the command starts with: a budget of memory, and a disk that is full where the case says so."""
+    def start():
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        if "file_size" in limits:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limits["file_size"],) * 2)
+    return start
+
+
+def contents(folder):
+    """Everything below a folder, links as what they point to."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = str(path.relative_to(folder))
+        found[name] = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else None
+    return found
+
+
+def not_whole_table(path):
+    """What a table lacks that a command has written."""
+    if path.suffix in (".xlsx", ".mat"):
+        return "a format that is not written"
+    if path.suffix == ".parquet":
+        data = path.read_bytes()
+        return None if data[:4] == data[-4:] == b"PAR1" else "Parquet that is none"
+    with path.open(newline="", encoding="utf-8", errors="replace") as text:
+        rows = list(csv.reader(text))
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        return "rows of different length"
+    added = [n for n, name in enumerate(rows[0]) if name in ("output_model", "input_model")]
+    if added and any(row[added[-1]] in ("NaN", "inf", "-inf", "") for row in rows[1:]):
+        return "a result that is no number"
+    return None
+
+
+def not_whole(command, path):
+    """The same for any result."""
+    if command in ("simulate", "invert", "prepare"):
+        return not_whole_table(path)
+    if command == "fit":
+        try:
+            json.loads(path.read_text())
+        except ValueError:
+            return "JSON that is not whole"
+    return None
+
+
+def fault(case, done, before, folder):
+    """What is wrong with how a case ended, or None."""
+    if done.returncode < 0:
+        return f"signal {-done.returncode}"
+    if done.returncode not in (0, 1, 2) or b"panicked" in done.stderr:
+        return f"exit code {done.returncode}"
+    after = contents(folder)
+    changed = [name for name in before if after.get(name, ...) != before[name]]
+    if changed:
+        return f"{changed[0]} changed"
+    new = [name for name in after if name not in before]
+    if done.returncode == 0:
+        if case.out and case.out not in new:
+            return "success, and no result"
+        broken = [not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None]
+        return next(filter(None, broken), None)
+    if not done.stderr.strip():
+        return "a failure without words"
+    return f"{new[0]} left behind" if new else None
+
+
+def run(hysteron, case):
+    """A case in a folder of its own: the fault, or None."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        case.set_up(folder)
+        before = contents(folder)
+        with open(case.stdout or os.devnull, "wb") as stdout:
+            try:
+                done = subprocess.run(
+                    [hysteron, *case.arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=stdout,
+                    stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=limited(case.limits), check=False)
+            except subprocess.TimeoutExpired:
+                return f"more than {SECONDS} s"
+        return fault(case, done, before, folder)
+
+
+def through_the_command(title, generate, count, seed, hysteron):
+    """A row of the table; what went wrong on standard error."""
+    rng = random.Random(f"{title} {seed}")
+    generator = generate(rng)
+    faults = Counter()
+    for _ in range(count):
+        case = next(generator)
+        problem = run(hysteron, case)
+        if problem:
+            if not faults[problem]:
+                print(f"{title}: {problem}: {' '.join(case.arguments)[:200]} {case.limits or ''}", file=sys.stderr)
+            faults[problem] += 1
+    return title, count, faults.total()
+
+
+def through_a_target(name, count, seed, target):
+    """The same by a fuzz target, which was built before."""
+    found = sorted(target.glob(f"fuzz/*/release/{name}"))
+    if not found:
+        why = f"hostile cases of {name}: its fuzz target is not built (fuzz/run)"
+        subprocess.run([cases.ROOT / "tools/skipped", why], check=True)
+        return None
+    with tempfile.TemporaryDirectory() as artifacts:
+        # libFuzzer takes a seed of 0 for any.
+        flags = [f"-runs={count}", f"-seed={seed + 1}", f"-artifact_prefix={artifacts}/"]
+        done = subprocess.run(
+            [found[0], *flags, cases.ROOT / f"fuzz/corpus/{name}"],
+            capture_output=True, text=True, cwd=artifacts, check=False)
+    if done.returncode != 0:
+        print(f"{name}: {done.stderr[-2000:]}", file=sys.stderr)
+    executions = re.search(r"Done (\d+) runs", done.stderr)
+    return name, int(executions[1]) if executions else 0, int(done.returncode != 0)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("cases", type=int, nargs="?", default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--hysteron", type=Path)
+    given = parser.parse_args()
+    count, seed = given.cases, given.seed
+    told = subprocess.run([cases.ROOT / "tools/target"], capture_output=True, text=True, check=True)
+    target = Path(told.stdout.strip())
+    hysteron = (given.hysteron or target / "release/hysteron").resolve()
+    if not hysteron.exists():
+        sys.exit(f"{hysteron} is missing: cargo build --release, or name the command")
+    fixtures = {
+        "Parquet": ("none.parquet", "snappy.parquet", "gzip.parquet", "zstd.parquet", "lz4.parquet"),
+        "MAT v5": ("v5.mat",), "MAT v7": ("v7.mat",), "MAT v7.3": ("v73.mat",),
+    }
+    classes = {
+        "delimited text": cases.text, **{title: cases.binary(*names) for title, names in fixtures.items()},
+        "model files": cases.model_files, "scenarios": cases.scenarios,
+        "arguments": cases.arguments(hysteron), "file system": cases.situations,
+    }
+    rows = [through_the_command(title, generate, count, seed, hysteron) for title, generate in classes.items()]
+    # A call in the same process is a thousand times as quick.
+    rows += [through_a_target(name, 1000 * count, seed, target) for name in TARGETS]
+    print("| class | cases | faults |\n| --- | ---: | ---: |")
+    for title, number, faults in filter(None, rows):
+        print(f"| {title} | {number:,} | {faults} |")
+    sys.exit(any(row and row[2] for row in rows))
+
+
+main()

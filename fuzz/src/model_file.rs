@@ -1,0 +1,36 @@
+//! Model files: read or refused with words; what is read is written and read again without a change, and runs.
+
+use crate::worded;
+use hysteron::Model;
+
+pub fn read(text: &str) {
+    match Model::from_json(text) {
+        Ok(model) => runs(&model),
+        Err(error) => worded(&error),
+    }
+}
+
+fn runs(model: &Model) {
+    let text = model.to_json();
+    let again = Model::from_json(&text).expect("a model that was written can be read");
+    assert_eq!(again.to_json(), text);
+    let plane = model.plane();
+    let mut state = model.start();
+    for input in [
+        plane.max(),
+        plane.min(),
+        0.5 * plane.min() + 0.5 * plane.max(),
+    ] {
+        let output = model
+            .step(&mut state, input)
+            .expect("a finite input")
+            .output;
+        assert!(output.is_finite(), "{output} at {input}");
+    }
+    if let Ok(inverse) = model.inverse() {
+        let (low, high) = model.output_range();
+        let policy = hysteron::Policy::HOLD;
+        let solution = inverse.step(&mut state, 0.5 * low + 0.5 * high, policy);
+        assert!(solution.expect("a finite target").input.is_finite());
+    }
+}

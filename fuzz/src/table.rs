@@ -1,0 +1,43 @@
+//! Files with tables: whatever their bytes, they are read or refused with words.
+
+use crate::worded;
+use hysteron::{Columns, Recording, Repair, Result, TableReader, inspect_table};
+use std::path::{Path, PathBuf};
+
+/// Reads `data` as a file of this ending: row by row, summed up, and as a recording.
+pub fn read(data: &[u8], ending: &str) {
+    let path = file(ending);
+    std::fs::write(&path, data).expect("the folder for temporary files can be written");
+    let names = told(header_of_all_rows(&path)).unwrap_or_default();
+    told(TableReader::open(&path).and_then(|mut table| inspect_table(&mut table)));
+    if let [input, .., output] = &names[..] {
+        for repair in [Repair::Refuse, Repair::Mend] {
+            let columns = Columns::new(input, output);
+            let time = names.get(1).map(String::as_str);
+            told(Recording::read(&path, columns, repair));
+            told(Recording::read(&path, Columns { time, ..columns }, repair));
+        }
+    }
+}
+
+fn told<T>(result: Result<T>) -> Option<T> {
+    result.inspect_err(worded).ok()
+}
+
+/// The names of the columns, once every row has been read.
+fn header_of_all_rows(path: &Path) -> Result<Vec<String>> {
+    let mut table = TableReader::open(path)?;
+    let header = table.header().to_vec();
+    while table.advance()? {
+        for column in table.columns() {
+            assert!(table.value(column).is_none_or(f64::is_finite));
+        }
+    }
+    Ok(header)
+}
+
+/// One file for each process.
+fn file(ending: &str) -> PathBuf {
+    let name = format!("hysteron-fuzz-{}.{ending}", std::process::id());
+    std::env::temp_dir().join(name)
+}
