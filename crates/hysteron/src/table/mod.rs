@@ -296,7 +296,7 @@ impl TableReader {
 
 /// SHA-256 in hexadecimal of a whole file.
 pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
-    text::Hashing::file(path)
+    Hash::file(path)
 }
 
 /// At most 40 characters of a text, for a message.
