@@ -4,9 +4,11 @@
  *
  * Every function that can fail returns HYSTERON_OK or another of the codes below; outputs are written only with HYSTERON_OK, but
  * for counts that say how much room is needed, and arrays, which may then hold zeros. Pointers point to as many elements as the
- * count beside them says. Handles (uint64_t) are numbers: one that was freed, or never given, is refused.
+ * count beside them says. No two of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
+ * Handles (uint64_t) are numbers: one that was freed, or never given, is refused.
  * Functions `hysteron_core_...` allocate nothing: their objects lie in the caller's memory, must not be moved, and
- * end with it; their outputs are the sum over the operators, without offset and sign. An object that a call
+ * end with it. Where an initialisation fails in memory that holds an object, that object is as it was, or refused from
+ * then on: HYSTERON_HANDLE. Their outputs are the sum over the operators, without offset and sign. An object that a call
  * changes belongs to one thread at a time there; handles may be used from any thread.
  */
 

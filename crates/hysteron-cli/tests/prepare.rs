@@ -157,6 +157,9 @@ fn a_long_pause_is_not_filtered_away() {
     let done = run(folder.path(), &format!("prepare {COLUMNS} -o out.csv"));
     assert_eq!(done.status.code(), Some(1));
     let said = text(&done.stderr);
-    assert!(said.contains("Cut the recording at its gaps"), "{said}");
+    assert!(
+        said.contains("cut the recording at its gaps") && said.contains("--low-pass off"),
+        "{said}"
+    );
     assert!(!folder.path().join("out.csv").exists());
 }

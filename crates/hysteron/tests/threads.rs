@@ -38,7 +38,7 @@ fn options() -> FitOptions {
     FitOptions {
         levels: 20,
         range: Some((20.0, 80.0)),
-        bootstrap: 12,
+        bootstrap: 4,
         ..FitOptions::default()
     }
 }
