@@ -5,6 +5,7 @@
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
+use super::unfinished::bare;
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
@@ -28,7 +29,7 @@ pub(super) struct Spool {
 impl Spool {
     /// In a folder that has the room.
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
-        let file = BufWriter::new(tempfile::tempfile_in(folder)?);
+        let file = BufWriter::new(tempfile::tempfile_in(folder).map_err(bare)?);
         Ok(Self {
             rows: csv::Writer::from_writer(file),
             header: None,
