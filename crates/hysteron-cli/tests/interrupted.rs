@@ -69,7 +69,7 @@ fn on_a_full_disk_the_old_stays_whole() {
     let lines = [
         "simulate m.json run.csv --input x -o out.csv",
         "simulate m.json run.csv --input x -o out.parquet",
-        "simulate m.json out.parquet --input x -o copied.parquet",
+        "invert m.json out.parquet --target y -o copied.parquet",
         "prepare run.csv --input x --output y -o clean.csv",
         "adapt m.json run.csv --input x --output y -o adapted.json --table adapted.parquet",
         "export fmu m.json -o m.fmu",

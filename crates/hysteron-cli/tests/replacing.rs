@@ -27,7 +27,7 @@ const FILES: [(&str, &str); 13] = [
         "csv",
     ),
     (
-        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 -o side.csv --force --figure OUT",
+        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 -o side.csv --figure OUT",
         "svg",
     ),
     ("adapt m.json run.csv --input x --output y -o OUT", "json"),

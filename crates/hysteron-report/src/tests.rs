@@ -84,10 +84,10 @@ fn a_report_has_every_figure_twice_and_one_page() {
             path.display()
         );
     }
-    // Nothing else, no leftovers of writing beside.
+    // Nothing else but the list of them, no leftovers of writing beside.
     assert_eq!(
         std::fs::read_dir(folder.path()).unwrap().count(),
-        written.len()
+        written.len() + 1
     );
     let page = std::fs::read_to_string(&written[0]).unwrap();
     assert_eq!(page.matches("<svg").count(), PLAIN);
@@ -163,10 +163,10 @@ fn without_an_inverse_its_figures_are_left_out_and_the_reason_given() {
     fixture.evaluation.inverse = Err("3 weights are below zero".into());
     let written = report(&fixture, "").write(folder.path()).unwrap();
     assert_eq!(written.len(), 1 + 2 * 6);
-    // Figures of the earlier report are gone.
+    // Figures of the earlier report are gone; there is the list of files.
     assert_eq!(
         std::fs::read_dir(folder.path()).unwrap().count(),
-        written.len()
+        written.len() + 1
     );
     let page = std::fs::read_to_string(&written[0]).unwrap();
     assert!(page.contains("3 weights are below zero"));

@@ -2,7 +2,6 @@
 
 use super::Fmi;
 use hysteron::{Error, Result};
-use std::fs::File;
 use std::io::{self, Cursor, Read, Write};
 use std::path::Path;
 use zip::write::SimpleFileOptions;
@@ -64,20 +63,27 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
     }
 }
 
+/// How the last record of an archive begins, and its length where there is no comment.
+const END: &[u8] = b"PK\x05\x06";
+const END_LENGTH: usize = 22;
+
 /// Whether an archive is one of ours as it was written: the description says so, and no file was
-/// added or, as its time would tell, exchanged.
+/// added or, as its time would tell, exchanged; and nothing stands before or behind it.
 pub(super) fn is_ours(path: &Path) -> io::Result<bool> {
-    let Ok(mut archive) = ZipArchive::new(File::open(path)?) else {
+    let bytes = std::fs::read(path)?;
+    let end = bytes.len().saturating_sub(END_LENGTH);
+    if !bytes[end..].starts_with(END) {
+        return Ok(false);
+    }
+    let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else {
         return Ok(false);
     };
-    if archive.len() != ENTRIES {
+    if archive.len() != ENTRIES || archive.offset() != 0 {
         return Ok(false);
     }
     for n in 0..ENTRIES {
-        let untouched = archive
-            .by_index_raw(n)
-            .is_ok_and(|entry| entry.last_modified() == Some(DateTime::default()));
-        if !untouched {
+        let entry = archive.by_index_raw(n);
+        if !entry.is_ok_and(|entry| entry.last_modified() == Some(DateTime::default())) {
             return Ok(false);
         }
     }

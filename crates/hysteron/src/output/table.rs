@@ -207,7 +207,7 @@ impl TableWriter {
             // Its rows come with those of the source.
             Format::Spliced(_) => Ok(()),
         };
-        written.map_err(|error| self.failed(error.into()))
+        written.map_err(|error| self.failed(io_error(error)))
     }
 
     fn failed(&self, source: io::Error) -> Error {
@@ -238,6 +238,14 @@ impl TableWriter {
 
 fn csv(to: Sink) -> csv::Writer<Sink> {
     csv::WriterBuilder::new().flexible(true).from_writer(to)
+}
+
+/// The system's error as it was, so that its kind can be asked for.
+fn io_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(source) => source,
+        other => io::Error::other(format!("{other:?}")),
+    }
 }
 
 /// The file, where the table went to one.
