@@ -281,7 +281,7 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
     let cases = [
         ("", "the file is empty"),
         ("\n\n", "the file is empty"),
-        ("1,2,3\n4,5,6\n", "the first row holds numbers"),
+        ("1,2,3\n4,5,6\n", "no column `x`: there are `1`, `2`, `3`"),
         ("t,x,y\n", "there are no rows"),
         ("t,x\n1,2\n", "no column `y`: there are `t`, `x`"),
         ("x,x,y\n1,2,3\n", "two columns are called `x`"),

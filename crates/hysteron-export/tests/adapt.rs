@@ -8,8 +8,8 @@ use common::reference::Number;
 use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Sign};
 use hysteron_core::{
-    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Turn,
-    estimator_len, table_len, turn_capacity,
+    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Turn, estimator_len,
+    table_len, turn_capacity,
 };
 use hysteron_export::CReal;
 use rand::RngExt;

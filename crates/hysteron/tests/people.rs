@@ -173,7 +173,7 @@ fn fields_of_structures_are_columns() {
             ..Columns::new("run.probe.temperature", "run.lift")
         };
         let read = Recording::read(&fixture(name), columns, Repair::Refuse);
-        let (recording, _) = read.unwrap_or_else(|error| panic!("{error}"));
+        let (recording, _) = read.expect(name);
         assert_eq!(
             recording.input,
             [20.0, 35.5, 50.0, 80.0, 50.0, 20.0],

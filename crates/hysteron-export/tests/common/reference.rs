@@ -1,9 +1,7 @@
 //! The core in the same number type: what every digit is compared with.
 
 use hysteron::{Model, Sign};
-use hysteron_core::{
-    Direction, Plane, Policy, Real, State, Turn, table_len, turn_capacity,
-};
+use hysteron_core::{Direction, Plane, Policy, Real, State, Turn, table_len, turn_capacity};
 use std::fmt::Write;
 
 /// A number type with its bits as text.

@@ -183,7 +183,10 @@ fn targets(model: &Model) -> Vec<(&'static str, Vec<Wanted>)> {
         ("hold with a tolerance: a noisy target", noisy),
         ("hold: anywhere, also out of reach", anywhere),
         ("any heading: jumps among a few targets", jumps),
-        ("any heading, with a tolerance: jumps among a few targets", loose),
+        (
+            "any heading, with a tolerance: jumps among a few targets",
+            loose,
+        ),
     ]
 }
 

@@ -67,8 +67,7 @@ impl AtomicFile {
                 let text = format!("there is no folder {} to write to", folder.display());
                 io::Error::new(error.kind(), text)
             }
-            // Without the name of the file beside, which says nothing to anyone.
-            kind => kind.into(),
+            _ => error,
         })?;
         Ok(Place::Beside(Beside { file, place, claim }))
     }
@@ -131,14 +130,14 @@ pub(super) fn sync_folder(folder: &Path) {
 impl Write for AtomicFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
-            Place::Beside(beside) => beside.file.write(bytes),
+            Place::Beside(beside) => beside.file.as_file_mut().write(bytes),
             Place::There(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.to {
-            Place::Beside(beside) => beside.file.flush(),
+            Place::Beside(beside) => beside.file.as_file_mut().flush(),
             Place::There(file) => file.flush(),
         }
     }

@@ -88,13 +88,15 @@ impl Splice {
         for KeyValue { key, value } in kept.filter(|pair| pair.key != ARROW_SCHEMA) {
             writer.append_key_value_metadata(KeyValue::new(key.clone(), value.clone()));
         }
-        Ok(Self {
+        let mut splice = Self {
             original,
             writer,
             added: kinds.into_iter().map(Cells::new).collect(),
             group: 0,
             rows: 0,
-        })
+        };
+        splice.end_groups()?;
+        Ok(splice)
     }
 
     /// The new cells of the next row.
@@ -109,7 +111,7 @@ impl Splice {
         self.end_groups()
     }
 
-    /// Writes the groups of rows that are full, which those without rows always are.
+    /// Writes the groups of rows that are full, which one without rows always is.
     fn end_groups(&mut self) -> io::Result<()> {
         while self.original.rows(self.group) == Some(self.rows) {
             caught(|| self.write_group()).map_err(io::Error::other)?;
@@ -139,8 +141,7 @@ impl Splice {
     }
 
     /// Once the last row was written.
-    pub(super) fn finish(mut self) -> io::Result<AtomicFile> {
-        self.end_groups()?;
+    pub(super) fn finish(self) -> io::Result<AtomicFile> {
         match self.original.rows(self.group) {
             None => self.writer.into_inner().map_err(io_error),
             Some(_) => Err(io::Error::other(

@@ -5,6 +5,7 @@
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
+use super::unfinished::bare;
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
@@ -28,7 +29,7 @@ pub(super) struct Spool {
 impl Spool {
     /// In a folder that has the room.
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
-        let file = BufWriter::new(tempfile::tempfile_in(folder)?);
+        let file = BufWriter::new(tempfile::tempfile_in(folder).map_err(bare)?);
         Ok(Self {
             rows: csv::Writer::from_writer(file),
             header: None,
@@ -134,7 +135,7 @@ impl Kind {
 }
 
 /// The number in a cell, where a `f64` holds all that is written there: numerals such as `007` and
-/// whole numbers beyond 2⁵³ are text.
+/// whole numbers beyond 2⁵³ that it would round are text.
 fn number(cell: &[u8]) -> Option<f64> {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let text = std::str::from_utf8(cell).ok()?.trim();
@@ -142,7 +143,7 @@ fn number(cell: &[u8]) -> Option<f64> {
     let digits = text.trim_start_matches(['+', '-']);
     let whole = digits.bytes().all(|byte| byte.is_ascii_digit());
     let padded = digits.len() > 1 && digits.starts_with('0') && !digits.starts_with("0.");
-    let exact = !whole || value.abs() <= EXACT;
+    let exact = !whole || value.abs() < EXACT || value.abs().to_string() == digits;
     (exact && !padded).then_some(value)
 }
 
@@ -179,6 +180,7 @@ mod tests {
             "+3",
             " 7 ",
             "9007199254740992",
+            "-10000000000000000",
             "0.10",
         ] {
             assert!(number(cell.as_bytes()).is_some(), "{cell}");
@@ -189,6 +191,7 @@ mod tests {
             "-01",
             "00",
             "9007199254740993",
+            "18446744073709551615",
             "ok",
             "1,5",
             "2026-01-01",

@@ -54,7 +54,7 @@ pub(super) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Resul
         builder.permissions(permissions);
     }
     for _ in 0..ATTEMPTS {
-        let file = builder.tempfile_in(folder)?;
+        let file = builder.tempfile_in(folder).map_err(bare)?;
         if is_held(file.as_file(), file.path()) {
             unfinished().push(file.path().to_owned());
             return Ok(file);
@@ -76,7 +76,7 @@ impl Workshop {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         for _ in 0..ATTEMPTS {
-            let made = builder.tempdir_in(folder)?;
+            let made = builder.tempdir_in(folder).map_err(bare)?;
             let path = made.path().join(LOCK);
             match File::create_new(&path) {
                 Ok(lock) if is_held(&lock, &path) => {
@@ -108,6 +108,11 @@ fn builder() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
     builder
+}
+
+/// An error without the name of what is beside, which says nothing to anyone.
+pub(super) fn bare(error: io::Error) -> io::Error {
+    error.kind().into()
 }
 
 fn taken_away() -> io::Error {
