@@ -1,7 +1,8 @@
 //! The name that programs remember of the shared library.
 
-/// Rises when programs that were linked with the library before do not run with it any more. Functions, constants and codes
-/// may be added; nothing in the header may change its meaning, its arguments or its size.
+/// Rises when programs that were linked with the library before do not run with it any more.
+/// Functions, constants and codes may be added; nothing in the header may change its meaning, its
+/// arguments or its size.
 const INTERFACE: u32 = 0;
 
 fn main() {

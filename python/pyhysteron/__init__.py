@@ -35,7 +35,7 @@ from ._hysteron import (
     scenarios,
     track,
 )
-# Exported without being in `__all__`: their inherited methods would fill `help(hysteron)`.
+# Exported without being in `__all__`: their inherited methods would fill `help(pyhysteron)`.
 from .errors import (
     ControlError as ControlError,
     CoreError as CoreError,

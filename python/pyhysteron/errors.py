@@ -24,7 +24,7 @@ __all__ = [
 
 
 class HysteronError(Exception):
-    """Any error of hysteron."""
+    """Any error of pyhysteron."""
 
     code = 0
 

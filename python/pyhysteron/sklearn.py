@@ -1,4 +1,4 @@
-"""hysteron for scikit-learn: a regressor with memory, and a splitter that respects the memory.
+"""pyhysteron for scikit-learn: a regressor with memory, and a splitter that respects the memory.
 
 A column of `X` is the input, and the rows are samples in the order in which they were taken. The output depends on that
 order, as scikit-learn does not foresee: shuffled rows are another experiment. `predict` simulates from the start of what it is given, every

@@ -45,7 +45,7 @@ def test_run_is_step_after_step(method):
 
 
 def test_a_step_says_what_it_did():
-    adaptive = pyhysteron.Adaptive(model())
+    adaptive = pyhysteron.Adaptive(model(), gate=0)  # which would wait for a second such reading
     learning = adaptive.step(100.0, 50.0)
     assert learning.output == model().output_range[1]
     assert learning.error == 50.0 - learning.output

@@ -12,7 +12,7 @@ import pytest
 
 import pyhysteron
 
-MODULES = [hysteron, pyhysteron.control]
+MODULES = [pyhysteron, pyhysteron.control]
 for name, needed in {"blocks": "control", "plot": "matplotlib", "sklearn": "sklearn"}.items():
     if importlib.util.find_spec(needed):
         MODULES.append(importlib.import_module(f"pyhysteron.{name}"))

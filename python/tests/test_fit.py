@@ -79,7 +79,7 @@ def test_load(recording, swings):
             model.simulate(swings, **bad)
     with pytest.raises(pyhysteron.FitError, match="load"):
         model.at_load(1).simulate(swings, load=load)
-    with pytest.raises(pyhysteron.FitError, match="take `load_degree` 1 at most"):
+    with pytest.raises(pyhysteron.FitError, match="take `load_degree=1` at most"):
         pyhysteron.fit(swings, output, load=np.repeat([0.0, 1.0], 1500), load_degree=2, levels=5)
 
 

@@ -27,7 +27,7 @@ def test_band_holds_95_percent(model, recording):
     inside = (low < recording.output) & (recording.output < high)
     assert 0.93 < inside.mean() <= 1
     np.testing.assert_allclose((low + high) / 2, model.simulate(recording.input), rtol=1e-12)
-    with pytest.raises(pyhysteron.FitError, match="fit it again with `bootstrap`"):
+    with pytest.raises(pyhysteron.FitError, match="fit it again with `bootstrap=200`"):
         pyhysteron.Model([1, 2, 4], (0, 1)).band([0.5])
 
 

@@ -11,10 +11,11 @@ use std::ops::Range;
 /// No function has more pointers.
 const MOST: usize = 6;
 
-/// The pointers of one call. Each is checked by itself, and refused where it shares memory with one before it.
+/// The pointers of one call. Each is checked by itself, and refused where it shares memory with one
+/// before it.
 ///
-/// This is the only way to the memory behind a pointer, so that no function can forget a pair. Nothing is written
-/// while pointers are taken: a function takes them all first.
+/// This is the only way to the memory behind a pointer, so that no function can forget a pair.
+/// Nothing is written while pointers are taken: a function takes them all first.
 #[derive(Default)]
 pub(crate) struct Arguments {
     taken: [Range<usize>; MOST],
@@ -105,7 +106,8 @@ impl Arguments {
     /// An array to write; an empty one may be null.
     ///
     /// # Safety
-    /// `pointer` is null or valid for writes of `count` elements, which nobody else uses while the `ArrayOut` is used.
+    /// `pointer` is null or valid for writes of `count` elements, which nobody else uses while the
+    /// `ArrayOut` is used.
     pub(crate) unsafe fn array_out<T>(
         &mut self,
         pointer: *mut T,
@@ -150,7 +152,8 @@ pub(crate) struct Out<T>(*mut T);
 
 impl<T> Out<T> {
     pub(crate) fn set(&self, value: T) {
-        // SAFETY: valid for a write by the contract of `Arguments::out`, not null and aligned as checked there.
+        // SAFETY: valid for a write by the contract of `Arguments::out`, not null and aligned as
+        // checked there.
         unsafe { self.0.write(value) }
     }
 }
@@ -169,7 +172,8 @@ impl<T> ArrayOut<T> {
     /// Writes one element; there is none from the count on.
     pub(crate) fn set(&self, n: usize, value: T) {
         if n < self.count {
-            // SAFETY: valid for a write by the contract of `Arguments::array_out`, not null and aligned as checked there.
+            // SAFETY: valid for a write by the contract of `Arguments::array_out`, not null and
+            // aligned as checked there.
             unsafe { self.pointer.add(n).write(value) }
         }
     }
@@ -180,7 +184,8 @@ impl<T> ArrayOut<T> {
         values.for_each(|(n, value)| self.set(n, value));
     }
 
-    /// Writes all of `values`, which are `needed`; `count` says so even where there is no room for them.
+    /// Writes all of `values`, which are `needed`; `count` says so even where there is no room for
+    /// them.
     pub(crate) fn write_all(
         &self,
         values: impl Iterator<Item = T>,
@@ -203,7 +208,8 @@ impl<T: Number> ArrayOut<T> {
         if self.count == 0 {
             return &mut [];
         }
-        // SAFETY: as for `write`, and nobody else uses it; the zeros make numbers of memory that was never written.
+        // SAFETY: as for `write`, and nobody else uses it; the zeros make numbers of memory that
+        // was never written.
         unsafe {
             self.pointer.write_bytes(0, self.count);
             std::slice::from_raw_parts_mut(self.pointer, self.count)
@@ -212,7 +218,8 @@ impl<T: Number> ArrayOut<T> {
 }
 
 impl ArrayOut<c_char> {
-    /// Copies as much of `from` as fits with a zero byte at the end; gives the bytes that the whole takes.
+    /// Copies as much of `from` as fits with a zero byte at the end; gives the bytes that the whole
+    /// takes.
     pub(crate) fn write_text(&self, from: &str) -> usize {
         if self.count > 0 {
             let mut length = from.len().min(self.count - 1);

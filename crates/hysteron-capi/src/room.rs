@@ -15,7 +15,8 @@ struct Head {
     bytes: usize,
 }
 
-/// A kind of object, as C knows it. Behind its pointer lie the head, the content and the content's elements.
+/// A kind of object, as C knows it. Behind its pointer lie the head, the content and the content's
+/// elements.
 pub(crate) trait Kind {
     const MARK: u64;
     type Content;
@@ -38,7 +39,8 @@ impl Arguments {
     /// The object behind a pointer that an initialisation gave.
     ///
     /// # Safety
-    /// `pointer` is null or points to memory of at least the size of an object, which nobody else uses during `'a`.
+    /// `pointer` is null or points to memory of at least the size of an object, which nobody else
+    /// uses during `'a`.
     pub(crate) unsafe fn object<'a, K: Kind>(
         &mut self,
         pointer: *mut K,
@@ -104,8 +106,8 @@ pub(crate) struct Room {
 impl Room {
     /// Makes an object of `count` elements and what `make` puts in front of them.
     ///
-    /// An object that was here is gone as soon as its elements are written over: its mark goes first, so that it is
-    /// refused from then on even where `make` fails.
+    /// An object that was here is gone as soon as its elements are written over: its mark goes
+    /// first, so that it is refused from then on even where `make` fails.
     pub(crate) fn fill<K: Kind, E: Default + 'static>(
         self,
         count: usize,
@@ -119,9 +121,9 @@ impl Room {
         }
         let (head, content) = (self.head, content_of::<K>(self.head));
         let (mark, bytes) = (K::MARK, needed);
-        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses them. They suffice for head,
-        // content and elements, which lie apart and aligned, as `size` asserts; each element is written before the slice
-        // is made.
+        // SAFETY: by the contract of `Arguments::room` the bytes are valid and nobody else uses
+        // them. They suffice for head, content and elements, which lie apart and aligned, as `size`
+        // asserts; each element is written before the slice is made.
         unsafe {
             head.write(Head { mark: 0, bytes });
             let first = content.add(1).cast::<E>();

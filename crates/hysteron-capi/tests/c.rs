@@ -1,4 +1,5 @@
-//! A C program that uses the whole interface, over the test vectors; under valgrind where it is installed.
+//! A C program that uses the whole interface, over the test vectors; under valgrind where it is
+//! installed.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../hysteron-export/tests/common/programs.rs"]
@@ -32,7 +33,8 @@ fn built() -> PathBuf {
 enum Library {
     Static,
     Shared,
-    /// The static one, with everything in C and every allocation of both watched by the compiler's sanitizers.
+    /// The static one, with everything in C and every allocation of both watched by the compiler's
+    /// sanitizers.
     Sanitized,
 }
 
@@ -193,7 +195,8 @@ fn a_wrong_vector_is_noticed() {
     assert!(!output.status.success());
 }
 
-/// The README's command lines and program word for word, in a folder that looks like a clone with the libraries built.
+/// The README's command lines and program word for word, in a folder that looks like a clone with
+/// the libraries built.
 #[test]
 fn the_readme_in_c() {
     if !has("cc") {

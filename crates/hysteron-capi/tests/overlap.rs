@@ -1,4 +1,5 @@
-//! No two pointers of a call may share memory: every function that has two, every pair, every offset.
+//! No two pointers of a call may share memory: every function that has two, every pair, every
+//! offset.
 #![allow(clippy::unwrap_used)]
 
 mod signatures;
@@ -14,7 +15,7 @@ struct Arena<'a> {
     handles: &'a Handles,
     memory: Vec<u64>,
     places: Vec<Range<usize>>,
-    _model: Model,
+    model: Model,
 }
 
 /// Bytes before and after each argument: at least as many as any has.
@@ -31,13 +32,12 @@ impl<'a> Arena<'a> {
             end = (end + size).next_multiple_of(8) + GAP;
         }
         let memory = vec![0_u64; end / 8];
-        let model = Model::none();
         let mut arena = Self {
             call,
             handles,
             memory,
             places,
-            _model: model,
+            model: Model::none(),
         };
         arena.prepare();
         arena
@@ -50,7 +50,7 @@ impl<'a> Arena<'a> {
         order.sort_by_key(|&n| !matches!(self.call.arguments[n].1, signatures::Argument::Model));
         for n in order {
             let argument = self.call.arguments[n].1;
-            argument.prepare(self.handles, pointers[n], &mut self._model);
+            argument.prepare(self.handles, pointers[n], &mut self.model);
         }
     }
 
@@ -79,7 +79,8 @@ impl<'a> Arena<'a> {
         let mut pointers = self.pointers();
         pointers[moved] = self.at(start);
         if let Some(text) = self.call.arguments[moved].1.text(self.handles) {
-            // SAFETY: within the memory, as the gaps are wide enough. A text has to be one there as well.
+            // SAFETY: within the memory, as the gaps are wide enough. A text has to be one there as
+            // well.
             unsafe {
                 let place = pointers[moved].cast::<u8>();
                 place.copy_from(text.as_ptr(), text.len());

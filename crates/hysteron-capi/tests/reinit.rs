@@ -1,5 +1,5 @@
-//! Initialisation again and again in the same memory, with success and without, between other calls in any order: an object
-//! does what the same object of the core does, or it is refused.
+//! Initialisation again and again in the same memory, with success and without, between other calls
+//! in any order: an object does what the same object of the core does, or it is refused.
 #![allow(clippy::unwrap_used)]
 
 use hysteron_capi::*;
@@ -95,7 +95,8 @@ impl World {
         (0..operator_count(levels)).map(number).collect()
     }
 
-    /// The kind of object that is found in a room; each kind's function looks for its object before it asks for more.
+    /// The kind of object that is found in a room; each kind's function looks for its object before
+    /// it asks for more.
     fn found(&mut self, room: usize) -> [bool; 3] {
         // SAFETY: null pointers, and memory as large as any object.
         let codes = unsafe {
@@ -114,7 +115,8 @@ impl World {
         })
     }
 
-    /// After a call that makes an object. Where it failed, the room has the object that it had, or none.
+    /// After a call that makes an object. Where it failed, the room has the object that it had, or
+    /// none.
     fn made(&mut self, room: usize, found: i32, twin: Result<Twin, Error>) {
         match twin {
             Ok(twin) => {

@@ -1,4 +1,5 @@
-//! What helps against an error, apart from what is wrong: each surface spells the options in its own way.
+//! What helps against an error, apart from what is wrong: each surface spells the options in its
+//! own way.
 
 use std::borrow::Cow;
 use std::fmt;
