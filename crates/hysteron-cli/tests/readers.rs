@@ -39,13 +39,16 @@ fn prepare_keeps_names_and_all_columns() {
     assert_eq!(lines.next(), Some("0,0,0,0,note 0"));
     assert_eq!(lines.nth(2), Some("3,1.5,3,6,note 3"));
     // Where the times change, numbers are interpolated and text cannot be.
-    let done = run(folder.path(), &format!("{line} --resample 0.25"));
+    let done = run(
+        folder.path(),
+        &line.replace("out.csv", "again.csv --resample 0.25"),
+    );
     assert!(
         text(&done.stderr).contains("left out, because text cannot be resampled: remark"),
         "{}",
         text(&done.stderr)
     );
-    let written = fs::read_to_string(folder.path().join("out.csv")).unwrap();
+    let written = fs::read_to_string(folder.path().join("again.csv")).unwrap();
     assert_eq!(
         written.lines().next(),
         Some("no,Zeit [s],T [degC],lift [mm]")

@@ -260,7 +260,7 @@ fn what_is_refused_leaves_nothing() {
             name: Some(name.into()),
             ..plain.clone()
         };
-        refused(&model(), &options, "block.fmu", "--name");
+        refused(&model(), &options, "block.fmu", "`name`");
     }
     let weights = vec![1.0, -1.0, 1.0];
     let plane = Plane::new(0.0, 1.0, 2).unwrap();
