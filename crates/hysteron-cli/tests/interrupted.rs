@@ -1,6 +1,6 @@
 //! Runs that end in the middle: a full disk, a signal, a reader that goes.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
@@ -228,4 +228,44 @@ fn a_pipe_whose_reader_goes_is_a_fault() {
         assert_eq!(done.status.code(), Some(1), "{name}: {said}");
         assert!(said.contains(name), "{said}");
     }
+}
+
+/// Killed at any moment, a run over an earlier report leaves one of the two, whole.
+#[test]
+fn a_report_killed_at_any_moment_is_the_old_or_the_new() {
+    let bench = bench();
+    let path = bench.path();
+    let line = REPORT.replace("out/report", "report");
+    let began = std::time::Instant::now();
+    assert!(run(path, &line).status.success());
+    let takes = began.elapsed();
+    let old = files(&path.join("report"));
+    // The new one has another title.
+    fs::copy(path.join("m.json"), path.join("n.json")).unwrap();
+    let line = line.replace("m.json", "n.json");
+    const TRIES: u32 = 20;
+    let mut new = None;
+    for n in 0..TRIES {
+        let mut child = hysteron(path, &line)
+            .stderr(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Most of the moments are near the end, where the report takes its place.
+        std::thread::sleep(takes.mul_f64(0.6 + 0.6 * f64::from(n) / f64::from(TRIES)));
+        // It may have come to its end.
+        let _ = child.kill();
+        child.wait().unwrap();
+        let found = files(&path.join("report"));
+        if found != old {
+            assert!(
+                *new.get_or_insert_with(|| found.clone()) == found,
+                "neither old nor new"
+            );
+        }
+    }
+    assert!(run(path, &line).status.success());
+    let found = files(&path.join("report"));
+    assert!(found != old && new.is_none_or(|new| new == found));
+    assert!(hidden(path).is_empty());
 }

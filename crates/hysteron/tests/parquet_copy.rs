@@ -1,5 +1,5 @@
 //! A Parquet file with more columns keeps those that it had, whatever they hold.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use hysteron::{
     Invert, Model, Operator, Plane, Sign, Simulate, TableReader, TableWriter, invert_table,

@@ -32,8 +32,8 @@ pub fn discard_unfinished() {
     for path in unfinished().drain(..) {
         // One that cannot be removed is no reason not to end.
         let _ = match path.is_dir() {
-            true => fs::remove_dir_all(path),
-            false => fs::remove_file(path),
+            true => empty(&path).and_then(|()| fs::remove_dir_all(&path)),
+            false => fs::remove_file(&path),
         };
     }
 }
@@ -100,8 +100,23 @@ impl Workshop {
 
 impl Drop for Workshop {
     fn drop(&mut self) {
+        // What cannot be removed now is left to the next run.
+        let _ = empty(self.folder.path());
         finished(self.folder.path());
     }
+}
+
+/// Removes all but the lock of a folder. The lock goes last, so that a removal that is itself
+/// killed can be taken up again.
+fn empty(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)?.flatten() {
+        match entry.file_type()?.is_dir() {
+            true => fs::remove_dir_all(entry.path())?,
+            false if entry.file_name() == LOCK => {}
+            false => fs::remove_file(entry.path())?,
+        }
+    }
+    Ok(())
 }
 
 fn builder() -> tempfile::Builder<'static, 'static> {
@@ -145,18 +160,11 @@ fn sweep(folder: &Path) {
     }
 }
 
-/// The lock goes last, so that a removal that is itself killed can be taken up again.
 fn sweep_folder(path: &Path) -> io::Result<()> {
     let lock = path.join(LOCK);
     if lock.exists() {
         let _lock = left_behind(&lock)?;
-        for entry in fs::read_dir(path)?.flatten() {
-            match entry.file_type()?.is_dir() {
-                true => fs::remove_dir_all(entry.path())?,
-                false if entry.file_name() == LOCK => {}
-                false => fs::remove_file(entry.path())?,
-            }
-        }
+        empty(path)?;
         fs::remove_file(&lock)?;
     }
     // Only where it is empty: one that was just made has no lock yet.
@@ -185,6 +193,22 @@ fn is_temporary(name: &OsStr) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn the_lock_outlives_all_else_in_a_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(".hysteron-abcdefABCD12.part");
+        fs::create_dir_all(path.join("new/deep")).unwrap();
+        for name in ["a", "new/deep/file", LOCK, "z"] {
+            fs::write(path.join(name), "").unwrap();
+        }
+        empty(&path).unwrap();
+        let left = fs::read_dir(&path).unwrap();
+        let left: Vec<_> = left.map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, [LOCK]);
+        sweep(folder.path());
+        assert!(!path.exists());
+    }
 
     #[test]
     fn only_what_nobody_writes_is_swept() {
