@@ -27,7 +27,7 @@ enum Twin {
     None,
     Model(Model<f64, Vec<f64>>),
     State(State<f64, Vec<Turn<f64>>>),
-    Estimator(Estimator<f64, Vec<f64>>),
+    Estimator(Box<Estimator<f64, Vec<f64>>>),
 }
 
 impl Twin {
@@ -298,7 +298,7 @@ impl World {
             learning.output,
             expected.map(|learning| learning.output),
         );
-        self.twins[by] = Twin::Estimator(estimator);
+        self.twins[by] = Twin::Estimator(Box::new(estimator));
         self.twins[of] = Twin::Model(model);
         self.twins[with] = Twin::State(state);
     }

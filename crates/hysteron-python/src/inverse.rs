@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
 use crate::word::{choice, direction, policy, width};
-use hysteron::{Invert, Status};
+use hysteron::Invert;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

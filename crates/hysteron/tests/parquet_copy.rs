@@ -17,6 +17,9 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::sync::Arc;
 
+/// The cells of a row, with the names of their columns.
+type Cells = Vec<(String, Field)>;
+
 const SCHEMA: &str = "message recording {
     REQUIRED DOUBLE x;
     OPTIONAL BYTE_ARRAY note (UTF8);
@@ -104,7 +107,7 @@ fn next<T: parquet::data_type::DataType>(
 }
 
 /// The schema's columns and the rows of a file.
-fn read(path: &Path) -> (Vec<Arc<Type>>, Vec<Vec<(String, Field)>>) {
+fn read(path: &Path) -> (Vec<Arc<Type>>, Vec<Cells>) {
     let reader = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
     let fields = reader
         .metadata()
