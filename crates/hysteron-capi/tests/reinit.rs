@@ -227,7 +227,11 @@ impl World {
         };
         let memory = vec![0.0; estimator_len(levels, method)];
         let made = Estimator::new(options, twin, &weights, offset, memory);
-        self.made(room, found, made.map(Twin::Estimator));
+        self.made(
+            room,
+            found,
+            made.map(|estimator| Twin::Estimator(Box::new(estimator))),
+        );
     }
 
     /// A step of the model in one room, or of its inverse, with the state in another.
@@ -298,7 +302,7 @@ impl World {
             learning.output,
             expected.map(|learning| learning.output),
         );
-        self.twins[by] = Twin::Estimator(Box::new(estimator));
+        self.twins[by] = Twin::Estimator(estimator);
         self.twins[of] = Twin::Model(model);
         self.twins[with] = Twin::State(state);
     }
