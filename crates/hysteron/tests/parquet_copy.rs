@@ -106,6 +106,9 @@ fn next<T: parquet::data_type::DataType>(
     column.close().unwrap();
 }
 
+/// The cells of a row by the names of their columns.
+type Cells = Vec<(String, Field)>;
+
 /// The schema's columns and the rows of a file.
 fn read(path: &Path) -> (Vec<Arc<Type>>, Vec<Cells>) {
     let reader = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
