@@ -228,7 +228,9 @@ fn the_readme_in_c() {
     }
     let (model, _) = vectors(folder.path()).swap_remove(0);
     std::fs::rename(model, folder.path().join("spring.json")).unwrap();
-    names.map(|name| run(&mut shell(name)));
+    for name in names {
+        run(&mut shell(name));
+    }
     assert!(commands.contains(&native_libraries()), "{commands}");
 }
 
