@@ -22,6 +22,7 @@ const METHODS: [i32; 3] = [
 
 /// What a room holds: the same object, made with the core.
 #[derive(Default, Clone)]
+#[allow(clippy::large_enum_variant, reason = "there are four")]
 enum Twin {
     #[default]
     None,
