@@ -17,9 +17,6 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The cells of a row, with the names of their columns.
-type Cells = Vec<(String, Field)>;
-
 const SCHEMA: &str = "message recording {
     REQUIRED DOUBLE x;
     OPTIONAL BYTE_ARRAY note (UTF8);
