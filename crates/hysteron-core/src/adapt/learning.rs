@@ -37,7 +37,7 @@ pub enum Outcome {
     /// The weights did far worse than the last good ones, or were no numbers any more: these are back.
     RolledBack,
     /// The reading differs too much from what was expected to be learned from, and has not done so
-    /// for long: [`Adaptation::gate`].
+    /// for long: [`Adaptation::gate`](super::Adaptation::gate).
     Rejected,
 }
 
