@@ -1,5 +1,6 @@
-//! Sequences of calls of the C interface, over handles that live or not, and memory of the caller of any size and place:
-//! every call gives a code that there is, and what it refuses leaves the caller's numbers as they were.
+//! Sequences of calls of the C interface, over handles that live or not, and memory of the caller
+//! of any size and place: every call gives a code that there is, and what it refuses leaves the
+//! caller's numbers as they were.
 
 mod room;
 
@@ -123,8 +124,8 @@ impl User {
     }
 
     fn call(&mut self, call: &Call) -> i32 {
-        // SAFETY: every pointer is null or into the room, which has as many elements from there on as are told; only
-        // the interface writes into the slots, whose objects it gave out.
+        // SAFETY: every pointer is null or into the room, which has as many elements from there on
+        // as are told; only the interface writes into the slots, whose objects it gave out.
         unsafe {
             self.handles(call)
                 .or_else(|| self.core(call))

@@ -22,7 +22,8 @@ impl Walk {
         let mut states = vec![0.0; weights.len()];
         let plain = Definition::new(plane, self.setup.operator(), &weights, &mut states);
         let mut plain = plain.expect("what makes a model makes a definition");
-        // As in the core's tests; the second term is for weights so small that products with them are subnormal.
+        // As in the core's tests; the second term is for weights so small that products with them
+        // are subnormal.
         let size: f64 = weights.iter().map(|mu| mu.abs()).sum();
         let rounding = 1e-12 * size + f64::MIN_POSITIVE;
         for input in &self.inputs {

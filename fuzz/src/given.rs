@@ -65,7 +65,8 @@ impl Setup {
         drawn.chain(rest).take(operator_count(levels)).collect()
     }
 
-    /// The model and a state of it, with all operators off; none where the core refuses what it is made of.
+    /// The model and a state of it, with all operators off; none where the core refuses what it is
+    /// made of.
     pub fn build(&self, weights: &[f64]) -> Option<Owned> {
         let plane = self.plane()?;
         let k = plane.levels();

@@ -85,7 +85,8 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
     };
     assert!(solution.input.is_finite());
     let plane = model.plane();
-    // The input is rounded to its own unit: on a plane that is narrow for its distance from zero that is a part of a step.
+    // The input is rounded to its own unit: on a plane that is narrow for its distance from zero
+    // that is a part of a step.
     let largest = plane.max().abs().max(plane.bottom().abs());
     let rounding =
         (1e-12 + 4.0 * f64::EPSILON * largest / plane.step()) * (high - low) + f64::MIN_POSITIVE;

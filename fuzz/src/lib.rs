@@ -1,4 +1,5 @@
-//! What must hold of any input: each fuzz target hands its input to one of these, which panic where it does not hold.
+//! What must hold of any input: each fuzz target hands its input to one of these, which panic where
+//! it does not hold.
 
 pub mod c_calls;
 pub mod core_walk;

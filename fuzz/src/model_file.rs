@@ -1,4 +1,5 @@
-//! Model files: read or refused with words; what is read is written and read again without a change, and runs.
+//! Model files: read or refused with words; what is read is written and read again without a
+//! change, and runs.
 
 use crate::worded;
 use hysteron::Model;

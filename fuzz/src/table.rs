@@ -1,17 +1,19 @@
-//! Files with tables: whatever their bytes, they are read or refused with words, within the memory they may take.
+//! Files with tables: whatever their bytes, they are read or refused with words, within the memory
+//! they may take.
 
 use crate::worded;
 use hysteron::{Columns, ReadOptions, Recording, Repair, Result, TableReader, inspect_table};
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
-/// What a file's contents may take. `fuzz/run` counts a single allocation of twice as much as a fault.
+/// What a file's contents may take. `fuzz/run` counts a single allocation of twice as much as a
+/// fault.
 const BUDGET: u64 = 64 << 20;
 
 /// Reads `data` as a file of this ending: row by row, summed up, and as a recording.
 pub fn read(data: &[u8], ending: &str) {
-    // The readers catch what panics below them, in the libraries for Parquet and HDF5. libFuzzer would end at the panic; so
-    // it ends at those that nobody catches.
+    // The readers catch what panics below them, in the libraries for Parquet and HDF5. libFuzzer
+    // would end at the panic; so it ends at those that nobody catches.
     static QUIET: Once = Once::new();
     QUIET.call_once(|| std::panic::set_hook(Box::new(|_| ())));
     let path = file(ending);

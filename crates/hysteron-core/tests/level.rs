@@ -11,8 +11,9 @@ use rand::RngExt;
 fn a_level_that_learning_made_worse_is_taken_back_and_said() {
     for operator in OPERATORS {
         let mut rng = rng(70);
-        // Longer than the plane: no increment ends, so that whatever comes is of the level. A gain near 2 follows noise
-        // so closely that the mean square error is some ten times that of the level that stands still.
+        // Longer than the plane: no increment ends, so that whatever comes is of the level. A gain
+        // near 2 follows noise so closely that the mean square error is some ten times that of the
+        // level that stands still.
         let method = Method::Increments {
             gain: 1.9,
             span: 8.0,

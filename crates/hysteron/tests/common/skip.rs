@@ -4,8 +4,8 @@
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Says which test is skipped, and why. `./check` prints these lines again at its end: it collects them in the file that
-/// `HYSTERON_SKIPPED` names.
+/// Says which test is skipped, and why. `./check` prints these lines again at its end: it collects
+/// them in the file that `HYSTERON_SKIPPED` names.
 pub fn skipped(why: &str) {
     let thread = std::thread::current();
     let line = format!("skipped: {}: {why}\n", thread.name().unwrap_or("a test"));
