@@ -15,7 +15,7 @@ impl TableReader {
     /// shorter and longer ones are then left out.
     ///
     /// # Errors
-    /// [`Error::Recording`] where there is none of that name, naming those that there are, or two,
+    /// [`Error::Recording`](crate::Error::Recording) where there is none of that name, naming those that there are, or two,
     /// or where it is not as long as the first one.
     pub fn column(&mut self, name: &str) -> Result<Column> {
         let place = self.find(name)?;

@@ -95,6 +95,18 @@ impl Claims {
 
     /// What the largest page of a column takes, a dictionary and a page of data being held together.
     fn largest_page(&mut self, chunk: &ColumnChunkMetaData) -> Result<u128, Refusal> {
+        // Where these are negative, `byte_range` panics.
+        let first = chunk.dictionary_page_offset();
+        if [
+            first.unwrap_or_default(),
+            chunk.data_page_offset(),
+            chunk.compressed_size(),
+        ]
+        .iter()
+        .any(|number| *number < 0)
+        {
+            return Err(damaged());
+        }
         let (start, length) = chunk.byte_range();
         let end = start.checked_add(length).filter(|end| *end <= self.length);
         let end = end.ok_or_else(damaged)?;
