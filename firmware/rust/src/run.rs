@@ -3,7 +3,7 @@
 use crate::port::{count, depth, note, say};
 use core::hint::black_box;
 use hysteron_core::{
-    Direction, Error, Inverse, Model, Operator, Plane, Policy, Real, State, Status, Turn,
+    Direction, Error, Inverse, Model, Operator, Plane, Policy, Real, State, Turn,
     table_len, turn_capacity,
 };
 
