@@ -3,8 +3,8 @@
 use crate::port::{count, depth, note, say};
 use core::hint::black_box;
 use hysteron_core::{
-    Direction, Error, Inverse, Model, Operator, Plane, Policy, Real, State, Turn,
-    table_len, turn_capacity,
+    Direction, Error, Inverse, Model, Operator, Plane, Policy, Real, State, Turn, table_len,
+    turn_capacity,
 };
 
 /// The model as the model file has it.
