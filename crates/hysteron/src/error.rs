@@ -1,6 +1,6 @@
 //! Everything that can go wrong, with a stable code for each kind.
 
-use crate::Remedy;
+use crate::remedy::Remedy;
 use std::path::PathBuf;
 
 /// A result of this crate.
@@ -93,10 +93,10 @@ pub enum Error {
     Export(String),
     /// A filter's arguments do not fit the data.
     #[error(transparent)]
-    Filter(#[from] crate::filter::FilterError),
-    /// The virtual rig was asked for something outside its physics.
+    Filter(#[from] crate::series::filter::FilterError),
+    /// A plant was asked for something that it cannot do.
     #[error(transparent)]
-    Rig(#[from] crate::rig::RigError),
+    Plant(Box<dyn std::error::Error + Send + Sync>),
     /// Another error, and what helps against it; [`Error::parts`] takes them apart.
     #[error("{error}: {remedy}")]
     Remedied {
@@ -118,7 +118,7 @@ impl Error {
             Error::Recording { .. } => 22,
             Error::Fit(_) => 23,
             Error::Filter(_) => 24,
-            Error::Rig(_) => 25,
+            Error::Plant(_) => 25,
             Error::Preparation(_) => 26,
             Error::Design(_) => 27,
             Error::Thermal(_) => 28,

@@ -1,12 +1,14 @@
 //! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
 
 use crate::identify::simulate_from_unknown;
-use crate::recording::range;
-use crate::turning::{NOISE, Turning};
-use crate::{
-    BandEvaluation, Errors, Inverse, Invert, Model, Recording, Remedy, Result, Setting, Solution,
-    Start, State,
-};
+use crate::series::range;
+use crate::series::{NOISE, Turning};
+use crate::model::{BandEvaluation, Inverse, Invert, Model, Start, State};
+use crate::series::Errors;
+use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
+use crate::error::Result;
+use hysteron_core::Solution;
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice
 /// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
@@ -79,7 +81,7 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         if model.load.is_some() {
             let what = "a model that depends on a load is evaluated from off only";
             let remedy = Remedy::new("take it at one load ({})", [Setting::any("load")]);
-            return Err(crate::Error::Fit(what.into()).remedied(remedy));
+            return Err(crate::error::Error::Fit(what.into()).remedied(remedy));
         }
         let mut from_on = vec![0.0; recording.len()];
         run(model.saturated(), &mut from_on)?;
@@ -94,7 +96,7 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     }
     if model.load.is_some() {
         let Some(load) = &recording.load else {
-            return Err(crate::Error::Fit(
+            return Err(crate::error::Error::Fit(
                 "the model depends on a load: the recording needs it too, or take the model at one load".into(),
             ));
         };

@@ -11,43 +11,33 @@
 #![forbid(unsafe_code)]
 
 mod adapt;
-mod adaptive;
-mod advice;
-mod band;
 pub mod control;
+#[cfg(feature = "data")]
+mod data;
 mod design;
 mod error;
 mod evaluate;
-pub mod filter;
 mod identify;
 mod inspect;
-mod inverse;
-mod load;
-mod metrics;
 mod model;
-mod model_file;
-mod monotone;
-mod output;
-pub mod plant;
-mod predict;
+mod parallel;
 mod prepare;
-mod printable;
+mod progress;
 mod recording;
 mod remedy;
-pub mod rig;
-mod stream;
-mod table;
-mod thermal;
-pub mod track;
-mod turning;
+mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
+    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
     adapt_watched,
 };
-pub use adaptive::Adaptive;
-pub use advice::{Advice, advice};
-pub use band::{Band, BandEvaluation};
+#[cfg(feature = "data")]
+pub use data::{
+    Added, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts, Note, NoteKind,
+    Others, Own, Places, ReadOptions, Remark, Repair, Row, STANDARD_OUTPUT, Simulate, TableReader,
+    TableSummary, TableWriter, Target, discard_unfinished, inspect_table, invert_table, printable,
+    refuse_one_file, simulate_table,
+};
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
@@ -57,40 +47,29 @@ pub use hysteron_core::{
     Output, Policy, Region, Solution, Status, operator_index,
 };
 pub use identify::{
-    Candidates, Confidence, Excitation, FitOptions, FitSummary, INTERVAL, LeftOut, Open, Score,
-    Solver, Start, Validation, Watch, cross_validate, excitation, fit, fit_experiment, identify,
-    left_out, plane_of,
+    AGAINST_INPUT, Advice, Candidates, FitOptions, LeftOut, Open, advice, cross_validate,
+    excitation, fit, fit_experiment, fit_thermal, identify, left_out, plane_of, way_against_input,
 };
 pub use inspect::{
-    ColumnSummary, ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series,
-    TableSummary, Uncertain, inspect_model, inspect_recording, inspect_table,
+    ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,
+    inspect_model, inspect_recording,
 };
-pub use inverse::Inverse;
-pub use load::{LoadDependence, LoadPart};
-pub use metrics::Errors;
-pub use model::{Model, Sign, State};
-pub use monotone::{AGAINST_INPUT, way_against_input};
-pub use output::{
-    Added, AtomicFile, AtomicFolder, Cell, Own, STANDARD_OUTPUT, TableWriter, Target,
-    discard_unfinished, refuse_one_file,
+pub use model::{
+    Band, BandEvaluation, Confidence, Excitation, FirstOrder, FitSummary, INTERVAL, Inverse,
+    Invert, LoadDependence, LoadPart, Model, Plane, Score, Sign, Solver, Start, State,
+    Surroundings, ThermalState, Validation,
 };
-pub use predict::Surroundings;
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
     Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
 };
-pub use printable::printable;
-pub use recording::{
-    Columns, Note, NoteKind, Origin, Others, Places, Quantity, Recording, Repair, Source,
-};
+pub use progress::Watch;
+pub use recording::{Origin, Quantity, Recording, Source};
 pub use remedy::{Remedy, Setting, SettingValue};
-pub use stream::{Counts, Invert, Simulate, invert_table, simulate_table};
-pub use table::{Column, ReadOptions, Remark, Row, TableReader};
-pub use thermal::{FirstOrder, ThermalState, fit_thermal};
-pub use turning::{Headings, NOISE, Turning, branches, headings, noise_band, remembered};
-
-/// The discrete Preisach plane, equation (3).
-pub type Plane = hysteron_core::Plane<f64>;
+pub use series::{
+    Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, noise_band,
+    range, remembered,
+};
 
 /// The README's code, run as a test.
 #[cfg(doctest)]

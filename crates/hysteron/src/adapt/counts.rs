@@ -1,6 +1,6 @@
 //! How often an estimator did what.
 
-use crate::{Learning, Outcome};
+use hysteron_core::{Learning, Outcome};
 use serde::Serialize;
 
 /// How often each [`Outcome`] was.

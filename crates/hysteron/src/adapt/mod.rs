@@ -1,17 +1,21 @@
 //! An estimator over a recording: each sample is predicted, then learned from.
 
+mod adaptive;
 mod counts;
 mod options;
 mod parts;
 
+pub use adaptive::Adaptive;
 pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
-use crate::{
-    Adaptation, Error, Errors, FitSummary, Method, Model, Outcome, Recording, Result, Start,
-    TableWriter, Watch,
-};
+use hysteron_core::{Adaptation, Method, Outcome};
+use crate::error::{Error, Result};
+use crate::series::Errors;
+use crate::model::{FitSummary, Model, Start};
+use crate::recording::Recording;
+use crate::progress::Watch;
 use serde::Serialize;
 use serde_json::json;
 
@@ -86,36 +90,6 @@ impl Adapted {
         pairs.map(|(measured, model)| measured - model).collect()
     }
 
-    /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
-    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`,
-    /// `frozen`, `rolled-back`, `rejected`).
-    ///
-    /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
-    pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
-        if recording.len() != self.outcomes.len() {
-            return Err(Error::Recording {
-                path: recording.source.as_ref().map(|source| source.path.clone()),
-                row: None,
-                column: None,
-                problem: format!(
-                    "{} samples, where the model was adapted to {}",
-                    recording.len(),
-                    self.outcomes.len()
-                ),
-            });
-        }
-        let added = ["output_model", "error", "outcome"];
-        let errors = self.errors(recording);
-        recording.write_with(table, &added, |n| {
-            let outcome = self.outcomes[n].name().to_owned();
-            [
-                self.output_model[n].to_string(),
-                errors[n].to_string(),
-                outcome,
-            ]
-        })
-    }
 }
 
 /// Runs an estimator over a recording, which predicts each sample before it learns from it.
@@ -292,7 +266,7 @@ fn summary(
         max_abs: again.max_abs,
         nrmse_percent: again.nrmse_percent.unwrap_or_default(),
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
-        simulated: before.simulated || recording.origin == crate::Origin::Simulated,
+        simulated: before.simulated || recording.origin == crate::recording::Origin::Simulated,
         file: source.map(|source| source.path.display().to_string()),
         sha256: source.map(|source| source.sha256.clone()),
         other_files: Vec::new(),

@@ -1,8 +1,13 @@
 //! How a model is adapted to a recording, and what follows from both where nothing is said.
 
-use super::DriftParts;
-use crate::recording::range;
-use crate::{Adaptation, Adaptive, Error, Method, Model, Recording, Result, Start, noise};
+use crate::adapt::parts::DriftParts;
+use crate::series::range;
+use hysteron_core::{Adaptation, Method};
+use crate::adapt::adaptive::Adaptive;
+use crate::error::{Error, Result};
+use crate::model::{Model, Start};
+use crate::recording::Recording;
+use crate::prepare::noise;
 use serde::Serialize;
 
 /// Gain of the gradient methods.

@@ -1,6 +1,9 @@
 //! A few ways in which weights change under load and drift, in place of all weights.
 
-use crate::{Adaptation, Adaptive, Model, Result};
+use hysteron_core::Adaptation;
+use crate::adapt::adaptive::Adaptive;
+use crate::model::Model;
+use crate::error::Result;
 use hysteron_core::operator_index;
 
 /// Levels by which the weights are shifted along the diagonal of the plane.
@@ -41,7 +44,7 @@ impl DriftParts {
         let Some(dependence) = &model.load else {
             return match load {
                 None => Ok(Self::shifted(model)),
-                Some(_) => Err(crate::load::no_load()),
+                Some(_) => Err(crate::model::no_load()),
             };
         };
         let (low, high) = dependence.range();

@@ -6,7 +6,11 @@
 //! But a turning point that was asked for by weights long changed stays in that memory until it is wiped out. So with weights that
 //! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
 
-use crate::{Adaptive, Direction, Model, Outcome, Policy, Result, Sign, Solution, State, Turning};
+use crate::adapt::Adaptive;
+use hysteron_core::{Direction, Outcome, Policy, Solution};
+use crate::model::{Model, Sign, State};
+use crate::error::Result;
+use crate::series::Turning;
 
 /// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
 /// inverse goes back across the dead band only for a difference of this many tolerances.

@@ -30,7 +30,7 @@ pub trait SimulatedPlant: Device {
     ///
     /// # Errors
     /// [`crate::Error::Rig`] for values outside the plant's physics, and for a disturbance that the plant does not know.
-    fn disturb(&mut self, disturbance: Disturbance) -> crate::Result<()>;
+    fn disturb(&mut self, disturbance: Disturbance) -> crate::error::Result<()>;
 }
 
 /// What can change on a plant while it runs.

@@ -62,4 +62,3 @@ pub use run::{Course, run};
 pub use scheme::{InnerLoop, Rest, Scheme};
 pub use trace::{LoopStatus, Snapshot, Trace};
 pub use tuning::RelayTest;
-pub(crate) use tuning::steady;

@@ -1,6 +1,6 @@
 //! A PID controller for samples, with anti-windup.
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// Gains of a PID controller in its ideal form, `u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)`.

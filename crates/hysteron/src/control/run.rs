@@ -1,8 +1,10 @@
 //! A controller on a simulated plant, sample by sample.
 
 use super::{Controller, Disturbance, SimulatedPlant, Target, Trace};
-use crate::identify::SAMPLES_BETWEEN;
-use crate::{Direction, Result, Watch};
+use crate::progress::SAMPLES_BETWEEN;
+use hysteron_core::Direction;
+use crate::error::Result;
+use crate::progress::Watch;
 
 /// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
 #[derive(Debug, Clone)]

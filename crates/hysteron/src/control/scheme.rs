@@ -1,7 +1,7 @@
 //! What a controller is made of.
 
 use super::{Compensator, Gains};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// What the inverse does where the target rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -1,7 +1,8 @@
 //! PID gains from a test on a device, real or simulated.
 
+use crate::series::mean_and_deviation;
 use super::Gains;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Periods of the relay test that are left out, and those that count.
 const SETTLED: usize = 3;
@@ -146,8 +147,8 @@ impl Gains {
     pub fn from_step(output: &[f64], begin: usize, step: f64, interval_s: f64) -> Option<Self> {
         let resting = output.get(..begin)?;
         let answer = &output[begin..];
-        let (before, noise) = steady(&resting[begin.saturating_sub(LEVEL)..]);
-        let (after, _) = steady(&answer[answer.len().saturating_sub(LEVEL)..]);
+        let (before, noise) = mean_and_deviation(&resting[begin.saturating_sub(LEVEL)..]);
+        let (after, _) = mean_and_deviation(&answer[answer.len().saturating_sub(LEVEL)..]);
         if (after - before).abs() < ANSWER * noise {
             return None;
         }
@@ -169,12 +170,4 @@ impl Gains {
             derivative_s: 0.0,
         })
     }
-}
-
-/// Mean and standard deviation of a stretch.
-pub(crate) fn steady(samples: &[f64]) -> (f64, f64) {
-    let count = samples.len() as f64;
-    let mean = samples.iter().sum::<f64>() / count;
-    let square = samples.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>();
-    (mean, (square / count).sqrt())
 }

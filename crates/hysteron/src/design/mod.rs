@@ -6,10 +6,13 @@ mod spiral;
 pub use profile::{Rates, ramps};
 
 use crate::identify::{Initial, Unresolved};
-use crate::recording::range;
-use crate::{Error, Excitation, Operator, Plane, Result, TableWriter, excitation};
+use crate::series::range;
+use crate::error::{Error, Result};
+use crate::model::Excitation;
+use hysteron_core::Operator;
+use crate::model::Plane;
+use crate::identify::excitation;
 use spiral::Corners;
-use std::path::Path;
 
 /// Most samples of a profile.
 const MOST_SAMPLES: f64 = 1e7;
@@ -99,25 +102,6 @@ impl Design {
         self.excitation.iter().filter(|e| **e == class).count()
     }
 
-    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is replaced.
-    ///
-    /// # Errors
-    /// [`Error::File`].
-    pub fn write_csv(&self, path: &Path) -> Result<()> {
-        self.write_to(TableWriter::plain(Some(path.into()))?)
-    }
-
-    /// As [`Design::write_csv`], to a table that was begun before.
-    ///
-    /// # Errors
-    /// [`Error::File`].
-    pub fn write_to(&self, mut table: TableWriter) -> Result<()> {
-        table.row(["time [s]", "input"])?;
-        for (time, input) in self.time.iter().zip(&self.input) {
-            table.row([time.to_string(), input.to_string()])?;
-        }
-        table.finish()
-    }
 }
 
 /// The shortest input profile that determines every operator: a spiral that shrinks from the whole plane to its middle, with

@@ -1,6 +1,6 @@
 //! From turning points to an input over time.
 
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// How fast the input can change, in its unit per second; both above zero.
 #[derive(Debug, Clone, Copy, PartialEq)]

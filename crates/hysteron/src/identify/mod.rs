@@ -1,44 +1,33 @@
 //! Identification: the weights of a model from recordings.
 
-mod bootstrap;
-mod cholesky;
-mod chosen;
-mod confidence;
-mod excitation;
-mod experiment;
-mod free;
-mod initial;
-mod left_out;
-mod nnls;
+mod advice;
+mod choose;
+mod doubt;
+mod monotone;
 mod options;
-mod pivoting;
-mod problem;
-mod regressor;
-mod rows;
-mod smoothness;
-mod solve;
-mod sparse;
-mod validate;
+mod stages;
+mod weights;
 
-pub use chosen::{Open, identify};
-pub use confidence::{Confidence, INTERVAL};
-pub(crate) use excitation::Unresolved;
-pub use excitation::{Excitation, excitation};
-pub use experiment::plane_of;
-pub(crate) use initial::simulate_from_unknown;
-pub use left_out::{LeftOut, left_out};
-pub use options::{FitOptions, FitSummary, Solver, Start};
-pub(crate) use sparse::Initial;
-pub use validate::{Candidates, Score, Validation, cross_validate};
+pub use advice::{Advice, advice};
+pub use choose::chosen::{Open, identify};
+pub use choose::left_out::{LeftOut, left_out};
+pub use choose::validate::{Candidates, cross_validate};
+pub(crate) use doubt::excitation::Unresolved;
+pub use doubt::excitation::excitation;
+pub use monotone::{AGAINST_INPUT, way_against_input};
+pub use options::FitOptions;
+pub use stages::body::fit_thermal;
+pub use weights::experiment::plane_of;
+pub(crate) use weights::initial::simulate_from_unknown;
+pub(crate) use weights::sparse::Initial;
 
-use crate::{Errors, LoadDependence, LoadPart, Model, Recording, Result};
-use problem::Problem;
-
-/// Told, now and then, what is being done and how far it is from 0 to 1, NaN where that is not known; an error it returns ends the work.
-pub type Watch<'a> = &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync);
-
-/// How many samples a loop takes between two words to its [`Watch`]: a few milliseconds.
-pub(crate) const SAMPLES_BETWEEN: usize = 1024;
+use crate::series::Errors;
+use crate::model::{FitSummary, LoadDependence, LoadPart, Model};
+use crate::progress::Watch;
+use doubt::confidence;
+use crate::recording::Recording;
+use crate::error::Result;
+use weights::problem::Problem;
 
 /// Identifies a model: the weights and offset that minimise the squared error over the recording.
 ///
@@ -96,7 +85,7 @@ pub fn fit_experiment(
         .map(|(y, r)| y - sign.factor() * r)
         .collect();
     let errors = Errors::between(measured, &modelled, |_| true)
-        .ok_or_else(|| crate::Error::Fit("no samples".into()))?;
+        .ok_or_else(|| crate::error::Error::Fit("no samples".into()))?;
     let path = |r: &Recording| r.source.as_ref().map(|s| s.path.display().to_string());
     model.fit = Some(FitSummary {
         solver: options.solver,
@@ -110,7 +99,7 @@ pub fn fit_experiment(
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
         simulated: recordings
             .iter()
-            .any(|r| r.origin == crate::Origin::Simulated),
+            .any(|r| r.origin == crate::recording::Origin::Simulated),
         file: path(first),
         sha256: first.source.as_ref().map(|s| s.sha256.clone()),
         other_files: recordings[1..].iter().filter_map(path).collect(),

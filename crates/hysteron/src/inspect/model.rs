@@ -1,6 +1,7 @@
 //! What is in a model.
 
-use crate::{Confidence, Excitation, Model, Result};
+use crate::model::{Confidence, Excitation, Model};
+use crate::error::Result;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

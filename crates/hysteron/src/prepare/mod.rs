@@ -20,9 +20,12 @@ pub use noise::noise;
 pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
 
-use crate::filter::low_pass;
-use crate::recording::range;
-use crate::{Error, NOISE, Recording, Result, Watch};
+use crate::series::filter::low_pass;
+use crate::series::range;
+use crate::error::{Error, Result};
+use crate::series::NOISE;
+use crate::recording::Recording;
+use crate::progress::Watch;
 
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,7 +1,9 @@
 //! Samples at equal steps of time.
 
 use super::noise::median_of;
-use crate::{Error, Recording, Remedy, Result, Setting};
+use crate::error::{Error, Result};
+use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 
 /// Steps that differ from the median by up to this part of it are equal: a filter does not notice.
 const JITTER: f64 = 0.1;

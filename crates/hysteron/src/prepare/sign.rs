@@ -6,7 +6,7 @@
 //! sample: Viterbi 1967).
 
 use super::noise::{median_of, noise};
-use crate::recording::range;
+use crate::series::range;
 
 /// Signs are lost near zero: only readings up to this part of the range are turned.
 const NEAR_ZERO: f64 = 0.1;

@@ -3,8 +3,8 @@
 //! The discrepancy principle (Morozov 1966): what is taken away must be as large as the noise, for more would be signal and
 //! less would leave noise.
 
-use crate::Result;
-use crate::filter::low_pass;
+use crate::error::Result;
+use crate::series::filter::low_pass;
 
 /// Noise below this part of the range is left alone. A model of 20 levels misses clean recordings by about 0.5 % of
 /// the range at best; a tenth of that, added in squares, changes such an error by a half per cent of itself.

@@ -6,7 +6,7 @@
 //! signal does not.
 
 use super::noise::{deviation_of, median_of, noise};
-use crate::recording::range;
+use crate::series::range;
 
 /// Neighbours on either side. Eight of them outvote three samples in a row that are wrong.
 const REACH: usize = 4;

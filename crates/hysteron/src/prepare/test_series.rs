@@ -1,6 +1,6 @@
 //! Series with known truth.
 
-use crate::Recording;
+use crate::recording::Recording;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

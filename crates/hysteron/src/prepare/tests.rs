@@ -2,7 +2,7 @@
 
 use super::test_series::{behind_sensor, gaussian, two_rates};
 use super::*;
-use crate::rig::Experiment;
+use hysteron_sim::Experiment;
 
 fn with_noise(recording: &Recording, input: f64, output: f64) -> Recording {
     let add = |values: &[f64], sigma: f64, seed: u64| -> Vec<f64> {

@@ -1,0 +1,83 @@
+//! The controllers that can be compared.
+
+use hysteron::control::Rest;
+use serde::Deserialize;
+
+/// A controller of the comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// PID alone.
+    Pid,
+    /// The inverse alone, *hold*.
+    Inverse,
+    /// The inverse alone, *anticipate*.
+    InverseAnticipate,
+    /// Inverse and PID, *hold*.
+    InversePid,
+    /// Inverse and PID, *anticipate*.
+    InversePidAnticipate,
+    /// Adaptive inverse and PID, *hold*.
+    AdaptivePid,
+    /// Adaptive inverse and PID, *anticipate*.
+    AdaptivePidAnticipate,
+}
+
+impl Kind {
+    pub(super) fn all() -> Vec<Self> {
+        vec![
+            Self::Pid,
+            Self::Inverse,
+            Self::InverseAnticipate,
+            Self::InversePid,
+            Self::InversePidAnticipate,
+            Self::AdaptivePid,
+            Self::AdaptivePidAnticipate,
+        ]
+    }
+
+    /// What to call it.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Pid => "PID",
+            Self::Inverse => "inverse, hold",
+            Self::InverseAnticipate => "inverse, anticipate",
+            Self::InversePid => "inverse + PID, hold",
+            Self::InversePidAnticipate => "inverse + PID, anticipate",
+            Self::AdaptivePid => "adaptive inverse + PID, hold",
+            Self::AdaptivePidAnticipate => "adaptive inverse + PID, anticipate",
+        }
+    }
+
+    /// Its name in a scenario.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pid => "pid",
+            Self::Inverse => "inverse",
+            Self::InverseAnticipate => "inverse-anticipate",
+            Self::InversePid => "inverse-pid",
+            Self::InversePidAnticipate => "inverse-pid-anticipate",
+            Self::AdaptivePid => "adaptive-pid",
+            Self::AdaptivePidAnticipate => "adaptive-pid-anticipate",
+        }
+    }
+
+    pub(super) fn has_pid(self) -> bool {
+        !matches!(self, Self::Inverse | Self::InverseAnticipate)
+    }
+
+    pub(super) fn adapts(self) -> bool {
+        matches!(self, Self::AdaptivePid | Self::AdaptivePidAnticipate)
+    }
+
+    pub(super) fn rest(self) -> Rest {
+        match self {
+            Self::InverseAnticipate | Self::InversePidAnticipate | Self::AdaptivePidAnticipate => {
+                Rest::Anticipate
+            }
+            _ => Rest::Hold,
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come out of [`track`].
+//!
+//! For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with the
+//! same disturbances. The gains of all PIDs come from one test on the same plant.
+
+mod check;
+mod identify;
+mod kind;
+mod options;
+mod place;
+mod plant;
+mod reference;
+mod scenario;
+mod score;
+mod summary;
+mod tune;
+
+pub use kind::Kind;
+pub use options::{AdaptationOptions, LoopOptions, MethodName, ModelOptions, Tuning};
+pub use plant::{Event, PlantOptions, course};
+pub use reference::Reference;
+pub use scenario::Scenario;
+pub use score::{ReversalLag, Score, Window, reversal_lags};
+pub use summary::{Median, Ratio};
+
+use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
+use hysteron::{Adaptive, Error, Model, Result, headings};
+use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// Time for which a reading with noise does not stay the same to the last bit, in samples.
+const STUCK_SAMPLES: f64 = 15.0;
+
+/// What a comparison came to.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// The scenario's title.
+    pub title: String,
+    /// The controllers, in order.
+    pub controllers: Vec<Kind>,
+    /// The windows, in order.
+    pub windows: Vec<Window>,
+    /// Scores by controller, seed, window.
+    pub scores: Vec<Vec<Vec<Score>>>,
+    /// Each controller's run of the first seed.
+    pub traces: Vec<Trace>,
+    /// The model identified for the first seed.
+    pub model: Model,
+    /// Gains of the PID, by the scenario's [`Tuning`]; none where no controller has one.
+    pub gains: Option<Gains>,
+    /// Gains of the loop inside, by SIMC; none where there is none.
+    pub inner_gains: Option<Gains>,
+}
+
+/// Told of each finished run, and now and then in between, how many of how many; an error it returns ends the work.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> Result<()> + Sync);
+
+/// Runs every controller of the scenario with every seed. `done` is told how far it is.
+///
+/// # Errors
+/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
+/// [`Error::Plant`] for a plant outside its physics, and as [`hysteron::fit`] for a model that cannot be identified.
+///
+/// ```
+/// use hysteron_sim::track::{Scenario, track};
+/// let text = r#"
+/// title = "A sine on a simulated piezo-like actuator"
+/// duration_s = 8
+/// interval_s = 0.01
+/// settle_s = 2
+/// seeds = 1
+/// plant = { kind = "preisach", levels = 60 }
+/// model = { levels = 10, range = [8, 150], rates = [200, 200] }
+/// loop = { filter_s = 0.01, tolerance = 0.5 }
+/// controllers = ["pid", "inverse-pid"]
+/// [[reference]]
+/// kind = "constant"
+/// value = 36
+/// [[reference]]
+/// kind = "sine"
+/// amplitude = 24
+/// period_s = 2
+/// "#;
+/// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
+/// let comparison = track(&scenario, &|done, all| { eprintln!("{done} of {all}"); Ok(()) })?;
+/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
+/// assert!(inverse_pid < pid);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
+    let total = scenario.controllers.len() * scenario.seeds as usize;
+    done(0, total)?;
+    let (scheme, gains) = tune(scenario)?;
+    let reference = scenario.references();
+    let headings = headings(&reference, scenario.shared.tolerance);
+    let events = plant::course(&scenario.disturbance, scenario.interval_s);
+    let course = Course {
+        reference: &reference,
+        headings: &headings,
+        events: &events,
+    };
+    let windows = score::windows(scenario);
+    let finished = Mutex::new(0);
+    // One after the other, so that nobody is told a smaller count after a larger one.
+    let tell = |more: usize| {
+        let mut finished = finished.lock().unwrap_or_else(PoisonError::into_inner);
+        *finished += more;
+        done(*finished, total)
+    };
+    type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
+    let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
+        .into_par_iter()
+        .map(|seed| {
+            // Recordings and runs do not share their noise.
+            let model = identify::identify(scenario, &scheme, seed + 1_000_000)?;
+            let runs = scenario.controllers.par_iter().map(|kind| {
+                let mut plant = scenario.plant.build(seed)?;
+                let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
+                let trace = run(plant.as_mut(), &mut controller, &course, &|_, _| tell(0))?;
+                let score = |window| Score::of(&trace, window, scheme.drives, &model);
+                let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
+                tell(1)?;
+                Ok(((seed == 1).then_some(trace), scores))
+            });
+            let runs = runs.collect::<Result<Vec<_>>>()?;
+            Ok((model, runs))
+        })
+        .collect::<Result<_>>()?;
+    let of_controller = |k: usize| seeds.iter().map(|(_, runs)| runs[k].1.clone()).collect();
+    let scores = (0..scenario.controllers.len()).map(of_controller).collect();
+    let mut seeds = seeds.into_iter();
+    let (model, runs) = seeds.next().ok_or_else(|| Error::Scenario {
+        path: None,
+        line: None,
+        field: "seeds".into(),
+        problem: "at least one run is needed".into(),
+    })?;
+    Ok(Comparison {
+        title: scenario.title.clone(),
+        controllers: scenario.controllers.clone(),
+        windows,
+        scores,
+        traces: runs.into_iter().filter_map(|(trace, _)| trace).collect(),
+        model,
+        gains,
+        inner_gains: scheme.inner.map(|inner| inner.gains),
+    })
+}
+
+/// What all controllers of a scenario share, and the gains of their PID, where one of them has any.
+///
+/// # Errors
+/// As [`track`].
+pub fn tune(scenario: &Scenario) -> Result<(Scheme, Option<Gains>)> {
+    scenario.check()?;
+    let mut scheme = base(scenario)?;
+    if scenario.plant.heats() {
+        scheme.inner = Some(tune::inner(scenario, &scheme)?);
+    }
+    let gains = match scenario.controllers.iter().any(|kind| kind.has_pid()) {
+        true => Some(tune::outer(scenario, &scheme)?),
+        false => None,
+    };
+    Ok((scheme, gains))
+}
+
+/// What all controllers of a scenario share, without gains.
+fn base(scenario: &Scenario) -> Result<Scheme> {
+    let plane = scenario.model.plane()?;
+    let truth = scenario.plant.build(1)?.truth();
+    let drives = scenario.plant.drives();
+    let commands = match scenario.plant.heats() {
+        true => (plane.bottom(), plane.max()),
+        false => drives,
+    };
+    Ok(Scheme {
+        interval_s: scenario.interval_s,
+        compensator: None,
+        rest: hysteron::control::Rest::Hold,
+        tolerance: scenario.shared.tolerance,
+        pid: None,
+        bias: truth
+            .input
+            .unwrap_or(drives.0)
+            .clamp(commands.0, commands.1),
+        commands,
+        drives,
+        inner: None,
+        filter_s: scenario.shared.filter_s,
+        stuck_s: (scenario.plant.noisy()).then_some(STUCK_SAMPLES * scenario.interval_s),
+    })
+}
+
+fn controller(
+    scenario: &Scenario,
+    scheme: &Scheme,
+    model: &Model,
+    gains: Option<Gains>,
+    kind: Kind,
+) -> Result<Controller> {
+    let compensator = match kind {
+        Kind::Pid => None,
+        _ if kind.adapts() => Some(Compensator::adaptive(Adaptive::new(
+            model,
+            scenario.adaptation.into(),
+        )?)),
+        _ => Some(Compensator::fixed(model.clone())?),
+    };
+    Controller::new(Scheme {
+        compensator,
+        rest: kind.rest(),
+        pid: gains.filter(|_| kind.has_pid()),
+        ..scheme.clone()
+    })
+}

@@ -1,0 +1,28 @@
+//! A designed input profile as a table.
+
+use crate::design::Design;
+use crate::error::Result;
+use crate::data::output::TableWriter;
+use std::path::Path;
+
+impl Design {
+    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is replaced.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write_csv(&self, path: &Path) -> Result<()> {
+        self.write_to(TableWriter::plain(Some(path.into()))?)
+    }
+
+    /// As [`Design::write_csv`], to a table that was begun before.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn write_to(&self, mut table: TableWriter) -> Result<()> {
+        table.row(["time [s]", "input"])?;
+        for (time, input) in self.time.iter().zip(&self.input) {
+            table.row([time.to_string(), input.to_string()])?;
+        }
+        table.finish()
+    }
+}

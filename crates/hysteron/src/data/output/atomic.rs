@@ -1,0 +1,176 @@
+//! Files written whole or not at all.
+
+use super::target::{Claim, Own, Target, folder_of};
+use super::unfinished::{file_in, finished};
+use crate::error::{Error, Result};
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A file that is written beside its place and takes its name when it is whole; dropped before, it
+/// leaves nothing.
+///
+/// A link is followed, and refused where it leads to no file; what is no regular file, such as a
+/// pipe or `/dev/null`, is written to as it is. The bytes are on the disk before the file takes its
+/// name.
+pub struct AtomicFile {
+    /// As it was given, for errors.
+    path: PathBuf,
+    to: Place,
+}
+
+enum Place {
+    Beside(Beside),
+    There(File),
+}
+
+struct Beside {
+    file: NamedTempFile,
+    /// The place, at the end of any links.
+    place: PathBuf,
+    claim: Claim,
+}
+
+impl AtomicFile {
+    /// Starts a file at `target`. `own` tells whether a file that is there is ours to replace.
+    ///
+    /// # Errors [`Error::File`]; its source is of the kind [`io::ErrorKind::AlreadyExists`] where a
+    /// file is kept that is not ours.
+    pub fn create<'a>(target: impl Into<Target<'a>>, own: Own) -> Result<Self> {
+        let target = target.into();
+        let claim = target.claim(own)?;
+        let path = target.path().to_owned();
+        match Self::place(&path, claim) {
+            Ok(to) => Ok(Self { path, to }),
+            Err(source) => Err(Error::File { path, source }),
+        }
+    }
+
+    fn place(path: &Path, claim: Claim) -> io::Result<Place> {
+        let place = match std::fs::metadata(path) {
+            Ok(there) if there.is_dir() => return Err(io::Error::other("this is a folder")),
+            Ok(there) if !there.is_file() => {
+                let file = File::options().write(true).open(path)?;
+                return Ok(Place::There(file));
+            }
+            Ok(_) => path.canonicalize()?,
+            Err(_) if path.is_symlink() => {
+                return Err(io::Error::other("this is a link that leads to no file"));
+            }
+            Err(_) => path.to_owned(),
+        };
+        let before = std::fs::metadata(&place).map(|there| there.permissions());
+        let folder = folder_of(&place);
+        let file = file_in(folder, before.ok()).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => {
+                let text = format!("there is no folder {} to write to", folder.display());
+                io::Error::new(error.kind(), text)
+            }
+            _ => error,
+        })?;
+        Ok(Place::Beside(Beside { file, place, claim }))
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn commit(self) -> Result<()> {
+        let path = self.path;
+        let kept = match self.to {
+            Place::There(_) => Ok(()),
+            Place::Beside(beside) => beside.keep(),
+        };
+        kept.map_err(|source| Error::File { path, source })
+    }
+
+    /// Writes the rest of the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn commit_with(mut self, bytes: &[u8]) -> Result<()> {
+        match self.write_all(bytes).and_then(|()| self.flush()) {
+            Ok(()) => self.commit(),
+            Err(source) => Err(Error::File {
+                path: self.path,
+                source,
+            }),
+        }
+    }
+}
+
+impl Beside {
+    fn keep(self) -> io::Result<()> {
+        let Self { file, place, claim } = self;
+        let hidden = file.path().to_owned();
+        let kept = file
+            .as_file()
+            .sync_all()
+            .and_then(|()| claim.holds(&hidden, &place))
+            .and_then(|()| Ok(file.persist(&place)?));
+        finished(&hidden);
+        kept?;
+        sync_folder(folder_of(&place));
+        Ok(())
+    }
+}
+
+/// Flushes the names in a folder to the disk, where a system has a way to.
+///
+/// The file is in its place by then. So a file system without that way is no reason to report a
+/// failure.
+pub(super) fn sync_folder(folder: &Path) {
+    #[cfg(unix)]
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    #[cfg(not(unix))]
+    let _ = folder;
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.to {
+            Place::Beside(beside) => beside.file.as_file_mut().write(bytes),
+            Place::There(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.to {
+            Place::Beside(beside) => beside.file.as_file_mut().flush(),
+            Place::There(file) => file.flush(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_folder_that_is_missing_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing");
+        let error = AtomicFile::create(&missing.join("a"), Own::SAME_BYTES)
+            .err()
+            .unwrap();
+        let expected = format!("there is no folder {}", missing.display());
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_nothing_stays_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let (link, target) = (folder.path().join("link"), folder.path().join("target"));
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        assert!(AtomicFile::create(&link, Own::SAME_BYTES).is_err());
+        assert!(link.is_symlink());
+        std::fs::write(&target, b"b").unwrap();
+        let file = AtomicFile::create(&link, Own::SAME_BYTES).unwrap();
+        file.commit_with(b"a").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&target).unwrap(), b"a");
+    }
+}

@@ -1,0 +1,96 @@
+//! The list of what was written into a folder, with digests: which of its files are ours, and
+//! unchanged.
+//!
+//! `sha256sum -c` reads it as well.
+
+use crate::data::table::file_sha256;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::io;
+use std::path::Path;
+
+/// The name of the list in each folder.
+pub(super) const NAME: &str = "hysteron.sha256";
+
+/// The first line of a list.
+const HEAD: &str =
+    "# Files of hysteron. As long as one is as listed here, another run may replace it.";
+
+/// Names of files and their digests, of one folder without those below it.
+#[derive(Default)]
+pub(super) struct Manifest(BTreeMap<String, String>);
+
+impl Manifest {
+    /// The list in a folder; empty where there is none, or something else of its name.
+    pub(super) fn read(folder: &Path) -> Self {
+        let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
+        Self::parse(&text).unwrap_or_default()
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        let rest = text.strip_prefix(HEAD)?.strip_prefix('\n')?;
+        let entries = rest.lines().map(|line| {
+            let (digest, name) = line.split_once("  ")?;
+            Some((name.to_owned(), digest.to_owned()))
+        });
+        entries.collect::<Option<_>>().map(Self)
+    }
+
+    /// Adds a file of a folder.
+    pub(super) fn add(&mut self, folder: &Path, name: &str) -> io::Result<()> {
+        let digest = file_sha256(&folder.join(name))?;
+        self.0.insert(name.to_owned(), digest);
+        Ok(())
+    }
+
+    /// The list as it stands in the file.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("{HEAD}\n");
+        for (name, digest) in &self.0 {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{digest}  {name}");
+        }
+        text
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// Whether a file of the folder is the list itself, or is as listed. A link is not.
+    pub(super) fn owns(&self, folder: &Path, name: &str) -> io::Result<bool> {
+        let path = folder.join(name);
+        if !std::fs::symlink_metadata(&path)?.is_file() {
+            return Ok(false);
+        }
+        if name == NAME {
+            return Ok(Self::parse(&std::fs::read_to_string(path).unwrap_or_default()).is_some());
+        }
+        match self.0.get(name) {
+            Some(digest) => Ok(*digest == file_sha256(&path)?),
+            None => Ok(false),
+        }
+    }
+
+    /// Whether a folder holds nothing but files that are ours, and folders of which the same is
+    /// true. An empty folder in it is another's, because we make none.
+    pub(super) fn owns_all(folder: &Path) -> io::Result<bool> {
+        let listed = Self::read(folder);
+        for entry in std::fs::read_dir(folder)? {
+            let entry = entry?;
+            let name = entry.file_name();
+            let ours = match (entry.file_type()?.is_dir(), name.to_str()) {
+                (true, _) => {
+                    let path = entry.path();
+                    std::fs::read_dir(&path)?.next().is_some() && Self::owns_all(&path)?
+                }
+                (false, Some(name)) => listed.owns(folder, name)?,
+                (false, None) => false,
+            };
+            if !ours {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}

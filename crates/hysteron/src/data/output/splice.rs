@@ -1,0 +1,152 @@
+//! A Parquet file with more columns: those of the source go over as they are stored, whatever they
+//! hold.
+
+use super::AtomicFile;
+use super::parquet::{Cells, Kind, field, io_error, properties};
+use super::spool::distinct;
+use super::table::{Added, Cell};
+use crate::data::table::caught;
+use parquet::column::writer::ColumnCloseResult;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{KeyValue, ParquetMetaData};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What tools of Apache Arrow know of the columns, which is no longer all of them.
+const ARROW_SCHEMA: &str = "ARROW:schema";
+
+/// A Parquet file that is copied column by column.
+pub(super) struct Original {
+    file: File,
+    about: ParquetMetaData,
+}
+
+impl Original {
+    /// `None` for a file of another format.
+    pub(super) fn open(path: &Path) -> io::Result<Option<Self>> {
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let mut file = File::open(path)?;
+        let mut head = Vec::new();
+        Read::by_ref(&mut file).take(4).read_to_end(&mut head)?;
+        if head != b"PAR1" {
+            return Ok(None);
+        }
+        let again = file.try_clone()?;
+        let about = caught(|| Ok(SerializedFileReader::new(again)?.metadata().clone()));
+        let about = about.map_err(io::Error::other)?;
+        Ok(Some(Self { file, about }))
+    }
+
+    fn rows(&self, group: usize) -> Option<u64> {
+        let group = self.about.row_groups().get(group)?;
+        Some(group.num_rows().max(0) as u64)
+    }
+}
+
+/// The copy on its way, with the cells of the new columns in the present group of rows.
+pub(super) struct Splice {
+    original: Original,
+    writer: SerializedFileWriter<AtomicFile>,
+    added: Vec<Cells>,
+    group: usize,
+    rows: u64,
+}
+
+impl Splice {
+    pub(super) fn start(original: Original, out: AtomicFile, added: &[Added]) -> io::Result<Self> {
+        let about = original.about.file_metadata();
+        let root = about.schema_descr().root_schema();
+        let there = root.get_fields().iter();
+        let names: Vec<String> = there.map(|field| field.name().to_owned()).collect();
+        let new = added.iter().map(|column| column.name().to_owned());
+        distinct(names.into_iter().chain(new))?;
+        let kinds = added.iter().map(|column| match column {
+            Added::Numbers(_) => Kind::Numbers,
+            Added::Words(_) => Kind::Text,
+        });
+        let kinds: Vec<Kind> = kinds.collect();
+        let new = added
+            .iter()
+            .zip(&kinds)
+            .map(|(column, kind)| field(column.name(), *kind));
+        let fields = root.get_fields().iter().cloned().map(Ok).chain(new);
+        let schema = fields.collect::<Result<_, _>>().and_then(|fields| {
+            Type::group_type_builder(root.name())
+                .with_fields(fields)
+                .build()
+        });
+        let schema = Arc::new(schema.map_err(io_error)?);
+        let mut writer = SerializedFileWriter::new(out, schema, properties()).map_err(io_error)?;
+        let kept = about.key_value_metadata().into_iter().flatten();
+        for KeyValue { key, value } in kept.filter(|pair| pair.key != ARROW_SCHEMA) {
+            writer.append_key_value_metadata(KeyValue::new(key.clone(), value.clone()));
+        }
+        let mut splice = Self {
+            original,
+            writer,
+            added: kinds.into_iter().map(Cells::new).collect(),
+            group: 0,
+            rows: 0,
+        };
+        splice.end_groups()?;
+        Ok(splice)
+    }
+
+    /// The new cells of the next row.
+    pub(super) fn row(&mut self, cells: &[Cell<'_>]) -> io::Result<()> {
+        for (column, cell) in self.added.iter_mut().zip(cells) {
+            match cell {
+                Cell::Number(number) => column.push_number(Some(*number)),
+                Cell::Word(word) => column.push_text(Some(word.as_bytes())),
+            }
+        }
+        self.rows += 1;
+        self.end_groups()
+    }
+
+    /// Writes the groups of rows that are full, which one without rows always is.
+    fn end_groups(&mut self) -> io::Result<()> {
+        while self.original.rows(self.group) == Some(self.rows) {
+            caught(|| self.write_group()).map_err(io::Error::other)?;
+            (self.group, self.rows) = (self.group + 1, 0);
+        }
+        Ok(())
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let about = self.original.about.row_group(self.group);
+        let mut group = self.writer.next_row_group()?;
+        for column in about.columns() {
+            let stored = ColumnCloseResult {
+                bytes_written: column.compressed_size().max(0) as u64,
+                rows_written: self.rows,
+                metadata: column.clone(),
+                bloom_filter: None,
+                column_index: None,
+                offset_index: None,
+            };
+            group.append_column(&self.original.file, stored)?;
+        }
+        for column in &mut self.added {
+            column.write(&mut group)?;
+        }
+        group.close().map(|_| ())
+    }
+
+    /// Once the last row was written.
+    pub(super) fn finish(self) -> io::Result<AtomicFile> {
+        match self.original.rows(self.group) {
+            None => self.writer.into_inner().map_err(io_error),
+            Some(_) => Err(io::Error::other(
+                "the file that is read has changed meanwhile",
+            )),
+        }
+    }
+}

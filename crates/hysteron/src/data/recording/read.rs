@@ -1,0 +1,202 @@
+//! Recordings from files.
+
+use crate::data::recording::repair::{Note, NoteKind, Repair};
+use crate::data::recording::samples::{Samples, interpolate};
+use crate::data::recording::columns::Columns;
+use crate::recording::{Origin, Quantity, Recording, Source};
+use crate::data::recording::others::Others;
+use crate::data::table::{Column, TableReader};
+use crate::data::table::ReadOptions;
+use crate::remedy::{Remedy, Setting};
+use crate::error::Result;
+use std::path::Path;
+
+impl Recording {
+    /// Reads a recording from a CSV, Parquet or MATLAB file; `-` is CSV from standard input.
+    ///
+    /// CSV has cells between commas, semicolons or tabs, with a decimal point or, where commas do not
+    /// separate them, a decimal comma; a row of units may stand below the header, and lines beginning
+    /// with `#` or `%` are comments. What a logger or LabVIEW writes above the header is skipped;
+    /// without a header, columns go by number, from 1. The text is UTF-8, UTF-16 with a byte order
+    /// mark, or else Windows-1252.
+    ///
+    /// In a MATLAB file vectors have their variable's name, fields of structures are `name.field`, and
+    /// the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues DataValues]` asked for as
+    /// `M` is its data, and its times are used where no time is asked for.
+    ///
+    /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, by its
+    /// name or the row of units, is turned into seconds.
+    ///
+    /// The notes tell what was assumed and mended, and of gaps in time.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`]; [`crate::Error::Recording`] with row and column where a column is missing, a row is
+    /// ragged, or there are no rows; and, to be refused and not mended, where a cell is no finite
+    /// number, a row has more or fewer cells than the header, times go back or are repeated, or input
+    /// and output have different times; also where the file's contents take more memory than
+    /// [`ReadOptions::max_memory`].
+    ///
+    /// ```
+    /// use hysteron::{Columns, Recording, Repair};
+    /// # let path = std::env::temp_dir().join(format!("hysteron-doc-{}.csv", std::process::id()));
+    /// std::fs::write(&path, "T;lift\ndegC;mm\n20,5;0\n;0,1\n80;14\n")?;
+    /// let columns = Columns::new("T", "lift");
+    /// let refusal = Recording::read(&path, columns, Repair::Refuse).unwrap_err();
+    /// assert!(refusal.to_string().contains("line 4, column `T`: an empty cell"));
+    /// let (recording, notes) = Recording::read(&path, columns, Repair::Mend)?;
+    /// assert_eq!(recording.input, [20.5, 80.0]);
+    /// assert_eq!(recording.input_quantity.unit.as_deref(), Some("degC"));
+    /// assert_eq!(notes[0].to_string(), "line 4 without a number: dropped");
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn read(
+        path: &Path,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Self, Vec<Note>)> {
+        let (recording, _, notes) = Self::read_as(path, columns, options.into(), false)?;
+        Ok((recording, notes))
+    }
+
+    /// As [`Recording::read`], with the other columns of the file.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn read_with_others(
+        path: &Path,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Self, Others, Vec<Note>)> {
+        let (recording, others, notes) = Self::read_as(path, columns, options.into(), true)?;
+        Ok((recording, others.unwrap_or_default(), notes))
+    }
+
+    fn read_as(
+        path: &Path,
+        columns: Columns<'_>,
+        options: ReadOptions,
+        with_others: bool,
+    ) -> Result<(Self, Option<Others>, Vec<Note>)> {
+        let repair = options.repair;
+        let mut table = TableReader::open_recording(path, options)?;
+        let named = [
+            Some(columns.input),
+            Some(columns.output),
+            columns.time,
+            columns.load,
+        ];
+        for (n, name) in named.iter().enumerate() {
+            if let (Some(name), true) = (name, named[..n].contains(name)) {
+                let problem = format!(
+                    "the column `{name}` is named twice: input, output, time and load are four things"
+                );
+                return Err(table.fault(None, problem));
+            }
+        }
+        let pairs = [columns.input, columns.output].map(|name| table.pair(name));
+        let time = match (columns.time, &pairs) {
+            (Some(time), _) => Some(time.to_owned()),
+            (None, [Some(_), _]) => Some(format!("{}:1", columns.input)),
+            (None, [None, Some(_)]) => Some(format!("{}:1", columns.output)),
+            (None, [None, None]) => None,
+        };
+        let interpolated = match &pairs {
+            [Some([wanted, _]), Some([times, output])]
+                if columns.time.is_none() && !same(wanted, times) =>
+            {
+                if repair == Repair::Refuse {
+                    let problem = format!(
+                        "the times of `{}` are not those of `{}`",
+                        columns.output, columns.input
+                    );
+                    let words = "use {} to interpolate it onto them";
+                    let remedy = Remedy::new(words, [Setting::on("repair")]);
+                    return Err(table.fault(None, problem).remedied(remedy));
+                }
+                Some(interpolate(times, output, wanted))
+            }
+            _ => None,
+        };
+        let input_at = table.column(columns.input)?;
+        let output_at = match interpolated {
+            // Of no use, as the output stands elsewhere, but it has to be one.
+            Some(_) => input_at,
+            None => table.column(columns.output)?,
+        };
+        let time_at = time.map(|name| table.time_column(&name)).transpose()?;
+        let load_at = columns.load.map(|name| table.column(name)).transpose()?;
+        let all = [Some(input_at), Some(output_at), time_at, load_at];
+        for (n, at) in all.iter().enumerate() {
+            if at.is_some() && interpolated.is_none() && all[..n].contains(at) {
+                let names = [columns.input, columns.output, "the time", "the load"];
+                let problem = format!(
+                    "the column meant by `{}` is that of another series: input, output, time and load are four things",
+                    names[n]
+                );
+                return Err(table.fault(*at, problem));
+            }
+        }
+        let asked: Vec<Column> = all.into_iter().flatten().collect();
+        let quantity = |asked: &str, at: Column| {
+            // The data of a matrix `[TimeValues DataValues]` have the matrix' name.
+            let own = match table.name(at) {
+                own if own.strip_suffix(":2") == Some(asked) => asked,
+                own => own,
+            };
+            let mut quantity = Quantity::from_column(own);
+            quantity.unit = quantity.unit.or(table.unit(at).map(str::to_owned));
+            quantity
+        };
+        let input_quantity = quantity(columns.input, input_at);
+        let output_quantity = match interpolated {
+            Some(_) => Quantity::from_column(columns.output),
+            None => quantity(columns.output, output_at),
+        };
+        let load_quantity = match (columns.load, load_at) {
+            (Some(name), Some(at)) => quantity(name, at),
+            _ => Quantity::named("load"),
+        };
+        let others = with_others.then(|| Others::of(&table, all));
+        let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
+        let mut of_rows = samples.mend(&table, time_at, repair)?;
+        if interpolated.is_some() {
+            let places = samples.places.iter().copied().collect();
+            of_rows.push((NoteKind::Interpolated, places));
+        }
+        if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
+            table.judge_time(at, time);
+        }
+        let remarks = table.remarks().cloned().map(Note::File);
+        let of_rows = of_rows
+            .into_iter()
+            .map(|(kind, places)| Note::Rows { kind, places });
+        let notes = remarks.chain(of_rows).collect();
+        let others = samples.others.take();
+        let mut series = samples.series.into_iter();
+        let mut next = || series.next().unwrap_or_default();
+        let recording = Self {
+            input: next(),
+            output: next(),
+            time: time_at.map(|_| next()),
+            load: load_at.map(|_| next()),
+            input_quantity,
+            output_quantity,
+            load_quantity,
+            origin: Origin::Measured,
+            source: table.sha256()?.map(|sha256| Source {
+                path: path.to_owned(),
+                sha256,
+            }),
+        };
+        recording.check()?;
+        Ok((recording, others, notes))
+    }
+}
+
+/// Whether times are the same, those that are no numbers as well.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.iter()
+        .map(|t| t.to_bits())
+        .eq(b.iter().map(|t| t.to_bits()))
+}

@@ -1,0 +1,254 @@
+//! The samples of a recording on their way from a table: gathered, then mended or refused.
+
+use crate::data::recording::others::Others;
+use crate::data::recording::repair::{NoteKind, Places, Repair};
+use crate::recording::gaps;
+use crate::data::table::{Column, TableReader};
+use crate::error::{Error, Place, Result};
+use crate::remedy::{Remedy, Setting};
+
+/// Where the time is among the series.
+pub(super) const TIME: usize = 2;
+
+/// The rows that have a number in every column asked for.
+pub(super) struct Samples {
+    /// The columns in the order in which they were asked for.
+    pub(super) series: Vec<Vec<f64>>,
+    /// Where each row is.
+    pub(super) places: Vec<Place>,
+    /// All cells of the rows, where they are wanted.
+    pub(super) others: Option<Others>,
+    /// The rows that have more or fewer cells than the header.
+    ragged: Places,
+    /// The other rows, and what is wrong with the first of them.
+    missing: Places,
+    fault: Option<Error>,
+}
+
+impl Samples {
+    /// Reads the columns `asked`: input, output, then time and load where there are. With `output`,
+    /// that stands for the second; with `others`, these take whole rows.
+    pub(super) fn gather(
+        table: &mut TableReader,
+        asked: &[Column],
+        output: Option<&[f64]>,
+        others: Option<Others>,
+    ) -> Result<Self> {
+        let mut samples = Self {
+            series: vec![Vec::new(); asked.len()],
+            places: Vec::new(),
+            others,
+            ragged: Places::default(),
+            missing: Places::default(),
+            fault: None,
+        };
+        let mut outputs = output.map(|output| output.iter());
+        let mut row = Vec::new();
+        while table.advance()? {
+            row.clear();
+            row.extend(asked.iter().map(|&at| table.value(at)));
+            if let Some(outputs) = &mut outputs {
+                row[1] = outputs.next().copied().filter(|y| y.is_finite());
+            }
+            if let Some(n) = row.iter().position(Option::is_none) {
+                let fault = || table.fault(Some(asked[n]), table.no_number(asked[n]));
+                samples.fault.get_or_insert_with(fault);
+                samples.missing.push(table.row_place());
+                continue;
+            }
+            samples.make_room(table)?;
+            for (series, value) in samples.series.iter_mut().zip(row.iter().flatten()) {
+                series.push(*value);
+            }
+            samples.places.push(table.row_place());
+        }
+        samples.ragged = table.ragged();
+        if samples.places.is_empty() && samples.fault.is_none() {
+            let place = Some(table.row_place()).filter(|place| *place != Place::Row(0));
+            let problem = "there are no rows below the header".into();
+            return Err(table.fault_at(place, None, problem));
+        }
+        Ok(samples)
+    }
+
+    /// Memory for another row, which the table's budget has to have. Sorting takes a copy.
+    fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
+        let count = self.places.len();
+        let capacity = self.places.capacity();
+        if count == capacity {
+            let more = capacity.max(1024);
+            let row = size_of::<f64>() * self.series.len() + size_of::<Place>();
+            let taken = table
+                .budget()
+                .take(2 * (row * more) as u128, "the recording");
+            taken.map_err(|problem| table.fault(None, problem))?;
+            self.places.reserve_exact(more);
+            for series in &mut self.series {
+                series.reserve_exact(more);
+            }
+        }
+        if let Some(others) = &mut self.others {
+            let row = table.row().clone();
+            let taken = table.budget().take(row.size() as u128, "the recording");
+            taken.map_err(|problem| table.fault(None, problem))?;
+            others.push(row);
+        }
+        Ok(())
+    }
+
+    /// Mends what has to be, or refuses it, and says what there was; gaps are only told of.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] for what would have to be mended, if it is to be refused, or where
+    /// nothing is left.
+    pub(super) fn mend(
+        &mut self,
+        table: &TableReader,
+        time_at: Option<Column>,
+        repair: Repair,
+    ) -> Result<Vec<(NoteKind, Places)>> {
+        let mut notes = Vec::new();
+        let mut note = |kind, places: &Places| {
+            if places.count > 0 {
+                notes.push((kind, places.clone()));
+            }
+        };
+        note(NoteKind::Ragged, &self.ragged);
+        note(NoteKind::Dropped, &self.missing);
+        if time_at.is_some() {
+            let (back, fault) = self.steps(table, time_at, |before, now| now < before);
+            note(NoteKind::Sorted, &back);
+            self.fault = self.fault.take().or(fault);
+            if back.count > 0 {
+                self.sort();
+            }
+            let (repeated, fault) = self.steps(table, time_at, |before, now| now == before);
+            note(NoteKind::Merged, &repeated);
+            self.fault = self.fault.take().or(fault);
+            if repeated.count > 0 {
+                self.merge();
+            }
+        }
+        match self.fault.take() {
+            Some(fault) if repair == Repair::Refuse => return Err(refusal(fault, &notes)),
+            Some(_) if self.places.is_empty() => {
+                let problem = "no row has a number in every column asked for";
+                return Err(table.fault_at(None, None, problem.into()));
+            }
+            _ => {}
+        }
+        if let (Some(_), Some((_, gaps))) = (time_at, self.series.get(TIME).and_then(|t| gaps(t)))
+            && !gaps.is_empty()
+        {
+            let places = gaps.into_iter().map(|n| self.places[n]).collect();
+            notes.push((NoteKind::Gap, places));
+        }
+        Ok(notes)
+    }
+
+    /// The rows between whose time and that of the row before something holds, and the first as a fault.
+    fn steps(
+        &self,
+        table: &TableReader,
+        time_at: Option<Column>,
+        found: impl Fn(f64, f64) -> bool,
+    ) -> (Places, Option<Error>) {
+        let time = &self.series[TIME];
+        let rows = || (1..time.len()).filter(|&n| found(time[n - 1], time[n]));
+        let fault = rows().next().map(|n| {
+            let problem = match time[n] == time[n - 1] {
+                true => format!("the time is {} again", time[n]),
+                false => format!("time goes back from {} to {}", time[n - 1], time[n]),
+            };
+            table.fault_at(Some(self.places[n]), time_at, problem)
+        });
+        (rows().map(|n| self.places[n]).collect(), fault)
+    }
+
+    /// Rows in the order of their times; those at one time stay in theirs.
+    fn sort(&mut self) {
+        let time = &self.series[TIME];
+        let mut order: Vec<usize> = (0..time.len()).collect();
+        order.sort_by(|&a, &b| time[a].total_cmp(&time[b]));
+        for series in &mut self.series {
+            *series = order.iter().map(|&n| series[n]).collect();
+        }
+        self.pick(&order);
+    }
+
+    /// Keeps the places and other cells of these rows, in this order.
+    fn pick(&mut self, order: &[usize]) {
+        self.places = order.iter().map(|&n| self.places[n]).collect();
+        if let Some(others) = &mut self.others {
+            others.keep(order);
+        }
+    }
+
+    /// One row, with the mean of their values, for rows at one time.
+    fn merge(&mut self) {
+        let time = &self.series[TIME];
+        let mut starts: Vec<usize> = (0..time.len())
+            .filter(|&n| n == 0 || time[n] != time[n - 1])
+            .collect();
+        starts.push(time.len());
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        for (n, series) in self.series.iter_mut().enumerate() {
+            let groups = starts.windows(2).map(|pair| &series[pair[0]..pair[1]]);
+            // The mean of equal times need not be that time, to the last bit.
+            *series = groups
+                .map(|group| if n == TIME { group[0] } else { mean(group) })
+                .collect();
+        }
+        starts.pop();
+        self.pick(&starts);
+    }
+}
+
+/// A fault with all the rows that have one.
+fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
+    let Error::Recording {
+        path,
+        row,
+        column,
+        problem,
+    } = fault
+    else {
+        return fault;
+    };
+    let count: u64 = notes.iter().map(|(_, places)| places.count).sum();
+    let of_kind = |(kind, places): &(NoteKind, Places)| format!("{places} {}", kind.fault());
+    let all: Vec<String> = notes.iter().map(of_kind).collect();
+    let (problem, words) = match count {
+        1 => (problem, "mend or remove the row, or use {}"),
+        _ => (
+            format!("{problem}; in all {}", all.join("; ")),
+            "mend or remove them, or use {}",
+        ),
+    };
+    let fault = Error::Recording {
+        path,
+        row,
+        column,
+        problem,
+    };
+    fault.remedied(Remedy::new(words, [Setting::on("repair")]))
+}
+
+/// A series at other times, along straight lines; NaN outside its own times. Only its finite samples
+/// count, in the order of their times, and of those at one time the last.
+pub(super) fn interpolate(times: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
+    let samples = times.iter().zip(values).map(|(t, y)| (*t, *y));
+    let mut samples: Vec<_> = samples
+        .filter(|(t, y)| t.is_finite() && y.is_finite())
+        .collect();
+    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |&t: &f64| {
+        let after = samples.partition_point(|sample| sample.0 <= t);
+        match (after.checked_sub(1).map(|n| samples[n]), samples.get(after)) {
+            (Some((t0, y0)), _) if t0 == t => y0,
+            (Some((t0, y0)), Some((t1, y1))) => y0 + (y1 - y0) * ((t - t0) / (t1 - t0)),
+            _ => f64::NAN,
+        }
+    };
+    wanted.iter().map(at).collect()
+}

@@ -1,0 +1,180 @@
+//! The columns of a table: by the names that are asked for, and with their units.
+
+use super::names::{self, Found, Missing};
+use super::time::TimeUnit;
+use super::{Column, Remark, Source, TableReader};
+use crate::recording::Quantity;
+use crate::error::Result;
+
+impl TableReader {
+    /// Finds a column: by its exact name; by its name without its unit, in upper or lower case; by
+    /// its number, from 1; or by a name that one column's alone begins with. What is found by a
+    /// number or a beginning is told in [`TableReader::remarks`].
+    ///
+    /// In a MATLAB file a matrix `[TimeValues DataValues]` of two columns is found under its own name
+    /// as well, and means its data; and the first column found decides how many rows there are:
+    /// shorter and longer ones are then left out.
+    ///
+    /// # Errors
+    /// [`Error::Recording`](crate::Error::Recording) where there is none of that name, naming those that there are, or two,
+    /// or where it is not as long as the first one.
+    pub fn column(&mut self, name: &str) -> Result<Column> {
+        let place = self.find(name)?;
+        match &mut self.source {
+            Source::Text(text) => {
+                text.ask(place);
+                Ok(Column(place))
+            }
+            Source::Numbers(numbers) => {
+                Ok(Column(numbers.keep_as_long_as(place, &mut self.header)))
+            }
+        }
+    }
+
+    /// As [`TableReader::column`], for a column of time: its numbers are given in seconds, where its
+    /// name or unit says that it is in another unit.
+    ///
+    /// # Errors
+    /// As [`TableReader::column`].
+    pub fn time_column(&mut self, name: &str) -> Result<Column> {
+        let column = self.column(name)?;
+        if let Some(unit) = self.time_unit(column).filter(|unit| !unit.is_second()) {
+            self.remarks.push(Remark::Time {
+                column: self.name(column).to_owned(),
+                unit: unit.name.clone(),
+            });
+            self.time = Some((column.0, unit));
+        }
+        Ok(column)
+    }
+
+    fn time_unit(&self, column: Column) -> Option<TimeUnit> {
+        TimeUnit::of(self.name(column), self.unit(column))
+    }
+
+    /// Tells of a time without a unit that is odd as seconds.
+    pub(crate) fn judge_time(&mut self, column: Column, time: &[f64]) {
+        /// A step of over a minute, a recording of over six hours, a step below a microsecond.
+        const LONGEST_STEP: f64 = 60.0;
+        const LONGEST: f64 = 6.0 * 3600.0;
+        const SHORTEST_STEP: f64 = 1e-6;
+        let (Some((step, _)), [first, .., last]) = (crate::recording::gaps(time), time) else {
+            return;
+        };
+        let duration = last - first;
+        let short = step > 0.0 && step < SHORTEST_STEP;
+        let odd = step > LONGEST_STEP || short || duration > LONGEST;
+        if odd && self.time_unit(column).is_none() {
+            let column = self.name(column).to_owned();
+            self.remarks.push(Remark::DoubtfulTime {
+                column,
+                step,
+                duration,
+            });
+        }
+    }
+
+    /// A column's own name.
+    pub(crate) fn name(&self, column: Column) -> &str {
+        &self.header[column.0]
+    }
+
+    /// The columns' names with their units behind them, as numbers of this table are given.
+    pub(crate) fn names_with_units(&self) -> Vec<String> {
+        let name = |n: usize| {
+            let quantity = Quantity::from_column(&self.header[n]);
+            match (&self.time, self.unit(Column(n))) {
+                (Some((time, unit)), _) if *time == n => {
+                    Quantity::with_unit(unit.removed_from(&quantity.name), "s").to_column()
+                }
+                (_, Some(unit)) if quantity.unit.is_none() => {
+                    Quantity::with_unit(&quantity.name, unit).to_column()
+                }
+                _ => self.header[n].clone(),
+            }
+        };
+        (0..self.header.len()).map(name).collect()
+    }
+
+    /// Where the column is that is meant by `name`.
+    fn find(&mut self, name: &str) -> Result<usize> {
+        if let Some(place) = self.place(name)? {
+            return Ok(place);
+        }
+        if let Some([_, data]) = self.pair_at(name) {
+            return Ok(data);
+        }
+        let problem = match names::find(&self.header, name) {
+            Ok(Found::Named(place)) => return Ok(place),
+            Ok(Found::Taken(place)) => {
+                self.remarks.push(Remark::Found {
+                    asked: name.to_owned(),
+                    column: self.header[place].clone(),
+                });
+                return Ok(place);
+            }
+            Err(Missing::Ambiguous(places)) => {
+                let candidates = places.iter().map(|&n| &self.header[n]);
+                format!(
+                    "`{name}` may be {}: give the whole name",
+                    names::list(candidates)
+                )
+            }
+            Err(Missing::Unknown) => self.no_column(name),
+        };
+        Err(self.fault_at(None, None, problem))
+    }
+
+    fn place(&self, name: &str) -> Result<Option<usize>> {
+        let mut places = (0..self.header.len()).filter(|&n| self.header[n] == name);
+        match (places.next(), places.next()) {
+            (Some(_), Some(_)) => {
+                let problem = format!("two columns are called `{name}`: give its number, from 1");
+                Err(self.fault_at(None, None, problem))
+            }
+            (place, _) => Ok(place),
+        }
+    }
+
+    fn no_column(&self, name: &str) -> String {
+        if let Source::Numbers(numbers) = &self.source
+            && let Some((length, expected)) = numbers.left_out(name)
+        {
+            return format!(
+                "`{name}` has {length} values where the column asked for before it has {expected}: \
+                 name columns that were sampled together"
+            );
+        }
+        let near = match names::near(&self.header, name) {
+            near if near.is_empty() => String::new(),
+            near => format!(", did you mean {}?", names::list(near.into_iter())),
+        };
+        format!(
+            "no column `{name}`{near}: there are {}",
+            names::list(self.header.iter())
+        )
+    }
+
+    /// Where the two columns of a matrix `[TimeValues DataValues]` are.
+    fn pair_at(&self, name: &str) -> Option<[usize; 2]> {
+        let at = |n: usize| {
+            let name = format!("{name}:{n}");
+            self.header.iter().position(|h| *h == name)
+        };
+        match (&self.source, at(1), at(2), at(3)) {
+            (Source::Numbers(numbers), Some(time), Some(data), None) if numbers.has_matrices() => {
+                Some([time, data])
+            }
+            _ => None,
+        }
+    }
+
+    /// Times and data of a matrix `[TimeValues DataValues]` asked for by its name alone.
+    pub(crate) fn pair(&self, name: &str) -> Option<[Vec<f64>; 2]> {
+        let at = self.pair_at(name)?;
+        match (&self.source, self.header.iter().any(|h| h == name)) {
+            (Source::Numbers(numbers), false) => Some(at.map(|at| numbers.held(at).to_vec())),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Which format a file is of, and how each is opened.
+
+use super::budget::Budget;
+use super::hashing::{Hash, Hashing};
+use super::text::{self, Text};
+use super::{Source, mat, parquet};
+use crate::error::{Error, Result};
+use crate::data::recording::Repair;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// What the first bytes of a file, or else the end of its name, say it is.
+enum Format {
+    Csv,
+    Parquet,
+    MatV5,
+    MatV73,
+}
+
+impl Format {
+    fn of(path: &Path, head: &[u8]) -> std::result::Result<Self, &'static str> {
+        let named = |ending: &str| {
+            path.extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+        };
+        let begins = |mark: &[u8]| head.starts_with(mark);
+        if begins(b"PAR1") {
+            Ok(Self::Parquet)
+        } else if begins(b"MATLAB 5.0") {
+            Ok(Self::MatV5)
+        } else if begins(b"MATLAB 7.3") || begins(b"\x89HDF\r\n\x1a\n") {
+            Ok(Self::MatV73)
+        } else if begins(b"\x1f\x8b") {
+            Err("the file is compressed by gzip: unpack it first")
+        } else if begins(b"PK\x03\x04") || begins(b"\xd0\xcf\x11\xe0") {
+            Err("this is a workbook or an archive: save the table as CSV")
+        } else if named("parquet") {
+            Err("this is no Parquet file, for all its name: it does not begin with `PAR1`")
+        } else if named("mat") {
+            Err("this is no MATLAB file of version 5, 7 or 7.3: save it in MATLAB with `-v7`")
+        } else {
+            Ok(Self::Csv)
+        }
+    }
+}
+
+/// Opens a file of any format: its columns' names and its rows.
+pub(super) fn open(
+    path: &Path,
+    repair: Option<Repair>,
+    hash: Option<Hash>,
+    budget: &mut Budget,
+) -> Result<(Vec<String>, Source)> {
+    let failed = |source| Error::File {
+        path: path.to_owned(),
+        source,
+    };
+    let refused = |problem: String| Error::Recording {
+        path: Some(path.to_owned()),
+        row: None,
+        column: None,
+        problem,
+    };
+    let mut seekable = false;
+    let file: Box<dyn Read> = if path == Path::new("-") {
+        Box::new(std::io::stdin())
+    } else {
+        let file = File::open(path).map_err(failed)?;
+        let about = file.metadata().map_err(failed)?;
+        if about.is_dir() {
+            let problem = "this is a folder: name a file in it";
+            return Err(failed(std::io::Error::other(problem)));
+        }
+        seekable = about.is_file();
+        Box::new(file)
+    };
+    let mut file = Hashing::new(file, hash);
+    let (head, whole) = text::head(&mut file).map_err(failed)?;
+    let format = Format::of(path, &head).map_err(|problem| refused(problem.to_owned()))?;
+    let (header, numbers) = match format {
+        Format::Csv => {
+            let rest = file;
+            let source = text::Source { head, whole, rest };
+            let (header, text) = Text::open(path, source, repair, budget)?;
+            return Ok((header, Source::Text(Box::new(text))));
+        }
+        _ if !seekable => {
+            let problem = "only CSV can be read from a pipe: name the file";
+            return Err(refused(problem.to_owned()));
+        }
+        Format::Parquet => {
+            let opened = parquet::open(path, *budget).map_err(refused)?;
+            (opened.header, opened.numbers.with_times(opened.times))
+        }
+        Format::MatV73 => {
+            let variables = mat::v73::read(path, budget).map_err(refused)?;
+            mat::table(variables, budget).map_err(refused)?
+        }
+        Format::MatV5 => {
+            let size = std::fs::metadata(path).map_err(failed)?.len();
+            budget.take(u128::from(size), "the file").map_err(refused)?;
+            let bytes = std::fs::read(path).map_err(failed)?;
+            let variables = mat::v5::read(&bytes, budget).map_err(refused)?;
+            budget.give_back(u128::from(size));
+            mat::table(variables, budget).map_err(refused)?
+        }
+    };
+    Ok((header, Source::Numbers(numbers)))
+}

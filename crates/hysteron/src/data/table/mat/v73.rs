@@ -1,0 +1,160 @@
+//! MATLAB files of version 7.3, which are HDF5 files.
+
+use super::{DEEPEST, Variable};
+use crate::data::table::budget::Budget;
+use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Layout};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// Most groups that are looked into: links may go round in circles.
+const MOST_GROUPS: usize = 10_000;
+
+/// The real numeric arrays of a file with at most two dimensions. Those in a group, which is a
+/// structure of MATLAB, are `group.name`.
+pub(in crate::data::table) fn read(path: &Path, budget: &mut Budget) -> Result<Vec<Variable>, String> {
+    let size = std::fs::metadata(path).map_or(0, |about| about.len());
+    // The library holds the file, and as much again of what it finds in it.
+    budget.take(2 * u128::from(size), "the file")?;
+    let mut found = Found {
+        variables: Vec::new(),
+        groups: 0,
+        budget,
+    };
+    let read = || {
+        let file = File::open(path).map_err(damaged)?;
+        found.group(&file.root(), "", 0)
+    };
+    // The library panics where a damaged file contradicts itself.
+    match catch_unwind(AssertUnwindSafe(read)) {
+        Ok(done) => done?,
+        Err(_) => return Err(damaged("it contradicts itself")),
+    }
+    found.budget.give_back(2 * u128::from(size));
+    Ok(found.variables)
+}
+
+fn damaged(error: impl std::fmt::Display) -> String {
+    format!("the MATLAB 7.3 file is damaged or cut off ({error}): save or copy it again")
+}
+
+/// What was found so far, and the memory for more.
+struct Found<'f> {
+    variables: Vec<Variable>,
+    groups: usize,
+    budget: &'f mut Budget,
+}
+
+impl Found<'_> {
+    /// The arrays of a group, their names beginning with `prefix`, and those of the groups in it.
+    fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), String> {
+        self.groups += 1;
+        if self.groups > MOST_GROUPS {
+            return Err(format!(
+                "there are more than {MOST_GROUPS} structures in this file: save the arrays alone"
+            ));
+        }
+        for (name, data) in group.iter_datasets().map_err(damaged)? {
+            self.dataset(format!("{prefix}{name}"), &data)?;
+        }
+        if depth == DEEPEST {
+            return Ok(());
+        }
+        for (name, inner) in group.iter_groups().map_err(damaged)? {
+            // What MATLAB keeps cells and objects in.
+            if !name.starts_with('#') {
+                self.group(&inner, &format!("{prefix}{name}."), depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn dataset(&mut self, name: String, data: &Dataset) -> Result<(), String> {
+        use DType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+        let numeric = matches!(
+            data.dtype().map_err(damaged)?,
+            F32 | F64 | I8 | I16 | I32 | I64 | U8 | U16 | U32 | U64
+        );
+        if !numeric || is_text_or_empty(data).map_err(damaged)? {
+            return Ok(());
+        }
+        // HDF5 counts dimensions the other way round; the numbers lie column by column all the same.
+        let shape = data.shape().map_err(damaged)?;
+        let (rows, columns) = match shape[..] {
+            [] => (1, 1),
+            [rows] => (rows, 1),
+            [columns, rows] => (rows, columns),
+            _ => return Ok(()),
+        };
+        let count = u128::from(rows) * u128::from(columns);
+        let held = 8 * count + name.len() as u128 + 100;
+        let layout = data.layout().map_err(damaged)?;
+        let element = data.element_size().map_err(damaged)?;
+        let working = working_memory(&layout, element, &shape, count);
+        self.budget
+            .check(held + working, format_args!("`{name}`"))?;
+        if data
+            .chunks()
+            .is_ok_and(|listed| listed.len() as u128 > chunks(&layout, &shape))
+        {
+            return Err(damaged("an array has more parts than it says"));
+        }
+        self.budget.take(held, format_args!("`{name}`"))?;
+        let values = data.read_f64().map_err(damaged)?;
+        if values.len() as u128 != count {
+            return Err(damaged("an array is not of the size it says"));
+        }
+        self.variables.push(Variable {
+            name,
+            rows: rows as usize,
+            columns: columns as usize,
+            values,
+        });
+        Ok(())
+    }
+}
+
+/// The stored numbers of an empty array are its sizes.
+fn is_text_or_empty(data: &Dataset) -> Result<bool, Error> {
+    let attributes = data.attrs()?;
+    let text = match attributes.get("MATLAB_class") {
+        Some(
+            AttrValue::String(value)
+            | AttrValue::AsciiString(value)
+            | AttrValue::StringSized { value, .. }
+            | AttrValue::AsciiStringSized { value, .. },
+        ) => value == "char",
+        _ => false,
+    };
+    Ok(text || attributes.contains_key("MATLAB_empty"))
+}
+
+/// How many chunks cover an array; 1 for one that lies in one piece.
+fn chunks(layout: &Layout, shape: &[u64]) -> u128 {
+    let Layout::Chunked { chunk_shape, .. } = layout else {
+        return 1;
+    };
+    shape
+        .iter()
+        .zip(chunk_shape)
+        .fold(1, |chunks: u128, (side, chunk)| {
+            chunks.saturating_mul(u128::from(side.div_ceil((*chunk).max(1))))
+        })
+}
+
+/// What the library needs to read `count` numbers, beside the numbers: their bytes, and all chunks at
+/// once as they are unpacked.
+fn working_memory(layout: &Layout, element: u64, shape: &[u64], count: u128) -> u128 {
+    // No sum of a few of these is beyond what a u128 holds.
+    const MOST: u128 = u128::MAX >> 4;
+    let bytes = count.saturating_mul(u128::from(element)).min(MOST);
+    let Layout::Chunked { chunk_shape, .. } = layout else {
+        return 2 * bytes;
+    };
+    let chunk = chunk_shape.iter().fold(u128::from(element), |bytes, side| {
+        bytes.saturating_mul(u128::from(*side))
+    });
+    // An entry of the index takes some hundred bytes, and unpacking a chunk takes it twice more.
+    const ENTRY: u128 = 256;
+    let all = chunks(layout, shape).saturating_add(2);
+    chunk.saturating_add(ENTRY).saturating_mul(all).min(MOST) + 2 * bytes
+}

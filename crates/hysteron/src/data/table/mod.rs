@@ -1,0 +1,310 @@
+//! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through one reader.
+
+mod budget;
+mod columns;
+mod format;
+mod hashing;
+mod mat;
+mod names;
+mod numbers;
+mod options;
+mod parquet;
+mod remark;
+mod text;
+mod time;
+
+pub use options::ReadOptions;
+pub use remark::Remark;
+
+pub(crate) use budget::Budget;
+
+use crate::data::recording::Places;
+use crate::error::{Error, Place, Result};
+use crate::data::recording::Repair;
+use hashing::Hash;
+use numbers::Numbers;
+pub(crate) use parquet::caught;
+use std::path::{Path, PathBuf};
+use text::Text;
+use time::TimeUnit;
+
+/// Reads a table with named columns, one row at a time.
+///
+/// CSV is read as a stream and Parquet by row groups, so that memory does not grow with the file; a
+/// MATLAB file is held whole. In a MATLAB file a vector is a column under its own name, and a matrix
+/// `M` is the columns `M:1`, `M:2` and so on.
+pub struct TableReader {
+    path: PathBuf,
+    header: Vec<String>,
+    source: Source,
+    hash: Option<Hash>,
+    budget: Budget,
+    /// What was assumed of the columns asked for.
+    remarks: Vec<Remark>,
+    /// The column of time that is not in seconds.
+    time: Option<(usize, TimeUnit)>,
+}
+
+enum Source {
+    Text(Box<Text>),
+    Numbers(Numbers),
+}
+
+/// A column found by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column(usize);
+
+impl Column {
+    /// Its place in the header, from 0.
+    pub(crate) fn place(self) -> usize {
+        self.0
+    }
+}
+
+/// A row of a table as it was read, with decimal points.
+#[derive(Debug, Clone, Default)]
+pub struct Row(csv::ByteRecord);
+
+impl Row {
+    /// Its cells.
+    pub fn cells(&self) -> impl Iterator<Item = &[u8]> {
+        self.0.iter()
+    }
+
+    /// About how many bytes of memory it takes.
+    pub(crate) fn size(&self) -> usize {
+        self.0.as_slice().len() + (self.0.len() + 16) * size_of::<usize>()
+    }
+}
+
+impl TableReader {
+    /// Opens a file and reads its header; `-` is standard input, for text only.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for an empty file, a header that cannot be, a file
+    /// that is not of the format it seems to be of, or one that takes more memory than
+    /// [`ReadOptions::MAX_MEMORY`].
+    pub fn open(path: &Path) -> Result<Self> {
+        Self::open_with(path, ReadOptions::MAX_MEMORY)
+    }
+
+    /// As [`TableReader::open`], where the file's contents may take `max_memory` bytes.
+    ///
+    /// # Errors
+    /// As [`TableReader::open`].
+    pub fn open_with(path: &Path, max_memory: u64) -> Result<Self> {
+        Self::open_as(path, max_memory, None, None)
+    }
+
+    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end, and with what becomes
+    /// of rows that are cut short.
+    pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
+        let (repair, hash) = (Some(options.repair), Some(Hash::default()));
+        Self::open_as(path, options.max_memory, repair, hash)
+    }
+
+    fn open_as(
+        path: &Path,
+        max_memory: u64,
+        repair: Option<Repair>,
+        hash: Option<Hash>,
+    ) -> Result<Self> {
+        let mut budget = Budget::new(max_memory);
+        let (header, source) = format::open(path, repair, hash.clone(), &mut budget)?;
+        Ok(Self {
+            path: path.to_owned(),
+            header,
+            source,
+            hash,
+            budget,
+            remarks: Vec::new(),
+            time: None,
+        })
+    }
+
+    /// The file, as it was named.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What was assumed in reading the file, for a message; all of it is known at the end of the table.
+    pub fn remarks(&self) -> impl Iterator<Item = &Remark> {
+        let of_text: &[Remark] = match &self.source {
+            Source::Text(text) => text.remarks(),
+            Source::Numbers(_) => &[],
+        };
+        of_text.iter().chain(&self.remarks)
+    }
+
+    pub(crate) fn budget(&mut self) -> &mut Budget {
+        &mut self.budget
+    }
+
+    /// The rows that were dropped because they have more or fewer cells than the header.
+    pub(crate) fn ragged(&self) -> Places {
+        match &self.source {
+            Source::Text(text) => text.ragged().clone(),
+            Source::Numbers(_) => Places::default(),
+        }
+    }
+
+    /// The columns' names. Asking for a column of a MATLAB file leaves those that are as long.
+    #[must_use]
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// Reads the next row; false at the end.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Recording`] for a row with more or fewer cells than the header, or
+    /// a part of the file that cannot be read.
+    pub fn advance(&mut self) -> Result<bool> {
+        match &mut self.source {
+            Source::Text(text) => text.advance(&self.header),
+            Source::Numbers(numbers) => {
+                let read = numbers.advance();
+                read.map_err(|problem| self.fault(None, problem))
+            }
+        }
+    }
+
+    /// The present row's number in a column; `None` where there is none, or none that is finite.
+    #[must_use]
+    pub fn value(&self, column: Column) -> Option<f64> {
+        let value = match &self.source {
+            Source::Text(text) => std::str::from_utf8(text.cell(column.0)).ok()?.parse().ok(),
+            Source::Numbers(numbers) => numbers.value(column.0),
+        };
+        let value = match &self.time {
+            Some((time, unit)) if *time == column.0 => value.map(|value| unit.in_seconds(value)),
+            _ => value,
+        };
+        value.filter(|value: &f64| value.is_finite())
+    }
+
+    /// The present row's number in a column.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] with its place and column where it is missing or no finite number.
+    pub fn number(&self, column: Column) -> Result<f64> {
+        self.value(column).ok_or_else(|| {
+            let problem = format!("{}: mend or remove the row", self.no_number(column));
+            self.fault(Some(column), problem)
+        })
+    }
+
+    /// What stands in the present row where a number is needed.
+    pub(crate) fn no_number(&self, column: Column) -> String {
+        let found = match &self.source {
+            Source::Text(text) => {
+                shortened(std::str::from_utf8(text.cell(column.0)).unwrap_or("\u{fffd}"))
+            }
+            Source::Numbers(numbers) => numbers
+                .value(column.0)
+                .map_or(String::new(), |v| v.to_string()),
+        };
+        let found = match found.is_empty() {
+            true => "an empty cell".to_owned(),
+            false => format!("`{found}`"),
+        };
+        format!("{found} where a finite number is needed")
+    }
+
+    /// Bytes read so far; of a file of another format than CSV, its size by the share of rows read.
+    #[must_use]
+    pub fn bytes_read(&self) -> u64 {
+        match &self.source {
+            Source::Text(text) => text.bytes_read(),
+            Source::Numbers(numbers) => numbers.bytes_read(),
+        }
+    }
+
+    /// The present row, to be written out again.
+    pub fn row(&mut self) -> &Row {
+        match &mut self.source {
+            Source::Text(text) => text.row(),
+            Source::Numbers(numbers) => numbers.row(),
+        }
+    }
+
+    /// The columns in order, whatever their names.
+    pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
+        (0..self.header.len()).map(Column)
+    }
+
+    /// The unit that a row of units below the header gives a column.
+    pub(crate) fn unit(&self, column: Column) -> Option<&str> {
+        match &self.source {
+            Source::Text(text) => text.unit(column.0),
+            Source::Numbers(numbers) => numbers.unit(column.0),
+        }
+    }
+
+    /// Where the present row is.
+    pub(crate) fn row_place(&self) -> Place {
+        match &self.source {
+            Source::Text(text) => Place::Line(text.line()),
+            Source::Numbers(numbers) => Place::Row(numbers.number_of_row()),
+        }
+    }
+
+    /// SHA-256 in hexadecimal of the file; to be asked for at the end of the table.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub(crate) fn sha256(self) -> Result<Option<String>> {
+        match (self.hash, self.source) {
+            (None, _) => Ok(None),
+            (Some(hash), Source::Text(_)) => Ok(Some(hash.finish())),
+            (Some(_), Source::Numbers(_)) => {
+                Hash::file(&self.path)
+                    .map(Some)
+                    .map_err(|source| Error::File {
+                        path: self.path,
+                        source,
+                    })
+            }
+        }
+    }
+
+    /// An error at the present row.
+    #[must_use]
+    pub fn fault(&self, column: Option<Column>, problem: String) -> Error {
+        let row = match self.row_place() {
+            // Before the first row of a file without lines, it is the whole that is meant.
+            Place::Row(0) => None,
+            place => Some(place),
+        };
+        self.fault_at(row, column, problem)
+    }
+
+    /// An error at another row.
+    pub(crate) fn fault_at(
+        &self,
+        row: Option<Place>,
+        column: Option<Column>,
+        problem: String,
+    ) -> Error {
+        Error::Recording {
+            path: Some(self.path.clone()),
+            row,
+            column: column.map(|column| self.header[column.0].clone()),
+            problem,
+        }
+    }
+}
+
+/// SHA-256 in hexadecimal of a whole file.
+pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
+    Hash::file(path)
+}
+
+/// At most 40 characters of a text, for a message.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

@@ -1,0 +1,214 @@
+//! Which of its dialects a text file is written in, from its beginning.
+
+use super::header::{self, Header};
+use super::split::cells;
+use std::io::Read;
+
+/// How much of a file is looked at.
+const HEAD: usize = 1 << 16;
+
+/// How the cells of a text file are written, and where its table begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::data::table) struct Dialect {
+    /// Between cells: comma, semicolon or tab.
+    pub(super) delimiter: u8,
+    /// Whether a comma in a number is its decimal point.
+    pub(super) decimal_comma: bool,
+    /// Whether a row of units stands below the header.
+    pub(super) units: bool,
+    /// At the end of a line: a line feed, or a carriage return where there is none.
+    pub(super) end: u8,
+    /// Where the names of the columns are.
+    pub(super) header: Header,
+}
+
+/// The beginning of a file, and whether that is all of it.
+///
+/// Of a pipe it is what has come once the header and two rows are there: the rest may be long in coming.
+pub(in crate::data::table) fn head(file: &mut impl Read) -> std::io::Result<(Vec<u8>, bool)> {
+    let mut head = vec![0; HEAD];
+    let mut length = 0;
+    let mut lines = Lines::default();
+    while length < HEAD {
+        match file.read(&mut head[length..]) {
+            Ok(0) => {
+                head.truncate(length);
+                return Ok((head, true));
+            }
+            Ok(count) => length += count,
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+        if lines.enough(&head[..length]) {
+            break;
+        }
+    }
+    head.truncate(length);
+    Ok((head, false))
+}
+
+/// The lines of a head that is still growing, each looked at once.
+#[derive(Default)]
+struct Lines {
+    /// Bytes in which no further line ends, and where the last line begins.
+    searched: usize,
+    start: usize,
+    /// Lines that are neither blank nor comments, and how many of the last of them hold numbers.
+    count: usize,
+    rows: usize,
+}
+
+impl Lines {
+    /// Whether a header can be there and two rows of numbers are.
+    fn enough(&mut self, head: &[u8]) -> bool {
+        while let Some(end) = head[self.searched..].iter().position(|byte| *byte == b'\n') {
+            let line = &head[self.start..self.searched + end];
+            self.searched += end + 1;
+            self.start = self.searched;
+            if is_skipped(line) {
+                continue;
+            }
+            self.count += 1;
+            let number = |cell: &[u8]| is_number(cell) || with_point(cell).is_some();
+            let delimited = |byte: &u8| matches!(byte, b'\t' | b';' | b',');
+            self.rows = match line.split(delimited).any(number) {
+                true => self.rows + 1,
+                false => 0,
+            };
+        }
+        self.searched = head.len();
+        self.count >= 3 && self.rows >= 2
+    }
+}
+
+/// Whether a line is blank or a comment.
+pub(super) fn is_skipped(line: &[u8]) -> bool {
+    matches!(line.trim_ascii().first(), None | Some(b'#' | b'%'))
+}
+
+impl Dialect {
+    /// The dialect of a text with this beginning, in UTF-8.
+    pub(super) fn of(head: &[u8], whole: bool) -> Self {
+        let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+        // A first line longer than the head has neither.
+        let end = match head.contains(&b'\r') && !head.contains(&b'\n') {
+            true => b'\r',
+            false => b'\n',
+        };
+        let mut lines: Vec<(usize, &[u8])> = head.split(|byte| *byte == end).enumerate().collect();
+        if !whole && lines.len() > 1 {
+            // The last line goes on beyond the head.
+            lines.pop();
+        }
+        lines.retain(|(_, line)| !is_skipped(line));
+        let texts: Vec<&[u8]> = lines.iter().map(|(_, line)| *line).collect();
+        let delimiter = delimiter(&texts);
+        let rows: Vec<header::Line> = lines
+            .iter()
+            .map(|&(at, line)| header::Line::new(at, cells(line, delimiter), delimiter))
+            .collect();
+        let (header, below) = header::find(&rows);
+        // Where points stand in numbers, commas do not: they may stand between thousands.
+        let pointed = |cell: &Vec<u8>| cell.contains(&b'.') && is_number(cell);
+        let mut data = rows[below.min(rows.len())..].iter();
+        let decimal_comma = delimiter != b',' && !data.any(|row| row.cells.iter().any(pointed));
+        Self {
+            delimiter,
+            decimal_comma,
+            units: header.named && header::has_units(&rows[below.saturating_sub(1)..]),
+            end,
+            header,
+        }
+    }
+}
+
+/// The delimiter that is there as often in every line, or else that which gives most lines as many cells.
+fn delimiter(lines: &[&[u8]]) -> u8 {
+    // A comma may stand for a decimal point as well: it is asked last.
+    let known = [b'\t', b';', b','].map(|delimiter| {
+        let count = |line: &&[u8]| cells(line, delimiter).len();
+        (delimiter, lines.iter().map(count).collect::<Vec<_>>())
+    });
+    let even = |counts: &[usize]| counts.iter().all(|n| *n > 1 && *n == counts[0]);
+    let first = known
+        .iter()
+        .find(|(_, counts)| !counts.is_empty() && even(counts));
+    if let Some((delimiter, _)) = first {
+        return *delimiter;
+    }
+    let mut best = (b',', 0);
+    for (delimiter, counts) in &known {
+        let several = counts.iter().copied().filter(|n| *n > 1);
+        let (_, lines) = header::usual(several).unwrap_or_default();
+        if lines > best.1 {
+            best = (*delimiter, lines);
+        }
+    }
+    best.0
+}
+
+pub(super) fn is_number(cell: &[u8]) -> bool {
+    std::str::from_utf8(cell).is_ok_and(|text| text.trim().parse::<f64>().is_ok())
+}
+
+/// A word for a number that is not there, which is no unit and no name.
+pub(super) fn is_missing(cell: &[u8]) -> bool {
+    let words: [&[u8]; 5] = [b"na", b"n/a", b"null", b"none", b"missing"];
+    words
+        .iter()
+        .any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
+}
+
+/// A number written with a decimal comma, with a point instead.
+pub(super) fn with_point(cell: &[u8]) -> Option<Vec<u8>> {
+    let comma = cell.iter().position(|byte| *byte == b',')?;
+    let mut cell = cell.to_vec();
+    cell[comma] = b'.';
+    is_number(&cell).then_some(cell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dialects_are_told_apart() {
+        let cases: [(&str, u8, bool, bool); 14] = [
+            ("x,y\n1,2\n", b',', false, false),
+            ("x;y\n1;2\n", b';', true, false),
+            ("x;y\n1,5;2,5\n", b';', true, false),
+            ("x\ty\n1.5\t2\n", b'\t', false, false),
+            // A comma in the header alone.
+            ("load, axial;y\n1,5;2\n", b';', true, false),
+            ("x,note\n1,ok; fine\n", b',', false, false),
+            // Points stand in numbers, so that commas cannot be decimal.
+            ("x;y\n1,234;2.5\n", b';', false, false),
+            ("x,y\ndegC,[mm]\n1,2\n", b',', false, true),
+            ("x,y\ndegC,\n1,2\n", b',', false, true),
+            ("x,y\ndegC,mm\n", b',', false, true),
+            // Numbers that are not there are no units.
+            ("x,y\nNA,NA\n1,2\n", b',', false, false),
+            ("x\n1\n2\n", b',', false, false),
+            ("Run 7\nx;y\n1,5;2,5\n3,5;4,5\n", b';', true, false),
+            (
+                "Run 7\nv 1.5\nx;y\nmm;N\n1,5;2,5\n3,5;4,5\n",
+                b';',
+                true,
+                true,
+            ),
+        ];
+        for (text, delimiter, decimal_comma, units) in cases {
+            let found = Dialect::of(text.as_bytes(), true);
+            let expected = Dialect {
+                delimiter,
+                decimal_comma,
+                units,
+                end: b'\n',
+                header: found.header,
+            };
+            assert_eq!(found, expected, "{text:?}");
+        }
+        assert_eq!(Dialect::of(b"x,y\r1,2\r", true).end, b'\r');
+        assert_eq!(Dialect::of(b"", true).delimiter, b',');
+    }
+}

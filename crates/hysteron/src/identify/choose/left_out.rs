@@ -1,0 +1,94 @@
+//! Errors on branches that were left out of the whole fit, choices included.
+
+use crate::identify::weights::problem::Problem;
+use crate::identify::choose::validate::{Candidates, choose};
+use crate::identify::options::FitOptions;
+use crate::progress::Watch;
+use crate::series::range;
+use crate::recording::Recording;
+use crate::error::Result;
+
+/// Groups of branches that are left out in turn.
+const FOLDS: usize = 5;
+
+/// Errors over branches that were left out, and over those that were not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeftOut {
+    /// For each sample the group of branches it was left out with.
+    pub fold: Vec<usize>,
+    /// Predicted output at each sample, when it was left out.
+    pub predicted: Vec<f64>,
+    /// Root mean squared error left out, in percent of the measured range.
+    pub nrmse_percent: f64,
+    /// The same over the samples that were fitted, all folds together.
+    pub training_nrmse_percent: f64,
+    /// Branches of the input.
+    pub branches: usize,
+    /// Levels and smoothness of each fold.
+    pub chosen: Vec<(usize, f64)>,
+}
+
+/// Leaves out whole branches in turn and predicts them, with the options given, or with those that
+/// cross-validation of the remaining branches chooses from `candidates`.
+///
+/// # Errors
+/// As [`super::fit_experiment`]; [`crate::Error::Fit`] for a single branch.
+pub fn left_out(
+    recordings: &[Recording],
+    options: &FitOptions,
+    candidates: Option<&Candidates>,
+    watch: Watch<'_>,
+) -> Result<LeftOut> {
+    let mut problem = Problem::new(recordings, options)?;
+    let experiment = &problem.experiment;
+    let count = experiment.branches().min(FOLDS);
+    if count < 2 {
+        return Err(crate::error::Error::Fit(
+            "there is only one branch: nothing can be left out".into(),
+        ));
+    }
+    let fold: Vec<usize> = experiment.branch.iter().map(|b| b % count).collect();
+    let measured = experiment.output.clone();
+    let mut predicted = vec![0.0; measured.len()];
+    let (mut training, mut chosen) = (0.0, Vec::new());
+    for f in 0..count {
+        watch("left-out branches", f as f64 / count as f64)?;
+        let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
+        let mut options = options.clone();
+        if let Some(candidates) = candidates {
+            options = choose(recordings, &options, candidates, Some(&kept), &|_, _| {
+                watch("left-out branches", f as f64 / count as f64)
+            })?
+            .0;
+            problem = Problem::new(recordings, &options)?;
+        }
+        chosen.push((options.levels, options.smooth));
+        let fitted = problem.solve(Some(&kept), &|_, _| Ok(()))?;
+        let h = problem.predict(&fitted.solution)?;
+        let offset = options.offset.unwrap_or(0.0);
+        for n in 0..measured.len() {
+            let y = offset + fitted.sign.factor() * h[n];
+            if fold[n] == f {
+                predicted[n] = y;
+            } else {
+                training += (measured[n] - y).powi(2);
+            }
+        }
+    }
+    let (low, high) = range(&measured);
+    let samples = measured.len() as f64;
+    let squares: f64 = measured
+        .iter()
+        .zip(&predicted)
+        .map(|(y, p)| (y - p).powi(2))
+        .sum();
+    let percent = |squares: f64, samples: f64| 100.0 * (squares / samples).sqrt() / (high - low);
+    Ok(LeftOut {
+        nrmse_percent: percent(squares, samples),
+        training_nrmse_percent: percent(training, samples * (count - 1) as f64),
+        branches: problem.experiment.branches(),
+        fold,
+        predicted,
+        chosen,
+    })
+}

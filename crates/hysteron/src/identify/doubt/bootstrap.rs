@@ -1,0 +1,174 @@
+//! The bootstrap over branches: how far the weights would have come out otherwise.
+
+use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::problem::{Fitted, Problem};
+use crate::identify::weights::solve::NormalEquations;
+use crate::model::Solver;
+use crate::progress::Watch;
+use crate::model::LoadPart;
+use crate::error::Result;
+use faer::Mat;
+use faer::linalg::solvers::Llt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use crate::parallel;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// With fewer branches than this, parts of branches take their place.
+const ENOUGH_BRANCHES: usize = 16;
+
+/// Most fits that leave something out: of more units, several are left out together.
+const GROUPS: usize = 40;
+
+/// Part of the variance that factors keep, and how many there are at most.
+const KEPT: f64 = 0.99;
+const FACTORS: usize = 12;
+
+/// Offsets and weights of fits to data that might have been.
+///
+/// A wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008): what a fit without them leaves of branches is put back with the
+/// sign of whole branches turned at random, and fitted again. Errors that are alike along a branch, as those of
+/// a model are, then count as what they are.
+pub(crate) fn replicates(
+    problem: &Problem,
+    fitted: &Fitted,
+    equations: &NormalEquations<'_>,
+    free: &FreeColumns,
+    watch: Watch<'_>,
+) -> Result<Vec<LoadPart>> {
+    let (options, experiment) = (&problem.options, &problem.experiment);
+    let solution = &fitted.solution;
+    let factor = match options.solver {
+        Solver::Ols => Some(equations.factor()?),
+        Solver::Nnls => None,
+    };
+    let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
+    let errors = left_out_errors(problem, fitted, &unit, units, watch)?;
+    let done = AtomicUsize::new(0);
+    parallel::map(options.bootstrap, |seed| {
+            let count = done.fetch_add(1, Ordering::Relaxed);
+            watch("confidence", count as f64 / options.bootstrap as f64)?;
+            let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
+            let signs: Vec<f64> = (0..units)
+                .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
+                .collect();
+            let turned = errors.iter().zip(&unit);
+            let mut noise: Vec<f64> = turned
+                .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
+                .collect();
+            let moved = free.take_off(&mut noise);
+            let x = replicate(equations, factor.as_ref(), problem, &solution.x, &noise)?;
+            // The free columns follow: those of the noise, and what the columns leave to them.
+            let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
+            let mut left = problem.regressor.forward(experiment, &difference)?;
+            let taken = free.take_off(&mut left);
+            let free_values: Vec<f64> = (0..moved.len())
+                .map(|n| solution.free[n] + moved[n] - taken[n])
+                .collect();
+            Ok(problem.at_middle(&x, &free_values, fitted.sign))
+    })
+}
+
+/// The error at each sample of a fit without its unit. A fit bends towards each branch, the more the fewer others
+/// speak of the same weights; these errors do not (the residuals of MacKinnon, Nielsen and Webb 2023).
+fn left_out_errors(
+    problem: &Problem,
+    fitted: &Fitted,
+    unit: &[Option<usize>],
+    units: usize,
+    watch: Watch<'_>,
+) -> Result<Vec<f64>> {
+    let groups = units.min(GROUPS);
+    let target = problem.target(fitted.sign);
+    let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
+        watch("confidence", 0.0)?;
+        let inside = |n: &usize| unit[*n].is_some_and(|unit| unit % groups == group);
+        let kept: Vec<f64> = (0..unit.len()).map(|n| f64::from(!inside(&n))).collect();
+        let free = problem.free(Some(&kept))?;
+        let equations = NormalEquations::new(
+            &problem.regressor,
+            &problem.experiment,
+            &free,
+            Some(&kept),
+            problem.options.smooth,
+            &|_, _| Ok(()),
+        )?;
+        let start = Some(&fitted.solution.x[..]);
+        let solution =
+            equations.solve(&target, problem.options.solver, start, 1, &|_, _| Ok(()))?;
+        let predicted = problem.predict(&solution)?;
+        let errors = (0..unit.len())
+            .filter(inside)
+            .map(|n| (n, target[n] - predicted[n]));
+        Ok(errors.collect())
+    };
+    let all: Vec<Vec<(usize, f64)>> = parallel::map(groups, of_group)?;
+    let mut errors = vec![0.0; unit.len()];
+    for (n, error) in all.into_iter().flatten() {
+        errors[n] = error;
+    }
+    Ok(errors)
+}
+
+/// Columns for the fitted output with `noise` on it, free columns taken off.
+fn replicate(
+    equations: &NormalEquations<'_>,
+    factor: Option<&Llt<f64>>,
+    problem: &Problem,
+    x: &[f64],
+    noise: &[f64],
+) -> Result<Vec<f64>> {
+    let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
+    let mut right = equations.times(x);
+    // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
+    right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
+    equations.minimum(&right, x, factor, &|_, _| Ok(()))
+}
+
+/// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).
+///
+/// From the fit, not from the replicates' mean: where a weight is zero, all of them lie on one side.
+pub(crate) fn spread(replicates: &[LoadPart], fit: &LoadPart) -> (LoadPart, Vec<LoadPart>) {
+    let count = fit.weights.len() + 1;
+    let value = |part: &LoadPart, n: usize| match n {
+        0 => part.offset,
+        n => part.weights[n - 1],
+    };
+    let scale = 1.0 / (replicates.len() as f64).sqrt();
+    let deviation = |r: usize, n: usize| scale * (value(&replicates[r], n) - value(fit, n));
+    let part = |values: &dyn Fn(usize) -> f64| LoadPart {
+        offset: values(0),
+        weights: (1..count).map(values).collect(),
+    };
+    let variance =
+        |n: usize| -> f64 { (0..replicates.len()).map(|r| deviation(r, n).powi(2)).sum() };
+    let standard = part(&|n| variance(n).sqrt());
+    let matrix = Mat::from_fn(count, replicates.len(), |n, r| deviation(r, n));
+    let Ok(svd) = matrix.thin_svd() else {
+        return (standard, Vec::new());
+    };
+    let sizes: Vec<f64> = (0..svd.S().column_vector().nrows())
+        .map(|k| svd.S().column_vector()[k])
+        .collect();
+    let total: f64 = sizes.iter().map(|s| s * s).sum();
+    let mut kept = 0.0;
+    let mut factors = Vec::new();
+    for (k, size) in sizes.iter().enumerate().take(FACTORS) {
+        if total == 0.0 || kept >= KEPT * total {
+            break;
+        }
+        kept += size * size;
+        factors.push(part(&|n| size * svd.U()[(n, k)]));
+    }
+    // What is left out is spread over those that are kept, so that the band is not too narrow.
+    let stretch = if kept > 0.0 {
+        (total / kept).sqrt()
+    } else {
+        1.0
+    };
+    for factor in &mut factors {
+        factor.offset *= stretch;
+        factor.weights.iter_mut().for_each(|mu| *mu *= stretch);
+    }
+    (standard, factors)
+}

@@ -1,0 +1,136 @@
+//! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
+//! the output.
+
+use crate::identify::doubt::excitation::Unresolved;
+use crate::identify::weights::problem::{Fitted, Problem};
+use crate::identify::weights::solve::{NormalEquations, not_definite};
+use crate::identify::weights::sparse::Initial;
+use crate::model::Start;
+use crate::progress::Watch;
+use crate::identify::doubt::bootstrap;
+use crate::model::Confidence;
+use crate::error::Result;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+/// Eigenvalues below this part of the largest are what rounding leaves of zero.
+const ROUNDING: f64 = 1e-12;
+
+/// `None` without replicates.
+pub(crate) fn of(
+    problem: &Problem,
+    fitted: &Fitted,
+    watch: Watch<'_>,
+) -> Result<Option<Confidence>> {
+    let options = &problem.options;
+    if options.bootstrap == 0 {
+        return Ok(None);
+    }
+    let experiment = &problem.experiment;
+    watch("confidence", 0.0)?;
+    let free = problem.free(None)?;
+    let equations = NormalEquations::new(
+        &problem.regressor,
+        experiment,
+        &free,
+        None,
+        options.smooth,
+        watch,
+    )?;
+    // What the data say without the penalty.
+    let plain = match options.smooth > 0.0 {
+        true => Some(NormalEquations::new(
+            &problem.regressor,
+            experiment,
+            &free,
+            None,
+            0.0,
+            watch,
+        )?),
+        false => None,
+    };
+    let (rank, condition) = rank(plain.as_ref().unwrap_or(&equations))?;
+    let free_count = fitted.solution.free.len() as f64;
+    let solution = &fitted.solution;
+    let samples = solution.residual.len() as f64;
+    // Fitted residuals are smaller than the errors behind them.
+    let used = degrees_of_freedom(&solution.x, &equations, plain.as_ref()) + free_count;
+    let left = (samples - used).max(1.0);
+    let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
+
+    let replicates = bootstrap::replicates(problem, fitted, &equations, &free, watch)?;
+    let (standard, factors) = bootstrap::spread(
+        &replicates,
+        &problem.at_middle(&solution.x, &solution.free, fitted.sign),
+    );
+    let inputs: Vec<&[f64]> = experiment
+        .recordings
+        .iter()
+        .map(|range| &experiment.input[range.clone()])
+        .collect();
+    // Where it is not known, the classes are those from off; what is open then counts among the unknowns.
+    let start = match options.start {
+        Start::On => Initial::On,
+        Start::Off | Start::Unknown => Initial::Off,
+    };
+    Ok(Some(Confidence {
+        branches: experiment.branches(),
+        rank,
+        unknowns: solution.x.len(),
+        condition,
+        noise: (squares / left).sqrt(),
+        replicates: options.bootstrap,
+        excitation: Unresolved::of(&inputs, *problem.regressor.plane(), options.operator, start)?
+            .classes(&inputs)?,
+        standard_error: standard.weights,
+        offset_error: standard.offset,
+        factors,
+    }))
+}
+
+/// How many parameters the fit has: one for each weight above zero, less as far as the penalty ties them together,
+/// `tr (G + P)⁻¹ G` over these (Hastie, Tibshirani and Friedman 2009, 7.6).
+fn degrees_of_freedom(
+    x: &[f64],
+    equations: &NormalEquations<'_>,
+    plain: Option<&NormalEquations<'_>>,
+) -> f64 {
+    let above: Vec<usize> = (0..x.len()).filter(|n| x[*n] != 0.0).collect();
+    let size = above.len();
+    let Some(plain) = plain else {
+        return size as f64;
+    };
+    let part = |of: &NormalEquations<'_>| {
+        Mat::from_fn(size, size, |i, j| of.matrix[above[i] * x.len() + above[j]])
+    };
+    match part(equations).llt(Side::Lower) {
+        Ok(factor) => {
+            let shrunk = factor.solve(&part(plain));
+            (0..size).map(|n| shrunk[(n, n)]).sum()
+        }
+        Err(_) => size as f64,
+    }
+}
+
+/// Rank of the centred regressor, and the ratio of its largest to its smallest singular value.
+fn rank(equations: &NormalEquations<'_>) -> Result<(usize, f64)> {
+    let count = equations.matrix.len().isqrt();
+    let element = |i: usize, j: usize| equations.matrix[i * count + j];
+    let matrix = Mat::from_fn(count, count, element);
+    let values = matrix
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_err(|_| not_definite())?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let above: Vec<f64> = values
+        .into_iter()
+        .map(|value| value - equations.ridge)
+        .filter(|value| *value > ROUNDING * largest)
+        .collect();
+    let smallest = above.iter().copied().fold(f64::INFINITY, f64::min);
+    let condition = if above.is_empty() {
+        1.0
+    } else {
+        (largest / smallest).sqrt()
+    };
+    Ok((above.len(), condition))
+}

@@ -1,0 +1,317 @@
+//! What recorded inputs can say about each operator, whatever the output was.
+//!
+//! The offset is free, so what counts is the regressor matrix with its column means taken off. An operator's weight is
+//! determined where its unit vector lies in that matrix' row space; this is read off the resolution matrix
+//! `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the centred Gram matrix: a diagonal element of 1 says that the weight
+//! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
+
+use crate::identify::weights::sparse::{Initial, SparseForm};
+use crate::error::{Error, Result};
+use crate::series::{NOISE, Turning, noise_band};
+use hysteron_core::Operator;
+use crate::model::Plane;
+use crate::model::Excitation;
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
+use hysteron_core::{Definition, operator_index};
+
+/// Ridge `ε`. The centred Gram matrix counts samples: an operator that alone swings fully, for a few samples, has an
+/// element of about 1 there, and a spiral of [`crate::design()`] with ten samples a level no eigenvalue below 0.1.
+/// Swings of 1 % in a single sample leave 1e-4, and count as none.
+const RIDGE: f64 = 1e-4;
+
+/// Rounding of the Gram matrix relative to its trace, which bounds every eigenvalue.
+const ROUNDING: f64 = 1e-12;
+
+/// Largest unresolved part of what counts as determined. The ridge leaves up to `RIDGE / 0.1`; one missing
+/// equation among weights leaves 1/4, its weights being `+1, −1, −1, +1` around a corner, and 1/K if a whole row is seen as a sum.
+pub(crate) const UNRESOLVED: f64 = 5e-3;
+
+/// The class of every operator, in the order of the weights, after the recorded `inputs`: each sets out with every
+/// operator off, and one offset is common to all.
+///
+/// A branch ends at a reversal of more than 1 % of the recording's range. Noise on an input counts as movement: prepare the
+/// input before. `O(n + N³)` time and `O(N²)` memory.
+///
+/// ```
+/// use hysteron::{Excitation, Operator, Plane, excitation};
+/// let plane = Plane::new(1.0, 2.0, 2)?; // operators (1, 1), (1, 2), (2, 2)
+/// let found = excitation(&[&[0.0, 1.0, 2.0]], plane, Operator::Mkp)?;
+/// // The last two switch on together, and not off again.
+/// assert_eq!(found, [Excitation::Determined, Excitation::Once, Excitation::Once]);
+/// let found = excitation(&[&[0.0, 1.0, 2.0, 1.0]], plane, Operator::Mkp)?;
+/// assert_eq!(found, [Excitation::Determined; 3]);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Core`] for an input that is not finite; [`Error::Fit`] where the plane has too many operators for their Gram matrix.
+pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<Excitation>> {
+    Unresolved::of(inputs, plane, operator, Initial::Off)?.classes(inputs)
+}
+
+/// What recorded inputs leave open: `I − R = ε (G + εI)⁻¹`, the part of a unit prior variance that data of unit noise leave.
+pub(crate) struct Unresolved {
+    plane: Plane,
+    operator: Operator,
+    start: Initial,
+    matrix: Mat<f64>,
+}
+
+impl Unresolved {
+    pub(crate) fn of(
+        inputs: &[&[f64]],
+        plane: Plane,
+        operator: Operator,
+        start: Initial,
+    ) -> Result<Self> {
+        crate::identify::weights::problem::check_gram(plane.operators())?;
+        let count = plane.operators();
+        let mut gram = centred_gram(inputs, plane, operator, start)?;
+        let trace: f64 = (0..count).map(|n| gram[n * count + n]).sum();
+        let ridge = RIDGE.max(ROUNDING * trace);
+        for n in 0..count {
+            gram[n * count + n] += ridge;
+        }
+        let factor = Mat::from_fn(count, count, |a, b| gram[a * count + b])
+            .llt(Side::Lower)
+            .map_err(|_| {
+                Error::Fit("the Gram matrix is not definite: the input has no use".into())
+            })?;
+        let mut matrix = factor.inverse();
+        matrix *= faer::Scale(ridge);
+        Ok(Self {
+            plane,
+            operator,
+            start,
+            matrix,
+        })
+    }
+
+    pub(crate) fn classes(&self, inputs: &[&[f64]]) -> Result<Vec<Excitation>> {
+        let moves = branches_moved(inputs, self.plane, self.operator, self.start)?;
+        let class = |(n, moves): (usize, usize)| match moves {
+            _ if self.matrix[(n, n)] <= UNRESOLVED => Excitation::Determined,
+            0 => Excitation::Never,
+            1 => Excitation::Once,
+            _ => Excitation::Ambiguous,
+        };
+        Ok(moves.into_iter().enumerate().map(class).collect())
+    }
+
+    /// Which Everett corners `C[p][q]`, `q < p`, are determined, each at the place of weight `(q + 1, p)`.
+    ///
+    /// A corner is a sum of weights: `S (I − R) Sᵀ` has on its diagonal what is open of each.
+    pub(crate) fn corners_known(&self) -> Vec<bool> {
+        let levels = self.plane.levels();
+        let count = self.plane.operators();
+        let mut half = self.matrix.clone();
+        for row in 0..count {
+            let mut sums: Vec<f64> = (0..count).map(|n| half[(row, n)]).collect();
+            prefix_sums(levels, &mut sums);
+            for (n, sum) in sums.into_iter().enumerate() {
+                half[(row, n)] = sum;
+            }
+        }
+        let known = |n: usize| {
+            let mut sums: Vec<f64> = (0..count).map(|row| half[(row, n)]).collect();
+            prefix_sums(levels, &mut sums);
+            sums[n] <= UNRESOLVED
+        };
+        (0..count).map(known).collect()
+    }
+}
+
+/// `S μ` in place: `C[p][q] = Σ μ_ij` over `j ≤ p`, `i > q`.
+fn prefix_sums(levels: usize, mu: &mut [f64]) {
+    for j in 1..=levels {
+        for i in (1..j).rev() {
+            mu[operator_index(i, j)] += mu[operator_index(i + 1, j)];
+        }
+    }
+    for j in 2..=levels {
+        for i in 1..j {
+            mu[operator_index(i, j)] += mu[operator_index(i, j - 1)];
+        }
+    }
+}
+
+/// `Φᵀ Φ` of all recordings together, the mean over them taken off every column.
+fn centred_gram(
+    inputs: &[&[f64]],
+    plane: Plane,
+    operator: Operator,
+    start: Initial,
+) -> Result<Vec<f64>> {
+    let count = plane.operators();
+    let mut gram = vec![0.0; count * count];
+    let mut sums = vec![0.0; count];
+    let form = SparseForm::new(plane, operator)?;
+    for input in inputs {
+        form.add_outer(input, (start, start), |_| 1.0, &mut gram, &|_, _| Ok(()))?;
+        form.add_adjoint(input, start, |_| 1.0, &mut sums)?;
+    }
+    form.gram_of(&mut gram);
+    form.operators_of(&mut sums);
+    let samples = inputs.iter().map(|input| input.len()).sum::<usize>().max(1) as f64;
+    for (row, a) in gram.chunks_exact_mut(count).zip(&sums) {
+        for (element, b) in row.iter_mut().zip(&sums) {
+            *element -= a * b / samples;
+        }
+    }
+    Ok(gram)
+}
+
+/// On how many branches each operator moves by more than 1 % of its swing.
+fn branches_moved(
+    inputs: &[&[f64]],
+    plane: Plane,
+    operator: Operator,
+    start: Initial,
+) -> Result<Vec<usize>> {
+    let mut moves = vec![0; plane.operators()];
+    let weights = vec![0.0; plane.operators()];
+    for input in inputs {
+        let Some(&first) = input.first() else {
+            continue;
+        };
+        let mut states = weights.clone();
+        let mut plain = Definition::new(plane, operator, &weights, &mut states)?;
+        if start == Initial::On {
+            plain.step(plane.max())?;
+        }
+        // From there to the first sample nobody saw it move.
+        plain.step(first)?;
+        let mut before = plain.states().to_vec();
+        for end in branch_ends(input) {
+            plain.step(end)?;
+            for ((moves, before), &after) in moves.iter_mut().zip(&mut before).zip(plain.states()) {
+                *moves += usize::from((after - *before).abs() > NOISE);
+                *before = after;
+            }
+        }
+    }
+    Ok(moves)
+}
+
+/// The input at the end of each branch.
+fn branch_ends(input: &[f64]) -> Vec<f64> {
+    let mut turning = Turning::new(noise_band(input));
+    let turns = input.iter().filter_map(|&t| turning.push(t));
+    // The start counts as a turn, and begins the first branch.
+    let mut ends: Vec<f64> = turns.skip(1).map(|(n, _)| input[n]).collect();
+    ends.extend(turning.branch().map(|(_, n)| input[n]));
+    ends
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    /// Whether each unit vector lies in the span of the rows, by elimination on the dense matrix.
+    fn in_row_space(rows: &[Vec<f64>], count: usize) -> Vec<bool> {
+        let mut rows: Vec<Vec<f64>> = rows.to_vec();
+        let mut pivots = 0;
+        for column in 0..count {
+            let best = (pivots..rows.len())
+                .max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()));
+            let Some(best) = best.filter(|&n| rows[n][column].abs() > 1e-9) else {
+                continue;
+            };
+            rows.swap(pivots, best);
+            let pivot = rows[pivots].clone();
+            for (n, row) in rows.iter_mut().enumerate() {
+                let factor = row[column] / pivot[column];
+                if n != pivots && factor != 0.0 {
+                    row.iter_mut()
+                        .zip(&pivot)
+                        .for_each(|(r, p)| *r -= factor * p);
+                }
+            }
+            pivots += 1;
+        }
+        // Reduced: a unit vector in the span is a row of its own.
+        (0..count)
+            .map(|n| {
+                rows[..pivots].iter().any(|row| {
+                    let others = row.iter().enumerate().filter(|&(m, _)| m != n);
+                    row[n].abs() > 1e-9 && others.map(|(_, r)| r.abs()).fold(0.0, f64::max) < 1e-7
+                })
+            })
+            .collect()
+    }
+
+    #[test]
+    fn agrees_with_elimination_on_the_definition() {
+        for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
+            for seed in 0..12 {
+                let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+                let levels = 2 + seed as usize % 4;
+                let plane = Plane::new(1.0, levels as f64, levels).unwrap();
+                // Turning points on a quarter grid: what is determined, is so at full strength.
+                let turns = 2 + seed % 7;
+                let mut input = vec![0.0];
+                for _ in 0..turns {
+                    let to = f64::from(rng.random_range(0..=4 * levels as u32)) * 0.25;
+                    let from = *input.last().unwrap();
+                    let count = ((to - from).abs() * 8.0) as u32;
+                    input.extend(
+                        (1..=count).map(|k| from + (to - from) * f64::from(k) / f64::from(count)),
+                    );
+                }
+                let weights = vec![0.0; plane.operators()];
+                let mut states = weights.clone();
+                let mut plain = Definition::new(plane, operator, &weights, &mut states).unwrap();
+                let rows: Vec<Vec<f64>> = input
+                    .iter()
+                    .map(|&t| {
+                        plain.step(t).unwrap();
+                        plain.states().to_vec()
+                    })
+                    .collect();
+                let differences: Vec<Vec<f64>> = rows
+                    .windows(2)
+                    .map(|pair| pair[1].iter().zip(&pair[0]).map(|(a, b)| a - b).collect())
+                    .collect();
+                let expected = in_row_space(&differences, plane.operators());
+                let found = excitation(&[&input], plane, operator).unwrap();
+                let determined: Vec<bool> = found
+                    .iter()
+                    .map(|class| *class == Excitation::Determined)
+                    .collect();
+                assert_eq!(determined, expected, "{operator:?}, seed {seed}: {input:?}");
+                for (n, class) in found.iter().enumerate() {
+                    let moves = rows.iter().any(|row| row[n] != rows[0][n]);
+                    assert_eq!(
+                        *class == Excitation::Never,
+                        !moves,
+                        "{operator:?}, seed {seed}, {n}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn several_recordings_say_together_what_none_says_alone() {
+        let plane = Plane::new(1.0, 3.0, 3).unwrap();
+        let up = [0.0, 1.0, 2.0, 3.0];
+        let inner = [0.0, 2.0, 1.0, 2.0];
+        let down = [3.0, 2.0, 1.0];
+        let count = |inputs: &[&[f64]]| {
+            let classes = excitation(inputs, plane, Operator::Mkp).unwrap();
+            classes
+                .iter()
+                .filter(|class| **class == Excitation::Determined)
+                .count()
+        };
+        assert_eq!(count(&[&up, &inner, &down]), 6);
+        for one in [&up[..], &inner, &down] {
+            assert!(count(&[one]) < 4);
+        }
+        assert_eq!(count(&[]), 0);
+    }
+}

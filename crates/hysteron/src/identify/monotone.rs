@@ -1,0 +1,53 @@
+//! Whether an output goes with its input, as weights from zero on demand.
+
+use crate::series::headings;
+use crate::series::noise_band;
+use hysteron_core::Direction;
+use crate::recording::Recording;
+use crate::error::Result;
+use crate::model::Sign;
+
+/// From here on the output goes against the input on so much of its way that no monotone model can follow: an
+/// ideal loop has nothing of it, a symmetric butterfly a half.
+pub const AGAINST_INPUT: f64 = 0.1;
+
+/// The part of the output's way, from 0 to 1, on which it moves against the input, for outputs of that `sign`. Movements
+/// of up to 1 % of the range are noise on both.
+///
+/// Butterfly loops, loads that change and rate make it large; hysteresis does not.
+///
+/// ```
+/// use hysteron::{Recording, Sign, way_against_input};
+/// let input: Vec<f64> = (0..200).map(|n| (f64::from(n) * 0.1).sin()).collect();
+/// let butterfly = Recording::new(input.clone(), input.iter().map(|x| x * x).collect())?;
+/// assert!(way_against_input(&butterfly, Sign::Positive)? > 0.4);
+/// let line = Recording::new(input.clone(), input)?;
+/// assert_eq!(way_against_input(&line, Sign::Positive)?, 0.0);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
+    recording.check()?;
+    let band = noise_band(&recording.output);
+    let headings = headings(&recording.input, noise_band(&recording.input));
+    let (mut with, mut against) = (0.0, 0.0);
+    let mut held = recording.output[0];
+    for (&y, heading) in recording.output.iter().zip(headings) {
+        // The output with a play of the band: noise does not move it.
+        let next = held.clamp(y - band, y + band);
+        let way = sign.factor() * (next - held);
+        held = next;
+        match heading {
+            Some(Direction::Rising) if way < 0.0 => against -= way,
+            Some(Direction::Falling) if way > 0.0 => against += way,
+            _ => with += way.abs(),
+        }
+    }
+    Ok(if against > 0.0 {
+        against / (against + with)
+    } else {
+        0.0
+    })
+}

@@ -1,0 +1,195 @@
+//! Identification of a thermal body together with the weights behind it.
+
+use crate::model::{FirstOrder, needs_time};
+use crate::identify::stages::nelder_mead::minimise;
+use crate::series::range;
+use crate::error::{Error, Result};
+use crate::identify::options::FitOptions;
+use crate::model::Model;
+use crate::recording::Recording;
+use crate::progress::Watch;
+use crate::identify::fit_experiment;
+use serde_json::json;
+
+/// Samples that the search looks at, or up to three times as many; the last fit sees all.
+const SEARCHED: usize = 2000;
+
+/// Time constants that the longest recording must last: after four of them a body has settled to 2 %. A slower one
+/// cannot be told from a drift.
+const SETTLED: f64 = 4.0;
+
+/// Neighbours on the first grid of time constants differ by this factor.
+const GRID: f64 = 2.0;
+
+/// Time constants are resolved where one of half or twice the size fits this much worse (RMSE), whatever
+/// the other one. Much less can be had by chance, for the weights make up for a wrong body.
+const RESOLVED: f64 = 1.25;
+
+/// Where the simplex is this small the time constants are known to a thousandth: far below what data can tell.
+const TOLERANCE: f64 = 1e-3;
+
+/// Steps of the simplex, several times what it takes.
+const STEPS: usize = 200;
+
+/// Identifies a thermal body and the weights behind it, from recordings of a drive (current, voltage, duty) with time.
+///
+/// For given time constants the weights are a closed problem, that of [`fit_experiment`]; the search is over the time
+/// constants only (separable least squares, Golub and Pereyra 1973), on a logarithmic grid and from its best
+/// point by the simplex of Nelder and Mead. They lie between the sampling step and a quarter of the longest recording: a faster body is
+/// always at rest, a slower one never comes near it. The plane is by default that of the temperature.
+///
+/// The weights can make up for a wrong body as long as each branch is driven in one way only. Where the two time constants are not
+/// resolved for that reason, one for both is identified, as a body in unchanging surroundings has; `fit.other["thermal"]` of the model
+/// says which. Drives of different shape, a ramp and a step, tell them apart.
+///
+/// # Errors
+/// As [`fit_experiment`]; [`Error::Thermal`] for recordings without time.
+pub fn fit_thermal(
+    recordings: &[Recording],
+    options: &FitOptions,
+    watch: Watch<'_>,
+) -> Result<Model> {
+    let search = Search::new(recordings, options, watch)?;
+    let (two, least) = search.best(|taus: &[f64; 2]| *taus)?;
+    let told_apart = search.least_beside(&two)? > RESOLVED * least;
+    let [tau_heating, tau_cooling] = match told_apart {
+        true => two,
+        false => search.best(|[tau]: &[f64; 1]| [*tau; 2])?.0,
+    };
+    let body = FirstOrder {
+        gain: 1.0,
+        tau_heating,
+        tau_cooling,
+    };
+    let heated = recordings.iter().map(|r| body.behind(r));
+    let heated: Vec<Recording> = heated.collect::<Result<_>>()?;
+    let mut model = fit_experiment(&heated, options, watch)?;
+    model.thermal = Some(body);
+    if let Some(fit) = &mut model.fit {
+        let said = json!({"told_apart": told_apart});
+        fit.other.insert("thermal".into(), said);
+    }
+    Ok(model)
+}
+
+struct Search<'a> {
+    recordings: &'a [Recording],
+    options: FitOptions,
+    watch: Watch<'a>,
+    /// Logarithms of the shortest and the longest time constant searched.
+    bounds: (f64, f64),
+    /// Of so many samples three at most are looked at.
+    stride: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(recordings: &'a [Recording], options: &FitOptions, watch: Watch<'a>) -> Result<Self> {
+        if recordings.is_empty() {
+            return Err(Error::Fit("there is no recording to fit".into()));
+        }
+        let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+        for recording in recordings {
+            recording.check()?;
+            let (start, end) = range(recording.time.as_ref().ok_or_else(needs_time)?);
+            let step = (end - start) / recording.len().max(2).saturating_sub(1) as f64;
+            shortest = shortest.min(step);
+            longest = longest.max(end - start);
+        }
+        if shortest <= 0.0 {
+            return Err(Error::Thermal(
+                "time does not pass in a recording: nothing can be learned of its body".into(),
+            ));
+        }
+        let samples: usize = recordings.iter().map(Recording::len).sum();
+        Ok(Self {
+            recordings,
+            options: FitOptions {
+                bootstrap: 0,
+                ..options.clone()
+            },
+            watch,
+            bounds: (shortest.ln(), (longest / SETTLED).max(shortest).ln()),
+            stride: samples.div_ceil(SEARCHED),
+        })
+    }
+
+    /// RMSE with the weights that are best behind a body with these logarithms of time constants.
+    fn rmse(&self, logarithms: [f64; 2]) -> Result<f64> {
+        (self.watch)("time constants", f64::NAN)?;
+        let [tau_heating, tau_cooling] = logarithms.map(f64::exp);
+        let body = FirstOrder {
+            gain: 1.0,
+            tau_heating,
+            tau_cooling,
+        };
+        let thinned = |r: &Recording| Ok(thin(body.behind(r)?, self.stride));
+        let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();
+        match fit_experiment(&heated?, &self.options, &|_, _| Ok(())) {
+            Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),
+            // A body too slow to reach the plane, or options that the last fit refuses as well.
+            Err(error) if matches!(error.parts().0, Error::Fit(_)) => Ok(f64::INFINITY),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The best time constants, as far as `N` free logarithms let them be chosen, and their RMSE.
+    fn best<const N: usize>(
+        &self,
+        logarithms: impl Fn(&[f64; N]) -> [f64; 2],
+    ) -> Result<([f64; 2], f64)> {
+        let (low, high) = self.bounds;
+        let value = |point: &[f64; N]| match point.iter().all(|tau| (low..=high).contains(tau)) {
+            true => self.rmse(logarithms(point)),
+            false => Ok(f64::INFINITY),
+        };
+        let points = 1 + ((high - low) / GRID.ln()) as usize;
+        let mut best = ([low; N], f64::INFINITY);
+        for number in 0..points.pow(N as u32) {
+            let place = |axis: usize| number / points.pow(axis as u32) % points;
+            let point = std::array::from_fn(|axis| low + place(axis) as f64 * GRID.ln());
+            let rmse = value(&point)?;
+            if rmse < best.1 {
+                best = (point, rmse);
+            }
+        }
+        let (point, rmse) = minimise(best.0, 0.5 * GRID.ln(), TOLERANCE, STEPS, value)?;
+        Ok((logarithms(&point).map(f64::exp), rmse))
+    }
+
+    /// The smallest RMSE with either time constant half or twice as long, and the other one free.
+    fn least_beside(&self, taus: &[f64; 2]) -> Result<f64> {
+        let mut least = f64::INFINITY;
+        for factor in [0.5, 2.0] {
+            let [heating, cooling] = taus.map(|tau| (factor * tau).ln());
+            let (_, beside_heating) = self.best(|[other]: &[f64; 1]| [heating, *other])?;
+            let (_, beside_cooling) = self.best(|[other]: &[f64; 1]| [*other, cooling])?;
+            least = least.min(beside_heating).min(beside_cooling);
+        }
+        Ok(least)
+    }
+}
+
+/// Of each run of `stride` samples the first and those with the extreme temperatures: without these the turning points,
+/// and with them the memory, would be others.
+fn thin(recording: Recording, stride: usize) -> Recording {
+    let theta = &recording.input;
+    let starts = (0..theta.len()).step_by(stride);
+    let mut kept: Vec<usize> = starts
+        .flat_map(|start| {
+            let block = start..(start + stride).min(theta.len());
+            let by = |a: &usize, b: &usize| theta[*a].total_cmp(&theta[*b]);
+            [block.clone().min_by(by), block.max_by(by), Some(start)]
+        })
+        .flatten()
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let every = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
+    Recording {
+        time: recording.time.as_ref().map(every),
+        output: every(&recording.output),
+        load: recording.load.as_ref().map(every),
+        input: every(&recording.input),
+        ..recording
+    }
+}

@@ -1,0 +1,235 @@
+//! Recordings put together into one experiment: their samples one after the other, their branches, and
+//! the functions of the load.
+
+use crate::identify::options::FitOptions;
+use crate::identify::weights::regressor::MOST_RECORDINGS;
+use crate::model::bernstein;
+use crate::series::range;
+use crate::series::{branches, noise_band};
+use crate::error::{Error, Result};
+use crate::model::Plane;
+use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
+use std::ops::Range;
+
+pub(crate) struct Experiment {
+    pub(crate) input: Vec<f64>,
+    pub(crate) output: Vec<f64>,
+    /// Samples of each recording.
+    pub(crate) recordings: Vec<Range<usize>>,
+    /// For each sample the branch it lies on, counted through all recordings.
+    pub(crate) branch: Vec<usize>,
+    /// Smallest and largest load, where there is one.
+    pub(crate) load_range: Option<(f64, f64)>,
+    /// Functions of the load at each sample, a single 1 where there is none.
+    pub(crate) parts: Vec<Vec<f64>>,
+}
+
+impl Experiment {
+    pub(crate) fn new(recordings: &[Recording], options: &FitOptions) -> Result<Self> {
+        let Some(first) = recordings.first() else {
+            return Err(Error::Fit("there is no recording to fit".into()));
+        };
+        if recordings.len() > MOST_RECORDINGS {
+            return Err(Error::Fit(format!(
+                "{} recordings, where one experiment has {MOST_RECORDINGS} at most",
+                recordings.len()
+            )));
+        }
+        let mut experiment = Self {
+            input: Vec::new(),
+            output: Vec::new(),
+            recordings: Vec::new(),
+            branch: Vec::new(),
+            load_range: None,
+            parts: Vec::new(),
+        };
+        let mut load = first.load.as_ref().map(|_| Vec::new());
+        for recording in recordings {
+            recording.check()?;
+            let start = experiment.input.len();
+            experiment.input.extend_from_slice(&recording.input);
+            experiment.output.extend_from_slice(&recording.output);
+            experiment.recordings.push(start..experiment.input.len());
+            match (&mut load, &recording.load) {
+                (Some(all), Some(load)) => all.extend_from_slice(load),
+                (None, None) => {}
+                _ => {
+                    return Err(Error::Fit(
+                        "some recordings have a load and some have none".into(),
+                    ));
+                }
+            }
+        }
+        experiment.find_branches();
+        match load {
+            None => experiment.parts = vec![vec![1.0; experiment.input.len()]],
+            Some(load) => {
+                let (low, high) = range(&load);
+                // A load that differs by rounding is one load.
+                if high - low <= 1e-9 * high.abs().max(low.abs()) {
+                    return Err(Error::Fit(format!(
+                        "the load is {low} throughout: nothing can be learned of its effect, fit without it"
+                    )));
+                }
+                let (loads, degree) = (different(&load), options.load_degree);
+                if loads <= degree {
+                    let what = format!(
+                        "{loads} different loads cannot tell weights of order {degree} in the load"
+                    );
+                    let most = Setting::number("load-degree", loads - 1);
+                    let remedy = Remedy::new("take {} at most", [most]);
+                    return Err(Error::Fit(what).remedied(remedy));
+                }
+                experiment.load_range = Some((low, high));
+                let functions = load
+                    .iter()
+                    .map(|f| bernstein(options.load_degree, (f - low) / (high - low)));
+                let mut parts = vec![Vec::with_capacity(load.len()); options.load_degree + 1];
+                for values in functions {
+                    for (part, value) in parts.iter_mut().zip(values) {
+                        part.push(value);
+                    }
+                }
+                experiment.parts = parts;
+            }
+        }
+        Ok(experiment)
+    }
+
+    /// A branch ends where the input turns by more than noise.
+    fn find_branches(&mut self) {
+        let band = noise_band(&self.input);
+        for range in &self.recordings {
+            let before = self.branches();
+            let own = branches(&self.input[range.clone()], band);
+            self.branch.extend(own.iter().map(|branch| before + branch));
+        }
+    }
+
+    pub(crate) fn branches(&self) -> usize {
+        self.branch.last().map_or(0, |last| last + 1)
+    }
+
+    /// For each sample kept the unit that it stands or falls with: its branch, or, where there are fewer
+    /// than `enough` branches, a part of one, twice as many at least; how many units there are; and whether they are whole branches.
+    pub(crate) fn units(
+        &self,
+        kept: Option<&[f64]>,
+        enough: usize,
+    ) -> (Vec<Option<usize>>, usize, bool) {
+        let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
+        let mut unit = vec![None; self.input.len()];
+        let (mut units, mut last) = (0, None);
+        for (n, &branch) in self.branch.iter().enumerate() {
+            if is_kept(n) {
+                units += usize::from(last != Some(branch));
+                last = Some(branch);
+                unit[n] = Some(units - 1);
+            }
+        }
+        if units >= enough {
+            return (unit, units, true);
+        }
+        let parts = (2 * enough).div_ceil(units.max(1));
+        // By travel of the input, not by samples: these may rest.
+        let mut travel = vec![0.0; units];
+        let mut at = vec![0.0; unit.len()];
+        for n in 0..unit.len() {
+            if let Some(u) = unit[n] {
+                if n > 0 && unit[n - 1] == Some(u) {
+                    travel[u] += (self.input[n] - self.input[n - 1]).abs();
+                }
+                at[n] = travel[u];
+            }
+        }
+        for (unit, at) in unit.iter_mut().zip(at) {
+            if let Some(u) = unit {
+                let part = (parts as f64 * at / travel[*u].max(f64::MIN_POSITIVE)) as usize;
+                *u = *u * parts + part.min(parts - 1);
+            }
+        }
+        (unit, units * parts, false)
+    }
+
+    /// The plane of the options, from the range of all inputs where they leave it open.
+    pub(crate) fn plane(&self, recordings: &[Recording], options: &FitOptions) -> Result<Plane> {
+        check_range(recordings, &self.output, |r| &r.output_quantity.name)?;
+        check_range(recordings, &self.input, |r| &r.input_quantity.name)?;
+        let (low, high) = range(&self.input);
+        let Some((min, max)) = options.range else {
+            return active_plane(low, high, options.levels);
+        };
+        let plane = Plane::new(min, max, options.levels)?;
+        if plane.normalise(low) >= plane.normalise(high) {
+            return Err(Error::Fit(format!(
+                "the input, from {low} to {high}, moves no operator of a plane from {min} to {max}: take another range"
+            )));
+        }
+        Ok(plane)
+    }
+}
+
+/// How many loads there are that differ by more than a thousandth of their range.
+fn different(load: &[f64]) -> usize {
+    let mut sorted = load.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = range(load);
+    let mut last = f64::NEG_INFINITY;
+    let mut count = 0;
+    for load in sorted {
+        if load - last > 1e-3 * (high - low) {
+            count += 1;
+            last = load;
+        }
+    }
+    count
+}
+
+/// Ranges below this have squares of zero.
+const SMALLEST: f64 = 1e-140;
+
+fn check_range(
+    recordings: &[Recording],
+    values: &[f64],
+    name: impl Fn(&Recording) -> &String,
+) -> Result<()> {
+    let (low, high) = range(values);
+    if high - low >= SMALLEST {
+        return Ok(());
+    }
+    Err(Error::Recording {
+        path: recordings[0].source.as_ref().map(|s| s.path.clone()),
+        row: None,
+        column: Some(name(&recordings[0]).clone()),
+        problem: match high > low {
+            true => format!("it moves by {:e} only: use another unit", high - low),
+            false => format!("it is {low} throughout: nothing can be identified from it"),
+        },
+    })
+}
+
+/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is that of the recording's
+/// input: the lowest ridge starts one step below the lowest level.
+///
+/// # Errors
+/// [`Error::Core`] for a number of levels that cannot be, [`Error::Recording`] for an input that never changes.
+pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
+    check_range(std::slice::from_ref(recording), &recording.input, |r| {
+        &r.input_quantity.name
+    })?;
+    let (low, high) = range(&recording.input);
+    active_plane(low, high, levels)
+}
+
+fn active_plane(low: f64, high: f64, levels: usize) -> Result<Plane> {
+    let step = (high - low) / levels.max(1) as f64;
+    let mut plane = Plane::new(low + step, high, levels)?;
+    // Rounding must not leave the lowest input outside.
+    for _ in 0..4 {
+        if plane.bottom() > low {
+            plane = Plane::new(plane.min().next_down(), high, levels)?;
+        }
+    }
+    Ok(plane)
+}

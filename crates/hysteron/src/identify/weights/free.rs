@@ -1,0 +1,91 @@
+//! Columns whose values may have any sign: the output with every operator off, for each function of
+//! the load. They are eliminated: for every choice of weights the best ones follow at once.
+
+use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::regressor::Regressor;
+use crate::error::Result;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+/// `Z`, the free columns at the samples kept, and `(Zᵀ Z)⁻¹`.
+pub(crate) struct FreeColumns {
+    columns: Vec<Vec<f64>>,
+    inverse: Vec<Vec<f64>>,
+}
+
+impl FreeColumns {
+    /// None at all.
+    pub(crate) fn none() -> Self {
+        Self {
+            columns: Vec::new(),
+            inverse: Vec::new(),
+        }
+    }
+
+    /// `parts` are the functions of the load; `kept` is 1 at samples that count and 0 at others.
+    pub(crate) fn new(parts: &[Vec<f64>], kept: Option<&[f64]>) -> Result<Self> {
+        let columns: Vec<Vec<f64>> = parts
+            .iter()
+            .map(|part| match kept {
+                Some(kept) => part.iter().zip(kept).map(|(z, kept)| z * kept).collect(),
+                None => part.clone(),
+            })
+            .collect();
+        let count = columns.len();
+        let product = |a: usize, b: usize| dot(&columns[a], &columns[b]);
+        let mut gram = Mat::from_fn(count, count, product);
+        // Few loads may not tell the functions apart: a little ridge takes the smallest ones then.
+        for n in 0..count {
+            gram[(n, n)] = gram[(n, n)] * (1.0 + 1e-14) + f64::MIN_POSITIVE;
+        }
+        let factor = gram
+            .llt(Side::Lower)
+            .map_err(|_| super::solve::not_definite())?;
+        let inverse = factor.solve(&Mat::<f64>::identity(count, count));
+        let inverse = (0..count)
+            .map(|a| (0..count).map(|b| inverse[(a, b)]).collect())
+            .collect();
+        Ok(Self { columns, inverse })
+    }
+
+    /// The best values for `residual`, and takes them off it.
+    pub(crate) fn take_off(&self, residual: &mut [f64]) -> Vec<f64> {
+        let products: Vec<f64> = self.columns.iter().map(|z| dot(z, residual)).collect();
+        let values: Vec<f64> = self.inverse.iter().map(|row| dot(row, &products)).collect();
+        for (z, value) in self.columns.iter().zip(&values) {
+            for (r, z) in residual.iter_mut().zip(z) {
+                *r -= value * z;
+            }
+        }
+        values
+    }
+
+    /// Takes `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` off the Gram matrix.
+    pub(crate) fn eliminate_from(
+        &self,
+        gram: &mut [f64],
+        regressor: &Regressor,
+        experiment: &Experiment,
+    ) -> Result<()> {
+        let sums: Vec<Vec<f64>> = self
+            .columns
+            .iter()
+            .map(|z| regressor.adjoint(experiment, z))
+            .collect::<Result<_>>()?;
+        let count = regressor.columns().len();
+        for (a, left) in sums.iter().enumerate() {
+            for (b, right) in sums.iter().enumerate() {
+                let factor = self.inverse[a][b];
+                for (row, x) in gram.chunks_exact_mut(count).zip(left) {
+                    let scale = factor * x;
+                    row.iter_mut().zip(right).for_each(|(g, y)| *g -= scale * y);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

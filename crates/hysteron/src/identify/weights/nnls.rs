@@ -1,0 +1,202 @@
+//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson (1974),
+//! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
+//! and with a factor that is updated, not made anew.
+
+use crate::progress::Watch;
+use crate::identify::weights::cholesky::Cholesky;
+use crate::error::{Error, Result};
+
+/// Of the variables above zero, the part by which a step may increase them: more at once save
+/// gradients, but many of them leave again.
+const STRIDE: usize = 8;
+
+/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
+/// definite, `N × N`, row by row. The objective never rises; where rounding keeps it from falling, the number of steps ends it.
+pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], watch: Watch<'_>) -> Result<()> {
+    let count = b.len();
+    let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+    // Rounding of sums of `count` products: below this a gradient is zero.
+    let slack = 1e-13 * size;
+    let row = |n: usize| &a[n * count..(n + 1) * count];
+    let mut set = FreeSet::default();
+    let above: Vec<usize> = (0..count).filter(|&n| x[n] > 0.0).collect();
+    match Cholesky::of(above.len(), |i, j| a[above[i] * count + above[j]]) {
+        Some(factor) => {
+            set.factor = factor;
+            set.members = above;
+        }
+        // What depends on the others has to go: it would never be looked at again.
+        None => {
+            for n in above {
+                if !set.take(n, row(n)) {
+                    x[n] = 0.0;
+                }
+            }
+        }
+    }
+    set.descend(b, x);
+    // Variables that did not help are left alone until others have.
+    let mut tried = vec![false; count];
+    for _ in 0..30 * count + 100 {
+        watch("weights", set.members.len() as f64 / count as f64)?;
+        let mut gradient = b.to_vec();
+        for &n in &set.members {
+            for (g, a) in gradient.iter_mut().zip(row(n)) {
+                *g -= a * x[n];
+            }
+        }
+        let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > slack;
+        let mut wanted: Vec<usize> = (0..count).filter(outside).collect();
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        // The steepest first, in units of each variable's own curvature.
+        let steepness = |n: &usize| gradient[*n] / row(*n)[*n].sqrt();
+        wanted.sort_by(|m, n| steepness(n).total_cmp(&steepness(m)));
+        wanted.truncate(1 + set.members.len() / STRIDE);
+        for &n in &wanted {
+            set.take(n, row(n));
+        }
+        let moved = set.descend(b, x);
+        if moved {
+            tried.fill(false);
+        }
+        for &n in wanted.iter().filter(|&&n| x[n] == 0.0) {
+            tried[n] = true;
+        }
+    }
+    Err(Error::Fit(
+        "the non-negative solution was not found: the problem is too badly conditioned, take fewer levels".into(),
+    ))
+}
+
+/// The variables that are free to be above zero, and the factor of their part of the matrix.
+#[derive(Default)]
+struct FreeSet {
+    members: Vec<usize>,
+    factor: Cholesky,
+}
+
+impl FreeSet {
+    /// Takes a variable in, unless it depends on those that are in already; says whether it did.
+    fn take(&mut self, n: usize, row: &[f64]) -> bool {
+        let column = self.members.iter().map(|&m| row[m]).collect();
+        let taken = self.factor.append(column, row[n]);
+        if taken {
+            self.members.push(n);
+        }
+        taken
+    }
+
+    /// Goes to the minimum over the free variables, dropping those that meet zero on the way. Says
+    /// whether any variable moved.
+    fn descend(&mut self, b: &[f64], x: &mut [f64]) -> bool {
+        let mut moved = false;
+        while !self.members.is_empty() {
+            let minimum = self
+                .factor
+                .solve(self.members.iter().map(|&n| b[n]).collect());
+            let towards = || self.members.iter().zip(&minimum);
+            // How far until the first variable meets zero.
+            let reach = |x: f64, z: f64| if x > 0.0 { x / (x - z) } else { 0.0 };
+            let limit = towards()
+                .filter(|(_, z)| **z <= 0.0)
+                .map(|(&n, z)| reach(x[n], *z))
+                .fold(1.0_f64, f64::min);
+            moved |= limit > 0.0;
+            if towards().all(|(_, z)| *z > 0.0) {
+                for (&n, &z) in towards() {
+                    x[n] = z;
+                }
+                return moved;
+            }
+            for k in (0..self.members.len()).rev() {
+                let (n, z) = (self.members[k], minimum[k]);
+                // The same number as above, so that one at least is dropped, whatever the rounding.
+                let meets_zero = z <= 0.0 && reach(x[n], z) <= limit;
+                x[n] += limit * (z - x[n]);
+                if meets_zero {
+                    x[n] = 0.0;
+                    self.members.remove(k);
+                    self.factor.remove(k);
+                }
+            }
+        }
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::pivoting;
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// `Bᵀ B` with `rows` random rows and a ridge; of lower rank where there are fewer rows than columns.
+    fn system(rng: &mut ChaCha8Rng, count: usize, rows: usize, ridge: f64) -> (Vec<f64>, Vec<f64>) {
+        let b: Vec<Vec<f64>> = (0..rows)
+            .map(|_| (0..count).map(|_| rng.random_range(0.0..1.0)).collect())
+            .collect();
+        let y: Vec<f64> = (0..rows).map(|_| rng.random_range(-0.5..1.0)).collect();
+        let mut a = vec![0.0; count * count];
+        for i in 0..count {
+            for j in 0..count {
+                a[i * count + j] = b.iter().map(|row| row[i] * row[j]).sum();
+            }
+            a[i * count + i] += ridge;
+        }
+        let right = (0..count).map(|i| b.iter().zip(&y).map(|(row, y)| row[i] * y).sum());
+        (a, right.collect())
+    }
+
+    /// The largest breach of the conditions of Karush, Kuhn and Tucker, relative to `b`.
+    fn breach(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
+        let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+        let each = a.chunks(b.len()).zip(b).zip(x).map(|((row, b), &own)| {
+            let gradient = b - row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
+            assert!(own >= 0.0);
+            if own > 0.0 {
+                gradient.abs()
+            } else {
+                gradient.max(0.0)
+            }
+        });
+        each.fold(0.0, f64::max) / size
+    }
+
+    #[test]
+    fn both_methods_meet_the_conditions_of_a_minimum_from_any_start() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let mut ended = 0;
+        for round in 0..200 {
+            let count = rng.random_range(1..60);
+            let rows = rng.random_range(1..80);
+            // From well conditioned to what rounding alone makes definite.
+            let ridge = [1e-1, 1e-5, 1e-9][round % 3];
+            let (a, b) = system(&mut rng, count, rows, ridge);
+            // Starts with zeros, tiny numbers and large ones: at the boundary a step may have no length.
+            let start: Vec<f64> = (0..count)
+                .map(|_| [0.0, 0.0, 1e-300, 1e-12, 1.0][rng.random_range(0..5)])
+                .collect();
+            let mut x = start.clone();
+            solve(&a, &b, &mut x, &|_, _| Ok(())).unwrap();
+            // Rounding of 80 products, amplified by factors of the free part.
+            assert!(breach(&a, &b, &x) < 1e-6, "round {round}");
+            let (other, exact) = pivoting::minimum(&a, &b, &start);
+            if exact {
+                ended += 1;
+                assert!(breach(&a, &b, &other) < 1e-6, "round {round}, pivoting");
+            }
+            if ridge > 0.01 {
+                assert!(
+                    exact,
+                    "round {round}: nothing keeps pivoting from its end here"
+                );
+            }
+        }
+        assert!(ended > 150, "pivoting ended in {ended} of 200 rounds");
+    }
+}

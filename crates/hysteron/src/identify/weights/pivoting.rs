@@ -1,0 +1,72 @@
+//! Block principal pivoting for non-negative least squares (Portugal, Júdice and Vicente 1994; Kim and Park
+//! 2011): a whole block of variables changes sides at once, each time with a new factor. Where most
+//! variables end above zero, as with smooth weights, this takes some ten factors, where an active set
+//! takes the variables in one by one.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+/// Exchanges of whole blocks that may fail to reduce the infeasible variables before it gives up.
+const PATIENCE: usize = 5;
+
+/// Most factors.
+const MOST: usize = 50;
+
+/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, beginning with the variables above zero in `x`; or, and then it says
+/// false, a point near it where rounding or cycling stopped it.
+pub(crate) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
+    let count = b.len();
+    let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();
+    let mut best = (usize::MAX, x.to_vec());
+    let mut patience = PATIENCE;
+    for _ in 0..MOST {
+        let members: Vec<usize> = (0..count).filter(|n| above[*n]).collect();
+        let Some(values) = free_minimum(a, b, &members) else {
+            break;
+        };
+        let mut gradient = b.to_vec();
+        for (&n, value) in members.iter().zip(&values) {
+            let row = &a[n * count..(n + 1) * count];
+            gradient
+                .iter_mut()
+                .zip(row)
+                .for_each(|(g, a)| *g -= a * value);
+        }
+        let slack = 1e-12 * b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+        let wrong_below = (0..count).filter(|&n| !above[n] && gradient[n] > slack);
+        let mut wrong: Vec<usize> = wrong_below.collect();
+        let below = members.iter().zip(&values).filter(|(_, x)| **x < 0.0);
+        wrong.extend(below.map(|(n, _)| *n));
+        if wrong.len() < best.0 {
+            let mut x = vec![0.0; count];
+            for (&n, &value) in members.iter().zip(&values) {
+                x[n] = value.max(0.0);
+            }
+            best = (wrong.len(), x);
+            patience = PATIENCE;
+        } else if patience == 0 {
+            break;
+        } else {
+            patience -= 1;
+        }
+        if wrong.is_empty() {
+            break;
+        }
+        for n in wrong {
+            above[n] = !above[n];
+        }
+    }
+    (best.1, best.0 == 0)
+}
+
+/// The minimum over the members alone, of either sign.
+fn free_minimum(a: &[f64], b: &[f64], members: &[usize]) -> Option<Vec<f64>> {
+    if members.is_empty() {
+        return Some(Vec::new());
+    }
+    let element = |i: usize, j: usize| a[members[i] * b.len() + members[j]];
+    let size = members.len();
+    let factor = Mat::from_fn(size, size, element).llt(Side::Lower).ok()?;
+    let x = factor.solve(&Mat::from_fn(size, 1, |n, _| b[members[n]]));
+    Some((0..size).map(|n| x[(n, 0)]).collect())
+}

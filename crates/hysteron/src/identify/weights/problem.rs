@@ -1,0 +1,207 @@
+//! A fit put as a linear problem: checked options, regressor, target, and the choice of the sign.
+
+use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::solve::{NormalEquations, STEPS, Solution};
+use crate::identify::options::FitOptions;
+use crate::model::{Solver, Start};
+use crate::progress::Watch;
+use crate::error::{Error, Result};
+use crate::model::{LoadPart, Sign};
+use hysteron_core::Operator;
+use crate::recording::Recording;
+
+/// Most memory that the Gram matrix may take.
+const GRAM_BYTES: u128 = 4 << 30;
+
+pub(crate) struct Problem {
+    pub(crate) experiment: Experiment,
+    pub(crate) regressor: Regressor,
+    pub(crate) options: FitOptions,
+}
+
+/// The best weights, with the sign that they are best with.
+pub(crate) struct Fitted {
+    pub(crate) solution: Solution,
+    pub(crate) sign: Sign,
+}
+
+impl Problem {
+    pub(crate) fn new(recordings: &[Recording], options: &FitOptions) -> Result<Self> {
+        check(options)?;
+        let experiment = Experiment::new(recordings, options)?;
+        if options.offset.is_some() && experiment.load_range.is_some() {
+            return Err(Error::Fit(
+                "an offset that is given cannot depend on the load: leave one of them out".into(),
+            ));
+        }
+        let plane = experiment.plane(recordings, options)?;
+        let sides = if options.start == Start::Unknown {
+            2
+        } else {
+            1
+        };
+        check_gram(plane.operators() * experiment.parts.len() * sides)?;
+        let regressor = Regressor::new(plane, options.operator, &experiment, options.start)?;
+        Ok(Self {
+            experiment,
+            regressor,
+            options: options.clone(),
+        })
+    }
+
+    /// The output with the sign turned so that weights from zero on fit it, without a known offset.
+    pub(crate) fn target(&self, sign: Sign) -> Vec<f64> {
+        let offset = self.options.offset.unwrap_or(0.0);
+        let turned = |y: &f64| sign.factor() * (y - offset);
+        self.experiment.output.iter().map(turned).collect()
+    }
+
+    pub(crate) fn free(&self, kept: Option<&[f64]>) -> Result<FreeColumns> {
+        match self.options.offset {
+            Some(_) => Ok(FreeColumns::none()),
+            None => FreeColumns::new(&self.experiment.parts, kept),
+        }
+    }
+
+    /// `A x` and the free columns at every sample, whether it was kept or not.
+    pub(crate) fn predict(&self, solution: &Solution) -> Result<Vec<f64>> {
+        let mut output = self.regressor.forward(&self.experiment, &solution.x)?;
+        for (part, value) in self.experiment.parts.iter().zip(&solution.free) {
+            output
+                .iter_mut()
+                .zip(part)
+                .for_each(|(y, z)| *y += value * z);
+        }
+        Ok(output)
+    }
+
+    /// Offset and weights for each function of the load, from states in `[0, 1]` to the operator's own outputs.
+    pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
+        let weights = self.regressor.weights(x).into_iter().enumerate();
+        let part = |(part, mut weights): (usize, Vec<f64>)| {
+            let identified = sign.factor() * free.get(part).copied().unwrap_or(0.0);
+            let mut offset = self.options.offset.unwrap_or(identified);
+            if self.options.operator != Operator::Mkp {
+                // μ γ = (μ/2) (2γ − 1) + μ/2
+                weights.iter_mut().for_each(|mu| *mu *= 0.5);
+                offset += sign.factor() * weights.iter().sum::<f64>();
+            }
+            LoadPart { offset, weights }
+        };
+        weights.map(part).collect()
+    }
+
+    /// Offset and weights, with a load those at the middle of its range.
+    pub(crate) fn at_middle(&self, x: &[f64], free: &[f64], sign: Sign) -> LoadPart {
+        LoadPart::at_middle(&self.load_parts(x, free, sign))
+    }
+
+    /// The best weights over the samples kept (all where `None`).
+    pub(crate) fn solve(&mut self, kept: Option<&[f64]>, watch: Watch<'_>) -> Result<Fitted> {
+        let free = self.free(kept)?;
+        loop {
+            check_gram(self.regressor.columns().len())?;
+            let (fitted, slopes) = {
+                let equations = NormalEquations::new(
+                    &self.regressor,
+                    &self.experiment,
+                    &free,
+                    kept,
+                    self.options.smooth,
+                    watch,
+                )?;
+                let fitted = self.best_sign(&equations, watch)?;
+                let slopes = equations.slopes(&fitted.solution.x);
+                (fitted, slopes)
+            };
+            // Rounding of a gradient: what the solver takes for zero.
+            let residual = &fitted.solution.residual;
+            let slack = 1e-9 * residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+            if self.options.solver == Solver::Ols
+                || !self
+                    .regressor
+                    .take_missing(&self.experiment, residual, &slopes, slack)?
+            {
+                return Ok(fitted);
+            }
+        }
+    }
+
+    fn best_sign(&self, equations: &NormalEquations<'_>, watch: Watch<'_>) -> Result<Fitted> {
+        let signs = match self.options.sign {
+            Some(sign) => vec![sign],
+            // Without a constraint both signs give the same output.
+            None if self.options.solver == Solver::Ols => vec![Sign::Positive],
+            None => vec![Sign::Positive, Sign::Negative],
+        };
+        let mut best: Option<Fitted> = None;
+        for sign in signs {
+            let solution =
+                equations.solve(&self.target(sign), self.options.solver, None, STEPS, watch)?;
+            if best
+                .as_ref()
+                .is_none_or(|best| solution.objective < best.solution.objective)
+            {
+                best = Some(Fitted { solution, sign });
+            }
+        }
+        let mut fitted = best.ok_or_else(|| Error::Fit("no sign to try".into()))?;
+        // Weights mostly below zero say that the output falls: turn both round.
+        if self.options.sign.is_none() && fitted.solution.x.iter().sum::<f64>() < 0.0 {
+            let Solution {
+                x, free, residual, ..
+            } = &mut fitted.solution;
+            for values in [x, free, residual] {
+                values.iter_mut().for_each(|v| *v = -*v);
+            }
+            fitted.sign = Sign::Negative;
+        }
+        Ok(fitted)
+    }
+}
+
+/// That the Gram matrix of so many columns can be had.
+pub(crate) fn check_gram(columns: usize) -> Result<()> {
+    let bytes = 8 * (columns as u128).pow(2);
+    if bytes <= GRAM_BYTES {
+        return Ok(());
+    }
+    Err(Error::Fit(format!(
+        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
+        bytes as f64 / f64::from(1 << 30),
+        GRAM_BYTES >> 30
+    )))
+}
+
+fn check(options: &FitOptions) -> Result<()> {
+    let FitOptions {
+        offset,
+        smooth,
+        load_degree,
+        bootstrap,
+        ..
+    } = options;
+    if let Some(offset) = offset.filter(|offset| offset.is_nan() || offset.abs() > 1e140) {
+        return Err(Error::Fit(format!(
+            "the offset {offset} is not a number to work with"
+        )));
+    }
+    if !(*smooth >= 0.0 && *smooth <= 1e6) {
+        return Err(Error::Fit(format!(
+            "the smoothness {smooth} is not between 0 and 1e6"
+        )));
+    }
+    if *load_degree > 5 {
+        return Err(Error::Fit(format!(
+            "weights of order {load_degree} in the load: take 5 at most"
+        )));
+    }
+    if *bootstrap > 10_000 {
+        return Err(Error::Fit(format!(
+            "{bootstrap} replicates: take 10000 at most"
+        )));
+    }
+    Ok(())
+}

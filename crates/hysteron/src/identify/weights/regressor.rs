@@ -1,0 +1,338 @@
+//! The whole linear problem of an experiment: several recordings, each from its own start, and weights
+//! that may depend on the load.
+//!
+//! A **column** is one operator with a share of its weight that starts on in some recordings and off in
+//! the others. With a known start there is one column an operator. With an unknown one, an operator
+//! that the first sample leaves undetermined has weight times initial state `ν` between 0 and `μ`;
+//! since `Φ_off μ + (Φ_on − Φ_off) ν = Φ_off (μ − ν) + Φ_on ν`, that is a column starting off and one
+//! starting on, both with weights from zero on. Over several recordings the set `0 ≤ ν_s ≤ μ` is the
+//! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
+
+use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
+use crate::model::Start;
+use crate::progress::Watch;
+use hysteron_core::Operator;
+use crate::model::Plane;
+use crate::error::Result;
+use std::ops::Range;
+
+/// Most recordings in one experiment: a pattern of starts has a bit for each.
+pub(crate) const MOST_RECORDINGS: usize = 64;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Column {
+    /// Which of the functions of the load it is multiplied with.
+    pub(crate) part: usize,
+    /// Which operator, in the order of the weights.
+    pub(crate) operator: usize,
+    /// Bit `s`: it starts on in recording `s`.
+    on: u64,
+}
+
+impl Column {
+    /// The column of an operator that starts off.
+    #[cfg(test)]
+    pub(crate) fn known(part: usize, operator: usize) -> Self {
+        let on = 0;
+        Self { part, operator, on }
+    }
+
+    fn initial_in(&self, recording: usize) -> Initial {
+        if self.on >> recording & 1 == 1 {
+            Initial::On
+        } else {
+            Initial::Off
+        }
+    }
+}
+
+/// The columns; what is asked of them is asked for the samples of an experiment.
+pub(crate) struct Regressor {
+    form: SparseForm,
+    /// For each operator, bit `s`: the first sample of recording `s` leaves its state open. Empty where
+    /// the start is known.
+    open: Vec<u64>,
+    columns: Vec<Column>,
+    /// Operators whose state the first sample of some recording leaves open.
+    pub(crate) open_at_start: usize,
+}
+
+impl Regressor {
+    pub(crate) fn new(
+        plane: Plane,
+        operator: Operator,
+        experiment: &Experiment,
+        start: Start,
+    ) -> Result<Self> {
+        let form = SparseForm::new(plane, operator)?;
+        let mut regressor = Self {
+            form,
+            open: Vec::new(),
+            open_at_start: 0,
+            columns: Vec::new(),
+        };
+        let on = if start == Start::On { u64::MAX } else { 0 };
+        let operators = regressor.form.operators();
+        let all =
+            |on| move |part| (0..operators).map(move |operator| Column { part, operator, on });
+        let parts = 0..experiment.parts.len();
+        regressor.columns = parts.clone().flat_map(all(on)).collect();
+        let open = regressor.undetermined(experiment)?;
+        regressor.open_at_start = open.iter().filter(|on| **on != 0).count();
+        if start == Start::Unknown {
+            let on = |part| {
+                let some = open.iter().enumerate().filter(|(_, on)| **on != 0);
+                some.map(move |(operator, &on)| Column { part, operator, on })
+            };
+            regressor.columns.extend(parts.flat_map(on));
+            regressor.open = open;
+        }
+        Ok(regressor)
+    }
+
+    /// For each operator, in which recordings the first sample leaves its state open.
+    fn undetermined(&self, experiment: &Experiment) -> Result<Vec<u64>> {
+        let mut open = vec![0; self.form.operators()];
+        for (s, range) in experiment.recordings.iter().enumerate() {
+            let parts = self.form.open(experiment.input[range.start])?;
+            for (open, part) in open.iter_mut().zip(parts) {
+                *open |= u64::from(part > OPEN) << s;
+            }
+        }
+        Ok(open)
+    }
+
+    fn unknown_start(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    pub(crate) fn plane(&self) -> &Plane {
+        self.form.plane()
+    }
+
+    pub(crate) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Functions of the load.
+    pub(crate) fn parts(&self) -> usize {
+        self.columns.iter().map(|c| c.part + 1).max().unwrap_or(0)
+    }
+
+    /// The weights of each part, all starts together.
+    pub(crate) fn weights(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let mut weights = vec![vec![0.0; self.form.operators()]; self.parts()];
+        for (column, x) in self.columns.iter().zip(x) {
+            weights[column.part][column.operator] += x;
+        }
+        weights
+    }
+
+    /// `A x` at every sample.
+    pub(crate) fn forward(&self, experiment: &Experiment, x: &[f64]) -> Result<Vec<f64>> {
+        let mut output = vec![0.0; experiment.input.len()];
+        for (s, range) in experiment.recordings.iter().enumerate() {
+            for (part, values) in experiment.parts.iter().enumerate() {
+                for from in [Initial::Off, Initial::On] {
+                    let mut weights = vec![0.0; self.form.operators()];
+                    let mut any = false;
+                    for (column, &x) in self.columns.iter().zip(x) {
+                        if column.part == part && column.initial_in(s) == from && x != 0.0 {
+                            weights[column.operator] += x;
+                            any = true;
+                        }
+                    }
+                    if any {
+                        let run =
+                            self.form
+                                .forward(&weights, &experiment.input[range.clone()], from)?;
+                        for (n, h) in range.clone().zip(run) {
+                            output[n] += values[n] * h;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(output)
+    }
+
+    /// `Aᵀ r`.
+    pub(crate) fn adjoint(&self, experiment: &Experiment, residual: &[f64]) -> Result<Vec<f64>> {
+        let mut result = vec![0.0; self.columns.len()];
+        // Recordings that all columns start alike in share their sums.
+        for recordings in self.alike(experiment) {
+            let products = self.products(experiment, recordings.clone(), residual)?;
+            for (result, column) in result.iter_mut().zip(&self.columns) {
+                *result += products.of(
+                    column.part,
+                    column.initial_in(recordings.start),
+                    column.operator,
+                );
+            }
+        }
+        Ok(result)
+    }
+
+    /// Runs of recordings in which no column changes its start.
+    fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
+        let count = experiment.recordings.len();
+        // One recording a run, or all in one.
+        let length = if self.unknown_start() {
+            1
+        } else {
+            count.max(1)
+        };
+        (0..count).step_by(length).map(|s| s..s + length).collect()
+    }
+
+    /// Starts that columns have in the recording.
+    fn starts(&self, recording: usize) -> Vec<Initial> {
+        let has = |from: &Initial| {
+            self.columns
+                .iter()
+                .any(|c| c.initial_in(recording) == *from)
+        };
+        [Initial::Off, Initial::On]
+            .into_iter()
+            .filter(has)
+            .collect()
+    }
+
+    fn products(
+        &self,
+        experiment: &Experiment,
+        recordings: Range<usize>,
+        residual: &[f64],
+    ) -> Result<Products> {
+        let starts = self.starts(recordings.start);
+        let mut sums = Vec::new();
+        for values in &experiment.parts {
+            for &from in &starts {
+                let mut w = vec![0.0; self.form.operators()];
+                for range in &experiment.recordings[recordings.clone()] {
+                    let r = |n: usize| values[range.start + n] * residual[range.start + n];
+                    self.form
+                        .add_adjoint(&experiment.input[range.clone()], from, r, &mut w)?;
+                }
+                self.form.operators_of(&mut w);
+                sums.push(w);
+            }
+        }
+        Ok(Products { starts, sums })
+    }
+
+    /// `Aᵀ diag(kept) A`, row by row.
+    pub(crate) fn gram(
+        &self,
+        experiment: &Experiment,
+        kept: Option<&[f64]>,
+        watch: Watch<'_>,
+    ) -> Result<Vec<f64>> {
+        let (operators, count) = (self.form.operators(), self.columns.len());
+        let mut gram = Vec::new();
+        for recordings in self.alike(experiment) {
+            let starts = self.starts(recordings.start);
+            let groups =
+                (0..experiment.parts.len()).flat_map(|p| starts.iter().map(move |f| (p, *f)));
+            let groups: Vec<(usize, Initial)> = groups.collect();
+            for (g, &(p, from)) in groups.iter().enumerate() {
+                for &(q, other) in &groups[g..] {
+                    let mut block = vec![0.0; operators * operators];
+                    for range in &experiment.recordings[recordings.clone()] {
+                        let scale = |n: usize| {
+                            let n = range.start + n;
+                            experiment.parts[p][n]
+                                * experiment.parts[q][n]
+                                * kept.map_or(1.0, |kept| kept[n])
+                        };
+                        let input = &experiment.input[range.clone()];
+                        self.form
+                            .add_outer(input, (from, other), scale, &mut block, watch)?;
+                    }
+                    self.form.gram_of(&mut block);
+                    if groups.len() == 1 && !self.unknown_start() {
+                        return Ok(block);
+                    }
+                    gram.resize(count * count, 0.0);
+                    let members = |part, from| {
+                        let columns = self.columns.iter().enumerate();
+                        columns
+                            .filter(move |(_, c)| {
+                                c.part == part && c.initial_in(recordings.start) == from
+                            })
+                            .map(|(n, c)| (n, c.operator))
+                            .collect::<Vec<_>>()
+                    };
+                    let right = members(q, other);
+                    for (a, i) in members(p, from) {
+                        for &(b, j) in &right {
+                            let value = block[i * operators + j];
+                            gram[a * count + b] += value;
+                            if (p, from) != (q, other) {
+                                gram[b * count + a] += value;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(gram)
+    }
+
+    /// Takes in the columns whose pattern of starts would reduce the error most, one an operator and
+    /// part, where that is by more than `slack`; says whether there were any.
+    ///
+    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns; `slopes` is `P x`, a value a column.
+    pub(crate) fn take_missing(
+        &mut self,
+        experiment: &Experiment,
+        residual: &[f64],
+        slopes: &[f64],
+        slack: f64,
+    ) -> Result<bool> {
+        if !self.unknown_start() || experiment.recordings.len() < 2 {
+            return Ok(false);
+        }
+        let all: Vec<Products> = self
+            .alike(experiment)
+            .into_iter()
+            .map(|recordings| self.products(experiment, recordings, residual))
+            .collect::<Result<_>>()?;
+        let before = self.columns.len();
+        for part in 0..experiment.parts.len() {
+            for operator in 0..self.form.operators() {
+                // The first columns are those that start off, in this order; the penalty does not know of starts.
+                let first = part * self.form.operators() + operator;
+                let (mut on, mut descent) = (0, -slopes[first]);
+                for (s, products) in all.iter().enumerate() {
+                    let [off, started_on] =
+                        [Initial::Off, Initial::On].map(|f| products.of(part, f, operator));
+                    let open = self.open[operator] >> s & 1 == 1;
+                    on |= u64::from(open && started_on > off) << s;
+                    descent += if open { off.max(started_on) } else { off };
+                }
+                let column = Column { part, operator, on };
+                if descent > slack && !self.columns.contains(&column) {
+                    self.columns.push(column);
+                }
+            }
+        }
+        Ok(self.columns.len() > before)
+    }
+}
+
+/// `Φᵀ r` for each part and start.
+struct Products {
+    starts: Vec<Initial>,
+    sums: Vec<Vec<f64>>,
+}
+
+impl Products {
+    fn of(&self, part: usize, from: Initial, operator: usize) -> f64 {
+        let place = self.starts.iter().position(|start| *start == from);
+        place.map_or(f64::NEG_INFINITY, |place| {
+            self.sums[part * self.starts.len() + place][operator]
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! Smoothness of the weights across the plane, in such units that its strength means the same whatever
+//! the number of levels.
+//!
+//! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the plane, and a
+//! line density `ρ = K μ` on the diagonal, where operators have no memory. Penalised are the squares of
+//! both densities' slopes (Tikhonov 1963), `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over neighbours inside and
+//! `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along the diagonal, against the mean squared error.
+
+use crate::identify::weights::regressor::Column;
+use hysteron_core::operator_index;
+
+pub(crate) struct Smoothness {
+    /// Neighbours and the factor of their squared difference.
+    edges: Vec<(usize, usize, f64)>,
+    operators: usize,
+}
+
+impl Smoothness {
+    /// Of strength `lambda`, for the sum of squared errors of `samples`.
+    pub(crate) fn new(levels: usize, lambda: f64, samples: f64) -> Self {
+        let k = levels as f64;
+        let (inside, diagonal) = (lambda * samples * k.powi(4), lambda * samples * k.powi(3));
+        let mut edges = Vec::new();
+        if lambda > 0.0 {
+            for j in 1..=levels {
+                for i in 1..=j {
+                    let here = operator_index(i, j);
+                    if i + 1 < j {
+                        edges.push((here, operator_index(i + 1, j), inside));
+                    }
+                    if i < j && j < levels {
+                        edges.push((here, operator_index(i, j + 1), inside));
+                    }
+                    if i == j && j < levels {
+                        edges.push((here, operator_index(i + 1, j + 1), diagonal));
+                    }
+                }
+            }
+        }
+        Self {
+            edges,
+            operators: operator_index(levels, levels) + 1,
+        }
+    }
+
+    pub(crate) fn is_any(&self) -> bool {
+        !self.edges.is_empty()
+    }
+
+    /// Adds the penalty's matrix to that of the columns.
+    pub(crate) fn add_to(&self, gram: &mut [f64], columns: &[Column]) {
+        if self.edges.is_empty() {
+            return;
+        }
+        let mut members = vec![Vec::new(); self.places(columns)];
+        for (n, column) in columns.iter().enumerate() {
+            members[self.place(column)].push(n);
+        }
+        for part in members.chunks(self.operators) {
+            for &(k, l, factor) in &self.edges {
+                for (a, b, factor) in [
+                    (k, k, factor),
+                    (l, l, factor),
+                    (k, l, -factor),
+                    (l, k, -factor),
+                ] {
+                    for &a in &part[a] {
+                        for &b in &part[b] {
+                            gram[a * columns.len() + b] += factor;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// `P x`.
+    pub(crate) fn times(&self, x: &[f64], columns: &[Column]) -> Vec<f64> {
+        let mut weights = vec![0.0; self.places(columns)];
+        for (column, x) in columns.iter().zip(x) {
+            weights[self.place(column)] += x;
+        }
+        let mut slopes = vec![0.0; weights.len()];
+        for (weights, slopes) in weights
+            .chunks(self.operators)
+            .zip(slopes.chunks_mut(self.operators))
+        {
+            for &(k, l, factor) in &self.edges {
+                let slope = factor * (weights[k] - weights[l]);
+                slopes[k] += slope;
+                slopes[l] -= slope;
+            }
+        }
+        columns.iter().map(|c| slopes[self.place(c)]).collect()
+    }
+
+    fn place(&self, column: &Column) -> usize {
+        column.part * self.operators + column.operator
+    }
+
+    fn places(&self, columns: &[Column]) -> usize {
+        let parts = columns.iter().map(|c| c.part + 1).max().unwrap_or(0);
+        parts * self.operators
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line density `ρ = t` on the diagonal has `∫ ρ'² = 1`.
+    #[test]
+    fn the_diagonal_is_a_line() {
+        for levels in [20, 80] {
+            let k = levels as f64;
+            let columns: Vec<Column> = (0..levels * (levels + 1) / 2)
+                .map(|operator| Column::known(0, operator))
+                .collect();
+            let mut weights = vec![0.0; columns.len()];
+            for i in 1..=levels {
+                weights[operator_index(i, i)] = i as f64 / (k * k);
+            }
+            let slopes = Smoothness::new(levels, 1.0, 1.0).times(&weights, &columns);
+            let value: f64 = weights.iter().zip(&slopes).map(|(w, s)| w * s).sum();
+            // K − 1 of K steps.
+            assert!(
+                (value - (1.0 - 1.0 / k)).abs() < 1e-9,
+                "K = {levels}: {value}"
+            );
+        }
+    }
+
+    /// A density `ρ = α + 2β` has `∫∫ |∇ρ|² = 5/2` on the plane, whatever its levels.
+    #[test]
+    fn strength_does_not_change_with_levels() {
+        for levels in [20, 80] {
+            let k = levels as f64;
+            let columns: Vec<Column> = (0..levels * (levels + 1) / 2)
+                .map(|operator| Column::known(0, operator))
+                .collect();
+            let mut weights = Vec::new();
+            for j in 1..=levels {
+                for i in 1..=j {
+                    let inside = (i as f64 + 2.0 * j as f64) / k.powi(3);
+                    weights.push(if i < j { inside } else { 0.0 });
+                }
+            }
+            let penalty = Smoothness::new(levels, 1.0, 1.0);
+            let slopes = penalty.times(&weights, &columns);
+            let value: f64 = weights.iter().zip(&slopes).map(|(w, s)| w * s).sum();
+            // The sum leaves out a strip of one step along the edges: 5 ΔT of the integral at most.
+            assert!((value / 2.5 - 1.0).abs() < 5.0 / k, "K = {levels}: {value}");
+            let mut gram = vec![0.0; weights.len().pow(2)];
+            penalty.add_to(&mut gram, &columns);
+            for (row, slope) in gram.chunks(weights.len()).zip(&slopes) {
+                let product: f64 = row.iter().zip(&weights).map(|(a, b)| a * b).sum();
+                // Sums of six products of about K.
+                assert!((product - slope).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Least squares on the normal equations, made exact by refinement against the sparse form.
+//!
+//! The Gram matrix is singular as a rule: operators that were never excited, or always together. A
+//! small ridge makes it definite, and proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar 1976)
+//! take the ridge's effect away again: the residual of each step is computed by a run of the model,
+//! not from the Gram matrix. From zero on they lead to the solution of smallest norm.
+
+use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::smoothness::Smoothness;
+use crate::model::Solver;
+use crate::progress::Watch;
+use crate::identify::weights::{nnls, pivoting};
+use crate::error::{Error, Result};
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
+
+/// Ridge relative to the mean of the Gram matrix' diagonal: small beside singular values that matter,
+/// large beside its rounding.
+const RIDGE: f64 = 1e-11;
+
+/// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays here.
+const ROUNDING: f64 = 1e-13;
+
+/// Proximal steps end when one improves the objective by less than this part of it.
+const ENOUGH: f64 = 1e-12;
+
+/// Or when the error is this small beside the data: nothing but rounding is left.
+const NOTHING_LEFT: f64 = 1e-26;
+
+/// Most proximal steps of a fit.
+pub(crate) const STEPS: usize = 200;
+
+/// Column values and what they leave.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    /// One value a column of the regressor.
+    pub(crate) x: Vec<f64>,
+    /// Values of the free columns.
+    pub(crate) free: Vec<f64>,
+    /// What is left at every sample, zero where it was not kept.
+    pub(crate) residual: Vec<f64>,
+    /// Sum of squared residuals and penalty.
+    pub(crate) objective: f64,
+}
+
+/// `Aᵀ A` of the samples kept, free columns eliminated, with penalty and ridge.
+pub(crate) struct NormalEquations<'a> {
+    regressor: &'a Regressor,
+    experiment: &'a Experiment,
+    free: &'a FreeColumns,
+    kept: Option<&'a [f64]>,
+    smoothness: Smoothness,
+    /// With ridge, `C × C`, row by row.
+    pub(crate) matrix: Vec<f64>,
+    /// The ridge.
+    pub(crate) ridge: f64,
+}
+
+impl<'a> NormalEquations<'a> {
+    /// `kept` is 1 at samples that count and 0 at others; `smooth` the strength of the penalty.
+    pub(crate) fn new(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        smooth: f64,
+        watch: Watch<'_>,
+    ) -> Result<Self> {
+        let gram = regressor.gram(experiment, kept, watch)?;
+        Self::of_gram(regressor, experiment, free, kept, smooth, gram)
+    }
+
+    /// As [`NormalEquations::new`], from the Gram matrix of the samples kept.
+    pub(crate) fn of_gram(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        smooth: f64,
+        mut matrix: Vec<f64>,
+    ) -> Result<Self> {
+        let count = regressor.columns().len();
+        let largest = (0..count)
+            .map(|n| matrix[n * count + n])
+            .fold(0.0, f64::max);
+        free.eliminate_from(&mut matrix, regressor, experiment)?;
+        let samples = kept.map_or(experiment.input.len() as f64, |kept| kept.iter().sum());
+        let smoothness = Smoothness::new(regressor.plane().levels(), smooth, samples);
+        smoothness.add_to(&mut matrix, regressor.columns());
+        let trace: f64 = (0..count).map(|n| matrix[n * count + n]).sum();
+        let ridge = (RIDGE * trace / count as f64 + ROUNDING * largest).max(f64::MIN_POSITIVE);
+        for n in 0..count {
+            matrix[n * count + n] += ridge;
+        }
+        Ok(Self {
+            regressor,
+            experiment,
+            free,
+            kept,
+            smoothness,
+            matrix,
+            ridge,
+        })
+    }
+
+    /// The values that bring `A x`, with the best free columns, closest to `target`, from `start` on, in `steps` proximal steps at most.
+    pub(crate) fn solve(
+        &self,
+        target: &[f64],
+        solver: Solver,
+        start: Option<&[f64]>,
+        steps: usize,
+        watch: Watch<'_>,
+    ) -> Result<Solution> {
+        let count = self.regressor.columns().len();
+        let full = match solver {
+            Solver::Ols => Some(self.factor()?),
+            Solver::Nnls => None,
+        };
+        let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
+        let mut best = self.solution(target, start)?;
+        let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
+        for _ in 0..steps {
+            watch("weights", 0.0)?;
+            let gradient = self.descent(&best)?;
+            let x = match &full {
+                Some(_) => {
+                    let step = self.minimum(&gradient, &best.x, full.as_ref(), watch)?;
+                    best.x.iter().zip(step).map(|(x, d)| x + d).collect()
+                }
+                None => {
+                    let moved = self.times(&best.x);
+                    let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
+                    self.minimum(&right, &best.x, None, watch)?
+                }
+            };
+            let next = self.solution(target, x)?;
+            let (before, after) = (best.objective, next.objective);
+            if after < before {
+                best = next;
+            }
+            if after >= before * (1.0 - ENOUGH) || after <= nothing {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The minimum of `½ xᵀ M x − bᵀ x`: with a factor of `M` over all `x`, without one over those from zero on,
+    /// beginning at `start`.
+    pub(crate) fn minimum(
+        &self,
+        right: &[f64],
+        start: &[f64],
+        factor: Option<&Llt<f64>>,
+        watch: Watch<'_>,
+    ) -> Result<Vec<f64>> {
+        if let Some(factor) = factor {
+            let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
+            return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
+        }
+        // Smooth weights are not zero as a rule.
+        let (mut x, exact) = match self.smoothness.is_any() {
+            true => pivoting::minimum(&self.matrix, right, start),
+            false => (start.to_vec(), false),
+        };
+        if !exact {
+            nnls::solve(&self.matrix, right, &mut x, watch)?;
+        }
+        Ok(x)
+    }
+
+    /// The factor of the whole matrix, for weights of either sign.
+    pub(crate) fn factor(&self) -> Result<Llt<f64>> {
+        let count = self.regressor.columns().len();
+        let element = |i: usize, j: usize| self.matrix[i * count + j];
+        let matrix = Mat::from_fn(count, count, element);
+        matrix.llt(Side::Lower).map_err(|_| not_definite())
+    }
+
+    /// What `x` leaves of `target`, with the best free columns taken off.
+    fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
+        let modelled = self.regressor.forward(self.experiment, &x)?;
+        let mut residual: Vec<f64> = target.iter().zip(&modelled).map(|(y, h)| y - h).collect();
+        if let Some(kept) = self.kept {
+            residual
+                .iter_mut()
+                .zip(kept)
+                .for_each(|(r, kept)| *r *= kept);
+        }
+        let free = self.free.take_off(&mut residual);
+        let slopes = self.slopes(&x);
+        let penalty: f64 = x.iter().zip(&slopes).map(|(x, s)| x * s).sum();
+        let objective = residual.iter().map(|r| r * r).sum::<f64>() + penalty;
+        Ok(Solution {
+            x,
+            free,
+            residual,
+            objective,
+        })
+    }
+
+    /// `P x`, half the slope of the penalty.
+    pub(crate) fn slopes(&self, x: &[f64]) -> Vec<f64> {
+        self.smoothness.times(x, self.regressor.columns())
+    }
+
+    /// Half the descent of the objective: `Aᵀ r − P x`.
+    pub(crate) fn descent(&self, at: &Solution) -> Result<Vec<f64>> {
+        let mut descent = self.regressor.adjoint(self.experiment, &at.residual)?;
+        let slopes = self.slopes(&at.x);
+        descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
+        Ok(descent)
+    }
+
+    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
+        let row_times = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
+        self.matrix
+            .chunks_exact(vector.len())
+            .map(row_times)
+            .collect()
+    }
+}
+
+pub(crate) fn not_definite() -> Error {
+    Error::Fit(
+        "the normal equations cannot be factorised: the data hold values too large or too small to work with"
+            .into(),
+    )
+}

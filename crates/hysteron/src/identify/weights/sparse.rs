@@ -1,0 +1,373 @@
+//! The sparse form of the regressor matrix, `Φ = W S`: `S` the prefix sums of the Everett table, a row
+//! of `W` the few triangle factors of a sample's turning points. `Φ` itself is never formed.
+//!
+//! Along a branch only three factors of a row change; those of the turning points before it stay. So
+//! sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a branch.
+
+use crate::progress::Watch;
+use crate::identify::weights::rows::{Rows, Term};
+use hysteron_core::Operator;
+use crate::model::Plane;
+use crate::error::Result;
+use hysteron_core::{Model, operator_index, table_index, table_len};
+
+/// Where the operators stand before the first sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Initial {
+    Off,
+    On,
+}
+
+/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
+pub(crate) const OPEN: f64 = 1e-9;
+
+/// How often a long pass tells how far it is, in samples.
+const REPORT: usize = 1 << 16;
+
+/// The regressor of a plane: `N` operators with states in `[0, 1]`, for any input.
+pub(crate) struct SparseForm {
+    plane: Plane,
+    operator: Operator,
+    /// A model without weights, that moves states.
+    blank: Model<f64, Vec<f64>>,
+    /// From a place in the Everett table to the place of `C[p][q]` among the `N` with `q < p`;
+    /// [`Term::NOWHERE`] for those with `q = p`, which are zero.
+    place: Vec<u32>,
+}
+
+impl SparseForm {
+    pub(crate) fn new(plane: Plane, operator: Operator) -> Result<Self> {
+        let levels = plane.levels();
+        let zeros = vec![0.0; plane.operators()];
+        let blank = Model::new(plane, operator, &zeros, vec![0.0; table_len(levels)])?;
+        let mut place = vec![Term::NOWHERE; table_len(levels)];
+        for p in 1..=levels {
+            for q in 0..p {
+                // C[p][q] has the place of weight (i, j) = (q + 1, p).
+                place[table_index(p, q)] = operator_index(q + 1, p) as u32;
+            }
+        }
+        Ok(Self {
+            plane,
+            operator,
+            blank,
+            place,
+        })
+    }
+
+    pub(crate) fn plane(&self) -> &Plane {
+        &self.plane
+    }
+
+    pub(crate) fn operators(&self) -> usize {
+        self.plane.operators()
+    }
+
+    pub(crate) fn rows(&self, from: Initial) -> Result<Rows<'_>> {
+        Rows::new(&self.blank, &self.place, from)
+    }
+
+    /// How much of each operator the first sample leaves open: its state from on less that from off.
+    pub(crate) fn open(&self, first: f64) -> Result<Vec<f64>> {
+        let levels = self.plane.levels();
+        let (mut off, mut on) = (self.rows(Initial::Off)?, self.rows(Initial::On)?);
+        off.leaves_branch(first)?;
+        on.leaves_branch(first)?;
+        let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
+        operators
+            .map(|(i, j)| Ok(on.state().gamma(i, j)? - off.state().gamma(i, j)?))
+            .collect()
+    }
+
+    /// `Φ μ`: a run of the forward model, `O(n + K²)`.
+    pub(crate) fn forward(
+        &self,
+        weights: &[f64],
+        input: &[f64],
+        from: Initial,
+    ) -> Result<Vec<f64>> {
+        let table = vec![0.0; table_len(self.plane.levels())];
+        // A relay's states come doubled and shifted by its output of ±1; KP states are those of MKP.
+        let relay = self.operator == Operator::Relay;
+        let operator = if relay {
+            Operator::Relay
+        } else {
+            Operator::Mkp
+        };
+        let model = Model::new(self.plane, operator, weights, table)?;
+        let mut output = vec![0.0; input.len()];
+        let mut state = super::rows::state_of(&model, from)?;
+        model.run(&mut state, input, &mut output)?;
+        if relay {
+            let (low, high) = model.output_range();
+            output
+                .iter_mut()
+                .for_each(|y| *y = (*y + 0.5 * (high - low)) * 0.5);
+        }
+        Ok(output)
+    }
+
+    /// Adds `Wᵀ r` to `sums`; [`SparseForm::operators_of`] makes `Φᵀ r` of it.
+    pub(crate) fn add_adjoint(
+        &self,
+        input: &[f64],
+        from: Initial,
+        residual: impl Fn(usize) -> f64,
+        sums: &mut [f64],
+    ) -> Result<()> {
+        let mut rows = self.rows(from)?;
+        let mut held = 0.0;
+        for (n, &x) in input.iter().enumerate() {
+            if rows.leaves_branch(x)? {
+                rows.add_memory(held, sums);
+                rows.remember();
+                held = 0.0;
+            }
+            let r = residual(n);
+            held += r;
+            for term in rows.branch() {
+                sums[term.place as usize] += term.factor * r;
+            }
+        }
+        rows.add_memory(held, sums);
+        Ok(())
+    }
+
+    /// `Sᵀ w` in place: operator `(i, j)` is part of every `C[p][q]` with `p ≥ j` and `q < i`.
+    pub(crate) fn operators_of(&self, w: &mut [f64]) {
+        transpose_sums(self.plane.levels(), w);
+    }
+
+    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, `W` and `W'` being the rows of the two
+    /// starts; [`SparseForm::gram_of`] makes `Φᵀ diag(scale) Φ'` of it.
+    pub(crate) fn add_outer(
+        &self,
+        input: &[f64],
+        (left, right): (Initial, Initial),
+        scale: impl Fn(usize) -> f64,
+        gram: &mut [f64],
+        watch: Watch<'_>,
+    ) -> Result<()> {
+        let count = self.operators();
+        let mut a = self.rows(left)?;
+        // The same rows on both sides are walked once.
+        let mut other = (left != right).then(|| self.rows(right)).transpose()?;
+        let mut sums = BranchSums::default();
+        for (n, &x) in input.iter().enumerate() {
+            if n % REPORT == 0 {
+                watch("samples", n as f64 / input.len() as f64)?;
+            }
+            let mut left_branch = a.leaves_branch(x)?;
+            if let Some(b) = &mut other {
+                left_branch |= b.leaves_branch(x)?;
+            }
+            if left_branch {
+                let b = other.as_ref().unwrap_or(&a);
+                sums.flush(a.memory(), b.memory(), gram, count);
+                a.remember();
+                if let Some(b) = &mut other {
+                    b.remember();
+                }
+            }
+            let s = scale(n);
+            if s == 0.0 {
+                continue;
+            }
+            let t = a.branch();
+            let u = other.as_ref().map_or(t, Rows::branch);
+            sums.add(s, &t, &u);
+            for t in &t {
+                let row = &mut gram[t.place as usize * count..][..count];
+                for u in &u {
+                    row[u.place as usize] += s * t.factor * u.factor;
+                }
+            }
+        }
+        let b = other.as_ref().unwrap_or(&a);
+        sums.flush(a.memory(), b.memory(), gram, count);
+        Ok(())
+    }
+
+    /// `Sᵀ A S` in place.
+    pub(crate) fn gram_of(&self, gram: &mut [f64]) {
+        let (count, levels) = (self.operators(), self.plane.levels());
+        // Sᵀ from the left: the same sums with whole rows as elements; then from the right.
+        let row = |i: usize, j: usize| operator_index(i, j) * count;
+        for j in 1..=levels {
+            for i in 2..=j {
+                add_row(gram, row(i - 1, j), row(i, j), count);
+            }
+        }
+        for j in (1..levels).rev() {
+            for i in 1..=j {
+                add_row(gram, row(i, j + 1), row(i, j), count);
+            }
+        }
+        for row in gram.chunks_exact_mut(count) {
+            transpose_sums(levels, row);
+        }
+    }
+}
+
+/// What the samples of one branch sum up to: with `f`, `g` the factors of the turning points and `t`, `u`
+/// those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
+#[derive(Default)]
+struct BranchSums {
+    scale: f64,
+    left: Vec<Term>,
+    right: Vec<Term>,
+}
+
+impl BranchSums {
+    fn add(&mut self, s: f64, t: &[Term; 3], u: &[Term; 3]) {
+        self.scale += s;
+        for (sums, terms) in [(&mut self.left, t), (&mut self.right, u)] {
+            for term in terms {
+                // A branch passes its triangles in order: the same ones are the last ones.
+                let recent = sums.len().saturating_sub(4);
+                match sums[recent..]
+                    .iter_mut()
+                    .find(|sum| sum.place == term.place)
+                {
+                    Some(sum) => sum.factor += s * term.factor,
+                    None => sums.push(Term {
+                        place: term.place,
+                        factor: s * term.factor,
+                    }),
+                }
+            }
+        }
+    }
+
+    fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
+        let mut outer = |a: &[Term], b: &[Term], scale: f64| {
+            for a in a {
+                let row = &mut gram[a.place as usize * count..][..count];
+                for b in b {
+                    row[b.place as usize] += scale * a.factor * b.factor;
+                }
+            }
+        };
+        outer(f, g, self.scale);
+        outer(f, &self.right, 1.0);
+        outer(&self.left, g, 1.0);
+        self.scale = 0.0;
+        self.left.clear();
+        self.right.clear();
+    }
+}
+
+fn transpose_sums(levels: usize, w: &mut [f64]) {
+    // Row `j` holds the places of operators `(1, j)` to `(j, j)`.
+    let mut rest = &mut w[..];
+    for j in 1..=levels {
+        let (row, below) = rest.split_at_mut(j);
+        let mut sum = 0.0;
+        for element in row {
+            sum += *element;
+            *element = sum;
+        }
+        rest = below;
+    }
+    for j in (1..levels).rev() {
+        let (rows, below) = w.split_at_mut(operator_index(1, j + 1));
+        let row = &mut rows[operator_index(1, j)..];
+        row.iter_mut().zip(below).for_each(|(a, b)| *a += *b);
+    }
+}
+
+fn add_row(matrix: &mut [f64], from: usize, to: usize, count: usize) {
+    let (source, target) = if from < to {
+        let (head, tail) = matrix.split_at_mut(to);
+        (&head[from..from + count], &mut tail[..count])
+    } else {
+        let (head, tail) = matrix.split_at_mut(from);
+        (&tail[..count], &mut head[to..to + count])
+    };
+    for (t, s) in target.iter_mut().zip(source) {
+        *t += s;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use hysteron_core::{Definition, operator_count};
+    use rand::{RngExt, SeedableRng};
+
+    /// `Φ` from the definition, column by column of each row.
+    fn dense(plane: Plane, operator: Operator, input: &[f64], from: Initial) -> Vec<Vec<f64>> {
+        let weights = vec![1.0; plane.operators()];
+        let mut states = weights.clone();
+        let mut plain = Definition::new(plane, operator, &weights, &mut states).unwrap();
+        if from == Initial::On {
+            plain.step(plane.max()).unwrap();
+        }
+        let step = |&t: &f64| {
+            plain.step(t).unwrap();
+            plain.states().to_vec()
+        };
+        input.iter().map(step).collect()
+    }
+
+    #[test]
+    fn products_equal_those_with_the_dense_matrix() {
+        for (seed, levels) in [2, 3, 7, 15].into_iter().enumerate() {
+            for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
+                for starts in [
+                    (Initial::Off, Initial::Off),
+                    (Initial::On, Initial::On),
+                    (Initial::Off, Initial::On),
+                ] {
+                    agrees(seed as u64, levels, operator, starts);
+                }
+            }
+        }
+    }
+
+    fn agrees(seed: u64, levels: usize, operator: Operator, (left, right): (Initial, Initial)) {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let plane = Plane::new(-1.0, 4.0, levels).unwrap();
+        // Runs of small steps, so that branches have many samples, and jumps between.
+        let mut x = 0.0;
+        let input: Vec<f64> = (0..400)
+            .map(|_| {
+                x = match rng.random_range(0..10) {
+                    0 => rng.random_range(-4.0..5.0),
+                    _ => x + rng.random_range(-0.3..0.4),
+                };
+                x
+            })
+            .collect();
+        let form = SparseForm::new(plane, operator).unwrap();
+        let count = operator_count(levels);
+        let phi = [left, right].map(|from| dense(plane, operator, &input, from));
+        let mu: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let r: Vec<f64> = input.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
+        // Sums of at most 400 · N numbers of size one.
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-10;
+        let forward = form.forward(&mu, &input, left).unwrap();
+        for (row, y) in phi[0].iter().zip(&forward) {
+            assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
+        }
+        let mut adjoint = vec![0.0; count];
+        form.add_adjoint(&input, left, |n| r[n], &mut adjoint)
+            .unwrap();
+        form.operators_of(&mut adjoint);
+        let mut gram = vec![0.0; count * count];
+        form.add_outer(&input, (left, right), |n| r[n], &mut gram, &|_, _| Ok(()))
+            .unwrap();
+        form.gram_of(&mut gram);
+        for a in 0..count {
+            let exact: f64 = phi[0].iter().zip(&r).map(|(row, r)| row[a] * r).sum();
+            assert!(close(exact, adjoint[a]));
+            for b in 0..count {
+                let rows = phi[0].iter().zip(&phi[1]).zip(&r);
+                let exact: f64 = rows.map(|((left, right), r)| left[a] * r * right[b]).sum();
+                assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
+            }
+        }
+    }
+}

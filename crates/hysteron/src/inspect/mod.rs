@@ -1,0 +1,136 @@
+//! What is in a table, a recording or a model.
+
+mod model;
+
+pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
+
+use crate::recording::gaps;
+use crate::series::range;
+use crate::series::NOISE;
+use crate::model::Plane;
+use crate::recording::Recording;
+use crate::error::Result;
+use crate::series::Turning;
+use hysteron_core::ridge;
+use serde::Serialize;
+
+/// One series of a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Turning points, reversals of up to 1 % of its range apart.
+    pub reversals: usize,
+    /// Turning points of any size: many more than `reversals` speak of noise.
+    pub reversals_of_any_size: usize,
+}
+
+/// What is in a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordingSummary {
+    /// Number of samples.
+    pub samples: usize,
+    /// The input.
+    pub input: Series,
+    /// The output.
+    pub output: Series,
+    /// The sampling, where there is a time column.
+    pub time: Option<Sampling>,
+    /// Levels of the plane that `excited` is counted on.
+    pub levels: usize,
+    /// Its lowest and highest level.
+    pub plane: (f64, f64),
+    /// Operators of that plane.
+    pub operators: usize,
+    /// Those of them that the input moves: nothing can be learned of the others.
+    pub excited: usize,
+}
+
+/// How a recording was sampled.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sampling {
+    /// Time of the first sample, in seconds.
+    pub start: f64,
+    /// Time of the last sample.
+    pub end: f64,
+    /// Median time between samples.
+    pub median_step: f64,
+    /// Longest time between samples.
+    pub longest_step: f64,
+    /// The sample at its end, counted from 1.
+    pub longest_step_before_sample: usize,
+    /// Gaps: steps of more than three times the median.
+    pub gaps: usize,
+    /// Samples at the time of the one before.
+    pub repeated: usize,
+}
+
+/// Summarises `recording`, counting the operators that it excites on `plane`.
+///
+/// # Errors
+/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<RecordingSummary> {
+    recording.check()?;
+    let series = |values: &[f64], quantity: &crate::recording::Quantity| {
+        let (min, max) = range(values);
+        let count = |band: f64| {
+            let mut turning = Turning::new(band);
+            let turns = values.iter().filter_map(|&v| turning.push(v)).count();
+            turns.saturating_sub(1) // the start is no reversal
+        };
+        Series {
+            name: quantity.name.clone(),
+            unit: quantity.unit.clone(),
+            min,
+            max,
+            reversals: count(NOISE * (max - min)),
+            reversals_of_any_size: count(0.0),
+        }
+    };
+    Ok(RecordingSummary {
+        samples: recording.len(),
+        input: series(&recording.input, &recording.input_quantity),
+        output: series(&recording.output, &recording.output_quantity),
+        time: recording.time.as_deref().and_then(sampling),
+        levels: plane.levels(),
+        plane: (plane.min(), plane.max()),
+        operators: plane.operators(),
+        excited: excited(&recording.input, plane),
+    })
+}
+
+/// How many MKP operators have different states at different samples.
+///
+/// After the first sample, from off, `γ = r_j(x)`; it changes once some `r_j` lies above or some `r_i` below.
+fn excited(input: &[f64], plane: Plane) -> usize {
+    let (low, high) = range(input);
+    let [first, low, high] = [input[0], low, high].map(|t| plane.normalise(t));
+    let moves = |i: usize, j: usize| {
+        let gamma = ridge(first, j);
+        ridge(high, j) > gamma || ridge(low, i) < gamma
+    };
+    (1..=plane.levels())
+        .map(|j| (1..=j).filter(|&i| moves(i, j)).count())
+        .sum()
+}
+
+fn sampling(time: &[f64]) -> Option<Sampling> {
+    let step = |n: usize| time[n] - time[n - 1];
+    let longest = (1..time.len()).max_by(|&a, &b| step(a).total_cmp(&step(b)))?;
+    let (median_step, gaps) = gaps(time)?;
+    Some(Sampling {
+        start: time[0],
+        end: time[time.len() - 1],
+        median_step,
+        longest_step: step(longest),
+        longest_step_before_sample: longest + 1,
+        gaps: gaps.len(),
+        repeated: (1..time.len()).filter(|&n| step(n) == 0.0).count(),
+    })
+}

@@ -1,0 +1,261 @@
+//! A 95 % band around the modelled output: how far off the weights may put it, and the noise.
+
+use crate::model::confidence::{Confidence, INTERVAL};
+use crate::error::{Error, Result};
+use crate::model::{Model, State};
+use crate::recording::Recording;
+use serde::Serialize;
+
+/// The 95 % prediction band of a model whose file says how certain its weights are.
+///
+/// A factor `f` of the confidence is a joint deviation of offset and weights by one standard deviation; the
+/// output deviates by its own forward run, so that a sample takes `O(1)` for each factor. Independent factors and
+/// the noise `ν` add as squares: half the width is `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
+///
+/// ```
+/// use hysteron::{FitOptions, Recording, fit};
+/// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
+/// let output = input.iter().enumerate().map(|(n, t)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin()).collect();
+/// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
+/// let model = fit(&Recording::new(input, output)?, &options)?;
+/// let band = model.band()?.ok_or("a bootstrap was asked for")?;
+/// let half_width = band.run(&[20.0, 60.0, 40.0])?;
+/// assert!(half_width.iter().all(|h| (0.1..1.0).contains(h)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Band {
+    factors: Vec<Model>,
+    noise: f64,
+}
+
+impl Model {
+    /// The prediction band; `None` for a model without confidence or one without factors. With a load it is that of the
+    /// middle of its range.
+    ///
+    /// # Errors
+    /// [`Error::ModelFile`] for factors that do not have as many weights as the model.
+    pub fn band(&self) -> Result<Option<Band>> {
+        match self.fit.as_ref().and_then(|fit| fit.confidence.as_ref()) {
+            Some(confidence) if !confidence.factors.is_empty() => {
+                Band::new(self, confidence).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+impl Band {
+    fn new(model: &Model, confidence: &Confidence) -> Result<Self> {
+        let factor = |(n, part): (usize, &crate::model::load::LoadPart)| {
+            let weights = part.weights.clone();
+            Model::new(
+                model.operator(),
+                *model.plane(),
+                weights,
+                part.offset,
+                model.sign(),
+            )
+            .map_err(|error| Error::ModelFile {
+                path: None,
+                field: format!("fit.confidence.factors[{n}]"),
+                problem: error.to_string(),
+            })
+        };
+        let factors = confidence.factors.iter().enumerate();
+        Ok(Self {
+            factors: factors.map(factor).collect::<Result<_>>()?,
+            noise: confidence.noise,
+        })
+    }
+
+    /// States of the factors with every operator off.
+    #[must_use]
+    pub fn start(&self) -> Vec<State> {
+        self.factors.iter().map(Model::start).collect()
+    }
+
+    /// Moves `states` to `input` and returns half the width of the band there, in the output's unit.
+    ///
+    /// # Errors
+    /// As [`Model::step`].
+    pub fn step(&self, states: &mut [State], input: f64) -> Result<f64> {
+        let mut variance = self.noise * self.noise;
+        for (factor, state) in self.factors.iter().zip(states) {
+            variance += factor.step(state, input)?.output.powi(2);
+        }
+        Ok(INTERVAL * variance.sqrt())
+    }
+
+    /// Half the width of the band at each of `input`, from every operator off.
+    ///
+    /// # Errors
+    /// As [`Model::run`].
+    pub fn run(&self, input: &[f64]) -> Result<Vec<f64>> {
+        let mut variance = vec![self.noise * self.noise; input.len()];
+        let mut output = vec![0.0; input.len()];
+        for factor in &self.factors {
+            factor.run(&mut factor.start(), input, &mut output)?;
+            for (variance, deviation) in variance.iter_mut().zip(&output) {
+                *variance += deviation * deviation;
+            }
+        }
+        let half_width = |variance: f64| INTERVAL * variance.sqrt();
+        Ok(variance.into_iter().map(half_width).collect())
+    }
+}
+
+/// Lower and upper end of a band around a modelled output.
+pub(crate) fn ends(output_model: &[f64], half_width: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let pairs = output_model.iter().zip(half_width);
+    pairs.map(|(y, half)| (y - half, y + half)).unzip()
+}
+
+/// The prediction band over a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BandEvaluation {
+    /// Half the width at each sample, in the output's unit.
+    pub half_width: Vec<f64>,
+    /// Share of the measured samples inside, in percent; about 95 where the recording is like those fitted.
+    pub coverage_percent: f64,
+}
+
+impl BandEvaluation {
+    /// Lower and upper end around the modelled output.
+    #[must_use]
+    pub fn ends(&self, output_model: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        ends(output_model, &self.half_width)
+    }
+
+    /// Of `model` on `recording`, whose output is modelled as `output_model`.
+    pub(crate) fn of(
+        model: &Model,
+        recording: &Recording,
+        output_model: &[f64],
+    ) -> Result<Option<Self>> {
+        let Some(band) = model.band()? else {
+            return Ok(None);
+        };
+        let half_width = band.run(&recording.input)?;
+        let modelled = output_model.iter().zip(&half_width);
+        let inside = recording
+            .output
+            .iter()
+            .zip(modelled)
+            .filter(|(y, (h, half))| (*y - *h).abs() <= **half)
+            .count();
+        Ok(Some(Self {
+            coverage_percent: 100.0 * inside as f64 / recording.len() as f64,
+            half_width,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::model::summary::FitSummary;
+    use crate::model::load::LoadPart;
+    use hysteron_core::Operator;
+    use crate::model::Plane;
+    use crate::model::Sign;
+    use hysteron_core::Definition;
+    use rand::{RngExt, SeedableRng};
+
+    /// A model with `factors` at random, and an input that wanders over and beyond its plane.
+    fn uncertain(operator: Operator, sign: Sign, factors: usize) -> (Model, Vec<f64>) {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(factors as u64);
+        let plane = Plane::new(20.0, 80.0, 7).unwrap();
+        let mut draw = |count: usize| -> Vec<f64> {
+            (0..count).map(|_| rng.random_range(-1.0..1.0)).collect()
+        };
+        let mut model = Model::new(operator, plane, vec![1.0; 28], 3.0, sign).unwrap();
+        let factors = (0..factors).map(|_| LoadPart {
+            offset: draw(1)[0],
+            weights: draw(28),
+        });
+        model.fit = Some(FitSummary {
+            confidence: Some(Confidence {
+                noise: 0.25,
+                factors: factors.collect(),
+                ..Confidence::default()
+            }),
+            ..FitSummary::default()
+        });
+        let input = draw(300).into_iter().map(|x| 50.0 + 45.0 * x).collect();
+        (model, input)
+    }
+
+    #[test]
+    fn equals_the_definition_summed_over_the_factors() {
+        for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
+            for sign in [Sign::Positive, Sign::Negative] {
+                let (model, input) = uncertain(operator, sign, 5);
+                let band = model.band().unwrap().unwrap();
+                let found = band.run(&input).unwrap();
+                let mut states = band.start();
+                let factors = &model
+                    .fit
+                    .as_ref()
+                    .unwrap()
+                    .confidence
+                    .as_ref()
+                    .unwrap()
+                    .factors;
+                let mut variance = vec![0.25 * 0.25; input.len()];
+                for factor in factors {
+                    let mut gamma = vec![0.0; 28];
+                    let plane = *model.plane();
+                    let mut plain =
+                        Definition::new(plane, operator, &factor.weights, &mut gamma).unwrap();
+                    for (variance, &t) in variance.iter_mut().zip(&input) {
+                        let sum = plain.step(t).unwrap();
+                        *variance += (factor.offset + sign.factor() * sum).powi(2);
+                    }
+                }
+                for (n, &t) in input.iter().enumerate() {
+                    let expected = INTERVAL * variance[n].sqrt();
+                    // Rounding of sums of 28 weights.
+                    assert!((found[n] - expected).abs() < 1e-12, "{operator:?}, {n}");
+                    assert!((band.step(&mut states, t).unwrap() - expected).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_coverage_counts_the_samples_inside() {
+        let (model, input) = uncertain(Operator::Mkp, Sign::Positive, 3);
+        let half = model.band().unwrap().unwrap().run(&input).unwrap();
+        let modelled = model.simulate(&input).unwrap();
+        // Every fourth sample just outside, the others just inside, on either side in turn.
+        let output = (0..input.len())
+            .map(|n| {
+                let share = if n % 4 == 0 { 1.001 } else { 0.999 };
+                modelled[n] + half[n] * if n % 2 == 0 { share } else { -share }
+            })
+            .collect();
+        let recording = Recording::new(input, output).unwrap();
+        let band = crate::evaluate::evaluate(&model, &recording).unwrap().band.unwrap();
+        assert_eq!(band.coverage_percent, 75.0);
+        assert_eq!(band.half_width, half);
+    }
+
+    #[test]
+    fn there_is_none_without_factors_and_wrong_ones_are_named() {
+        let (mut model, _) = uncertain(Operator::Mkp, Sign::Positive, 0);
+        assert!(model.band().unwrap().is_none());
+        model.fit = None;
+        assert!(model.band().unwrap().is_none());
+        let (mut model, _) = uncertain(Operator::Mkp, Sign::Positive, 2);
+        let confidence = model.fit.as_mut().unwrap().confidence.as_mut().unwrap();
+        confidence.factors[1].weights.pop();
+        let error = model.band().unwrap_err().to_string();
+        assert!(
+            error.contains("fit.confidence.factors[1]") && error.contains("28"),
+            "{error}"
+        );
+    }
+}

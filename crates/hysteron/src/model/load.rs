@@ -1,0 +1,202 @@
+//! Weights that depend on a load: one model for several loads or stresses.
+
+use crate::error::{Error, Result};
+use crate::model::Model;
+use crate::recording::Quantity;
+use serde::{Deserialize, Serialize};
+
+/// Offset and weights that one Bernstein polynomial of the load is multiplied with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+pub struct LoadPart {
+    /// Output with every operator off.
+    pub offset: f64,
+    /// `N` weights, row by row.
+    pub weights: Vec<f64>,
+}
+
+impl LoadPart {
+    /// The parts with the factors of the middle of the range.
+    pub(crate) fn at_middle(parts: &[Self]) -> Self {
+        Self::sum(parts, &bernstein(parts.len() - 1, 0.5))
+    }
+
+    fn sum(parts: &[Self], factors: &[f64]) -> Self {
+        let mut sum = Self {
+            offset: 0.0,
+            weights: vec![0.0; parts[0].weights.len()],
+        };
+        for (factor, part) in factors.iter().zip(parts) {
+            sum.offset += factor * part.offset;
+            for (sum, mu) in sum.weights.iter_mut().zip(&part.weights) {
+                *sum += factor * mu;
+            }
+        }
+        sum
+    }
+}
+
+/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein polynomials of the load
+/// scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those between, and the largest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadDependence {
+    /// What the load is.
+    pub quantity: Quantity,
+    range: (f64, f64),
+    parts: Vec<LoadPart>,
+}
+
+impl LoadDependence {
+    /// Of the parts, one at least and all with as many weights, over the `range` of loads.
+    #[must_use]
+    pub(crate) fn new(quantity: Quantity, range: (f64, f64), parts: Vec<LoadPart>) -> Self {
+        Self {
+            quantity,
+            range,
+            parts,
+        }
+    }
+
+    /// Smallest and largest load that the model was identified at.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    /// The parts, one more than the order in the load.
+    #[must_use]
+    pub fn parts(&self) -> &[LoadPart] {
+        &self.parts
+    }
+
+    /// The factors of the parts at a load.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for a load outside the range: weights there could be below zero.
+    pub fn factors(&self, load: f64) -> Result<Vec<f64>> {
+        let (low, high) = self.range;
+        // A millionth of the range is a number printed with few digits, not another load.
+        let slack = 1e-6 * (high - low);
+        if !(load >= low - slack && load <= high + slack) {
+            return Err(Error::Fit(format!(
+                "the {} {load} is outside the range {low} to {high} that the model was identified at",
+                self.quantity.name
+            )));
+        }
+        let s = ((load - low) / (high - low)).clamp(0.0, 1.0);
+        Ok(bernstein(self.parts.len() - 1, s))
+    }
+
+    /// Offset and weights at a load.
+    ///
+    /// # Errors
+    /// As [`LoadDependence::factors`].
+    pub fn at(&self, load: f64) -> Result<LoadPart> {
+        Ok(LoadPart::sum(&self.parts, &self.factors(load)?))
+    }
+}
+
+impl Model {
+    /// The model at a load, which depends on it no more.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] where the model has no load, or for one outside its range.
+    pub fn at_load(&self, load: f64) -> Result<Self> {
+        let Some(dependence) = &self.load else {
+            return Err(no_load());
+        };
+        let LoadPart { offset, weights } = dependence.at(load)?;
+        let (operator, plane) = (self.operator(), *self.plane());
+        let mut model = Self::new(operator, plane, weights, offset, self.sign())?;
+        model.input = self.input.clone();
+        model.output = self.output.clone();
+        model.thermal = self.thermal;
+        model.fit = self.fit.clone();
+        Ok(model)
+    }
+
+    /// The models that the functions of the load are multiplied with; none without a load.
+    pub(crate) fn load_parts(&self) -> Result<Vec<Self>> {
+        let parts = self.load.iter().flat_map(|load| load.parts());
+        let (operator, plane) = (self.operator(), *self.plane());
+        parts
+            .map(|part| {
+                Self::new(
+                    operator,
+                    plane,
+                    part.weights.clone(),
+                    part.offset,
+                    self.sign(),
+                )
+            })
+            .collect()
+    }
+
+    /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
+    ///
+    /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
+    ///
+    /// # Errors
+    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads as inputs.
+    pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
+        let Some(dependence) = &self.load else {
+            return Err(no_load());
+        };
+        if load.len() != input.len() {
+            let (loads, inputs) = (load.len(), input.len());
+            return Err(Error::Fit(format!("{loads} loads for {inputs} inputs")));
+        }
+        let factors: Vec<Vec<f64>> = load
+            .iter()
+            .map(|f| dependence.factors(*f))
+            .collect::<Result<_>>()?;
+        let mut output = vec![0.0; input.len()];
+        for (k, part) in self.load_parts()?.iter().enumerate() {
+            let run = part.simulate(input)?;
+            for ((y, h), factors) in output.iter_mut().zip(run).zip(&factors) {
+                *y += factors[k] * h;
+            }
+        }
+        Ok(output)
+    }
+}
+
+pub(crate) fn no_load() -> Error {
+    Error::Fit("this model does not depend on a load: leave the load out".into())
+}
+
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
+/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
+pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
+    // De Casteljau's scheme.
+    let mut values = vec![1.0];
+    for _ in 0..degree {
+        let mut next = vec![0.0; values.len() + 1];
+        for (k, value) in values.iter().enumerate() {
+            next[k] += (1.0 - s) * value;
+            next[k + 1] += s * value;
+        }
+        values = next;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bernstein;
+
+    #[test]
+    fn load_functions_sum_to_one_and_meet_the_ends() {
+        for degree in 0..=5 {
+            for s in [0.0, 0.3, 1.0] {
+                let values = bernstein(degree, s);
+                assert_eq!(values.len(), degree + 1);
+                // Five roundings of numbers up to one.
+                assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-15 * 5.0);
+                assert!(values.iter().all(|v| *v >= 0.0));
+            }
+            assert_eq!(bernstein(degree, 0.0)[0], 1.0);
+            assert_eq!(bernstein(degree, 1.0)[degree], 1.0);
+        }
+    }
+}

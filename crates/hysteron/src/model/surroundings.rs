@@ -1,0 +1,147 @@
+//! The output of an actuator for what it is driven with: through its thermal body, under its load, with its band.
+
+use crate::model::band::ends;
+use crate::model::body::needs_time;
+use crate::error::{Error, Result};
+use crate::model::Model;
+use crate::remedy::{Remedy, Setting};
+use std::borrow::Cow;
+
+/// What goes with the samples of an input, each series as long as it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Surroundings<'a> {
+    /// Time in seconds, which a model with a thermal body needs.
+    pub time: Option<&'a [f64]>,
+    /// The load, which a model that depends on one needs.
+    pub load: Option<&'a [f64]>,
+}
+
+impl Model {
+    /// Refuses a model that does not run sample by sample on its input alone.
+    ///
+    /// # Errors
+    /// [`Error::Thermal`] for one with a thermal body, [`Error::Fit`] for one that depends on a load.
+    pub fn runs_by_itself(&self) -> Result<()> {
+        if self.thermal.is_some() {
+            return Err(Error::Thermal(
+                "the model has a thermal body, which needs the time of each sample: it runs over whole series only".into(),
+            ));
+        }
+        if let Some(load) = &self.load {
+            let (low, high) = load.range();
+            return Err(Error::Fit(format!(
+                "the model depends on the load `{}`: take it at one load first, from {low} to {high}",
+                load.quantity.name
+            )));
+        }
+        Ok(())
+    }
+
+    /// The outputs for `input`, from every operator off, whatever the model is made of: an input that drives a thermal
+    /// body goes through it, and a load is followed. For a plain model the same as [`Model::simulate`].
+    ///
+    /// ```
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Surroundings};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// model.thermal = Some(FirstOrder { gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 });
+    /// let surroundings = Surroundings { time: Some(&[0.0, 1.0, 50.0]), load: None };
+    /// let output = model.predict(&[0.0, 1.0, 1.0], surroundings)?;
+    /// assert_eq!(output, [0.0, 0.0, 3.0]); // a held drive heats for as long as it is held
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Model::run`]; [`Error::Thermal`] for a model with a thermal body without time, and for times that go back;
+    /// [`Error::Fit`] for a model that depends on a load without it, and the other way round.
+    pub fn predict(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
+        self.at(&self.seen(input, surroundings)?, surroundings)
+    }
+
+    /// The lower and the upper end of the 95 % band around [`Model::predict`].
+    ///
+    /// # Errors
+    /// As [`Model::predict`]; [`Error::Fit`] for a model that does not say how certain it is.
+    pub fn predict_band(
+        &self,
+        input: &[f64],
+        surroundings: Surroundings<'_>,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        let Some(band) = self.band()? else {
+            let what = "the model does not say how certain it is";
+            let bootstrap = Setting::number("bootstrap", 200);
+            let remedy = Remedy::new("fit it again with {}", [bootstrap]);
+            return Err(Error::Fit(what.into()).remedied(remedy));
+        };
+        let seen = self.seen(input, surroundings)?;
+        let output = self.at(&seen, surroundings)?;
+        let half = band.run(&seen)?;
+        Ok(ends(&output, &half))
+    }
+
+    /// The input as the operators see it.
+    fn seen<'i>(&self, input: &'i [f64], around: Surroundings<'_>) -> Result<Cow<'i, [f64]>> {
+        let Some(body) = &self.thermal else {
+            return Ok(Cow::Borrowed(input));
+        };
+        let time = around.time.ok_or_else(needs_time)?;
+        Ok(Cow::Owned(body.respond(time, input)?))
+    }
+
+    fn at(&self, seen: &[f64], around: Surroundings<'_>) -> Result<Vec<f64>> {
+        match (&self.load, around.load) {
+            (None, None) => self.simulate(seen),
+            (_, Some(load)) => self.simulate_under_load(seen, load),
+            (Some(dependence), None) => Err(Error::Fit(format!(
+                "the model depends on the load `{}`: give it, or take the model at one load",
+                dependence.quantity.name
+            ))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::identify::{FitOptions, fit};
+    use crate::recording::Recording;
+
+    fn swings() -> Vec<f64> {
+        (0..400)
+            .map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos())
+            .collect()
+    }
+
+    #[test]
+    fn a_load_is_followed_and_asked_for() {
+        let input = swings();
+        let load: Vec<f64> = (0..400).map(|n| f64::from(n % 40)).collect();
+        let output = input.iter().zip(&load).map(|(t, s)| t * (1.0 + s / 40.0));
+        let mut recording = Recording::new(input.clone(), output.collect()).unwrap();
+        recording.load = Some(load.clone());
+        let options = FitOptions {
+            levels: 5,
+            bootstrap: 10,
+            ..FitOptions::default()
+        };
+        let model = fit(&recording, &options).unwrap();
+        let around = Surroundings {
+            time: None,
+            load: Some(&load),
+        };
+        let found = model.predict(&input, around).unwrap();
+        assert_eq!(found, model.simulate_under_load(&input, &load).unwrap());
+        let (low, high) = model.predict_band(&input, around).unwrap();
+        let inside = |n: usize| low[n] < found[n] && found[n] < high[n];
+        assert!((0..400).all(inside));
+        let refused = model.predict(&input, Surroundings::default()).unwrap_err();
+        assert!(refused.to_string().contains("`load`"), "{refused}");
+        let plain = model.at_load(3.0).unwrap();
+        assert!(plain.predict(&input, around).is_err());
+        assert_eq!(
+            plain.predict(&input, Surroundings::default()).unwrap(),
+            plain.simulate(&input).unwrap()
+        );
+    }
+}

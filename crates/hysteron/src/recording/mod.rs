@@ -1,0 +1,209 @@
+//! Recordings: an input and the output it caused.
+
+mod gaps;
+
+pub(crate) use gaps::gaps;
+
+use crate::series::range;
+use crate::error::{Error, Result};
+use std::path::PathBuf;
+
+/// A physical quantity: its name and, where known, its unit.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Quantity {
+    /// Name, for example `temperature`.
+    pub name: String,
+    /// Unit, for example `degC`; `None` where the source does not say.
+    pub unit: Option<String>,
+}
+
+impl Quantity {
+    /// A quantity without a unit.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: None,
+        }
+    }
+
+    /// A quantity with its unit.
+    #[must_use]
+    pub fn with_unit(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: Some(unit.to_owned()),
+        }
+    }
+
+    /// The column name that [`Quantity::from_column`] reads as this quantity.
+    #[must_use]
+    pub fn to_column(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} [{unit}]", self.name),
+            None => self.name.clone(),
+        }
+    }
+
+    /// Reads `temperature [degC]` and `temperature (degC)` as a name and its unit.
+    ///
+    /// ```
+    /// use hysteron::Quantity;
+    /// let column = Quantity::from_column("lift [mm]");
+    /// assert_eq!((column.name.as_str(), column.unit.as_deref()), ("lift", Some("mm")));
+    /// assert_eq!(Quantity::from_column("voltage_V"), Quantity::named("voltage_V"));
+    /// ```
+    #[must_use]
+    pub fn from_column(column: &str) -> Self {
+        let column = column.trim();
+        for (open, close) in [('[', ']'), ('(', ')')] {
+            if let Some((name, unit)) = column.strip_suffix(close).and_then(|c| c.split_once(open))
+                && !name.trim().is_empty()
+                && !unit.trim().is_empty()
+            {
+                return Self::with_unit(name.trim(), unit.trim());
+            }
+        }
+        Self::named(column)
+    }
+}
+
+/// Where a recording comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Read from a file.
+    Measured,
+    /// Produced by a simulated plant; every surface must say so.
+    Simulated,
+}
+
+/// The file that a recording was read from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Its path as given.
+    pub path: PathBuf,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+/// Values beyond this have squares that a sum of squares cannot hold.
+pub(crate) const LARGEST: f64 = 1e140;
+
+/// An input and the output it caused, sample by sample.
+///
+/// All samples are finite and both have the same length, at least one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Time of each sample in seconds, not decreasing, where the source has one.
+    pub time: Option<Vec<f64>>,
+    /// Input samples.
+    pub input: Vec<f64>,
+    /// Output samples, as many as `input`.
+    pub output: Vec<f64>,
+    /// What the input is.
+    pub input_quantity: Quantity,
+    /// What the output is.
+    pub output_quantity: Quantity,
+    /// The load (or stress) at each sample, as many as `input`, where the recording has it.
+    pub load: Option<Vec<f64>>,
+    /// What the load is; of no meaning without it.
+    pub load_quantity: Quantity,
+    /// Measured or simulated.
+    pub origin: Origin,
+    /// The file it was read from.
+    pub source: Option<Source>,
+}
+
+impl Recording {
+    /// A recording of two series of the same length.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] where the lengths differ, there is no sample, or one is not finite.
+    pub fn new(input: Vec<f64>, output: Vec<f64>) -> Result<Self> {
+        let recording = Self {
+            time: None,
+            input,
+            output,
+            input_quantity: Quantity::named("input"),
+            output_quantity: Quantity::named("output"),
+            load: None,
+            load_quantity: Quantity::named("load"),
+            origin: Origin::Measured,
+            source: None,
+        };
+        recording.check()?;
+        Ok(recording)
+    }
+
+    /// How many samples there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.input.len()
+    }
+
+    /// Never true for a recording made by this crate; here because `len` is.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.input.is_empty()
+    }
+
+    /// Smallest and largest input, and smallest and largest output.
+    #[must_use]
+    pub fn ranges(&self) -> ((f64, f64), (f64, f64)) {
+        (range(&self.input), range(&self.output))
+    }
+
+    /// That the samples can be worked with, as every function of this crate that takes a recording demands.
+    ///
+    /// # Errors
+    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite, or
+    /// time goes back.
+    pub fn check(&self) -> Result<()> {
+        let fault = |column: &str, problem: String| Error::Recording {
+            path: self.source.as_ref().map(|source| source.path.clone()),
+            row: None,
+            column: Some(column.to_owned()),
+            problem,
+        };
+        let time = self.time.as_ref().map(|time| (time, "time"));
+        let series = [
+            (&self.input, self.input_quantity.name.as_str()),
+            (&self.output, self.output_quantity.name.as_str()),
+        ];
+        let load = self.load.as_ref();
+        let load = load.map(|load| (load, self.load_quantity.name.as_str()));
+        for (values, name) in series.into_iter().chain(time).chain(load) {
+            if values.len() != self.input.len() {
+                let problem = format!(
+                    "{} samples, but {} of the input",
+                    values.len(),
+                    self.input.len()
+                );
+                return Err(fault(name, problem));
+            }
+            if values.is_empty() {
+                return Err(fault(name, "no samples".into()));
+            }
+            if let Some(n) = values.iter().position(|v| !v.is_finite()) {
+                let problem = format!("sample {n} (from 0) is {}, not a finite number", values[n]);
+                return Err(fault(name, problem));
+            }
+            if let Some(value) = values.iter().find(|v| v.abs() > LARGEST) {
+                let problem = format!("{value:e} is too large to be squared: use another unit");
+                return Err(fault(name, problem));
+            }
+        }
+        let goes_back = |pair: &[f64]| pair[1] < pair[0];
+        match self
+            .time
+            .as_ref()
+            .and_then(|time| time.windows(2).position(goes_back))
+        {
+            Some(n) => Err(fault(
+                "time",
+                format!("goes back after sample {n} (from 0)"),
+            )),
+            None => Ok(()),
+        }
+    }
+}

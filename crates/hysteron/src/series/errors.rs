@@ -1,0 +1,55 @@
+//! Error measures.
+
+use crate::series::spread::range;
+use serde::Serialize;
+
+/// How far a modelled series is from a measured one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Errors {
+    /// Root of the mean squared difference, in the unit of the series.
+    pub rmse: f64,
+    /// Largest absolute difference, in the unit of the series.
+    pub max_abs: f64,
+    /// `rmse` in percent of the measured range of the whole series; `None` where that range is zero.
+    pub nrmse_percent: Option<f64>,
+    /// How many samples were compared.
+    pub samples: usize,
+}
+
+impl Errors {
+    /// Compares the samples at which `which` is true; `None` if there are none.
+    ///
+    /// ```
+    /// use hysteron::Errors;
+    /// let errors = Errors::between(&[0.0, 2.0, 4.0], &[0.0, 2.0, 1.0], |_| true).unwrap();
+    /// assert_eq!((errors.rmse, errors.max_abs, errors.samples), (3f64.sqrt(), 3.0, 3));
+    /// assert!((errors.nrmse_percent.unwrap() - 43.3).abs() < 0.01);
+    /// ```
+    #[must_use]
+    pub fn between(
+        measured: &[f64],
+        modelled: &[f64],
+        which: impl Fn(usize) -> bool,
+    ) -> Option<Self> {
+        let (mut squares, mut max_abs, mut samples) = (0.0, 0.0_f64, 0_usize);
+        for (n, (a, b)) in measured.iter().zip(modelled).enumerate() {
+            if which(n) {
+                squares += (b - a) * (b - a);
+                max_abs = max_abs.max((b - a).abs());
+                samples += 1;
+            }
+        }
+        if samples == 0 {
+            return None;
+        }
+        let rmse = (squares / samples as f64).sqrt();
+        let (low, high) = range(measured);
+        let nrmse_percent = (high > low).then(|| 100.0 * rmse / (high - low));
+        Some(Self {
+            rmse,
+            max_abs,
+            nrmse_percent,
+            samples,
+        })
+    }
+}

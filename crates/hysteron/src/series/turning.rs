@@ -1,0 +1,294 @@
+//! Where a series turns, small wiggles apart.
+
+use hysteron_core::Direction;
+
+/// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
+pub const NOISE: f64 = 0.01;
+
+/// Reversals of a series that count as noise where nobody says otherwise: [`NOISE`] of its range; 0 of none.
+#[must_use]
+pub fn noise_band(series: &[f64]) -> f64 {
+    let (low, high) = crate::series::spread::range(series);
+    NOISE * (high - low).max(0.0)
+}
+
+/// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
+/// from it by more than `band`.
+///
+/// ```
+/// use hysteron::{Direction, Turning};
+/// let mut turning = Turning::new(0.5);
+/// let series = [0.0, 1.0, 0.9, 2.0, 1.9, 0.0];
+/// let found: Vec<_> = series.iter().filter_map(|&y| turning.push(y)).collect();
+/// assert_eq!(found, [(0, Direction::Rising), (3, Direction::Falling)]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Turning {
+    band: f64,
+    count: usize,
+    low: (usize, f64),
+    high: (usize, f64),
+    heading: Option<Direction>,
+}
+
+impl Turning {
+    /// A search that ignores reversals of up to `band`.
+    #[must_use]
+    pub fn new(band: f64) -> Self {
+        Self {
+            band,
+            count: 0,
+            low: (0, f64::INFINITY),
+            high: (0, f64::NEG_INFINITY),
+            heading: None,
+        }
+    }
+
+    /// Takes the next sample. Returns an extreme that is now known, by its index, with the direction
+    /// the series takes from there; the start counts as one.
+    pub fn push(&mut self, y: f64) -> Option<(usize, Direction)> {
+        let n = self.count;
+        self.count += 1;
+        if y < self.low.1 {
+            self.low = (n, y);
+        }
+        if y > self.high.1 {
+            self.high = (n, y);
+        }
+        use Direction::{Falling, Rising};
+        let (turn, heading) = if self.heading != Some(Falling) && self.high.1 - y > self.band {
+            (self.high.0, Falling)
+        } else if self.heading != Some(Rising) && y - self.low.1 > self.band {
+            (self.low.0, Rising)
+        } else {
+            return None;
+        };
+        let first = self.heading.replace(heading).is_none();
+        // The extremes of the new branch are looked for from here on.
+        (self.low, self.high) = ((n, y), (n, y));
+        Some((if first { 0 } else { turn }, heading))
+    }
+
+    /// The direction of the branch that the series is on, once it is known, and the index of its
+    /// extreme so far: up to there the series is on this branch for certain.
+    #[must_use]
+    pub fn branch(&self) -> Option<(Direction, usize)> {
+        self.heading.map(|heading| match heading {
+            Direction::Rising => (heading, self.high.0),
+            Direction::Falling => (heading, self.low.0),
+        })
+    }
+}
+
+/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `band`; the
+/// turning point belongs to the branch before it.
+///
+/// ```
+/// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
+/// ```
+#[must_use]
+pub fn branches(series: &[f64], band: f64) -> Vec<usize> {
+    let mut turning = Turning::new(band);
+    let turns = series.iter().filter_map(|&x| turning.push(x));
+    // The start counts as a turn, and ends no branch.
+    let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
+    let mut ended = turns.into_iter().peekable();
+    let mut branch = 0;
+    let of_sample = |n: usize| {
+        let here = branch;
+        if ended.next_if(|turn| *turn == n).is_some() {
+            branch += 1;
+        }
+        here
+    };
+    (0..series.len()).map(of_sample).collect()
+}
+
+/// The samples of a series that a hysteresis operator still remembers at its end, ascending: from its largest or its smallest, whichever comes
+/// first, the extremes that none after them reach, and the last sample. These alone leave every operator where the whole series leaves
+/// it, from all off or all on (return-point memory: Mayergoyz 2003, section 1.2).
+///
+/// ```
+/// assert_eq!(hysteron::remembered(&[0.0, 5.0, 2.0, 4.0, 1.0, 3.0, 2.5]), [0, 1, 4, 5, 6]);
+/// ```
+#[must_use]
+pub fn remembered(series: &[f64]) -> Vec<usize> {
+    let extreme = |from: usize, high: bool| {
+        let rest = series.iter().enumerate().skip(from);
+        let better = |a: f64, b: f64| if high { a >= b } else { a <= b };
+        rest.fold(None, |best: Option<(usize, f64)>, (n, &x)| match best {
+            Some((_, b)) if !better(x, b) => best,
+            _ => Some((n, x)),
+        })
+        .map(|(n, _)| n)
+    };
+    let mut high = extreme(0, true) < extreme(0, false);
+    let mut found: Vec<usize> = Vec::new();
+    while let Some(n) = extreme(found.last().map_or(0, |last| last + 1), high) {
+        found.push(n);
+        high = !high;
+    }
+    found
+}
+
+/// For each sample of a series, the direction that the series takes next: up to an extreme and at it,
+/// that of the branch before it, and beyond it that of the branch after it.
+///
+/// A sample's direction is known only once the series has moved on, so it comes out some samples
+/// later; of those that wait, at most `capacity`, the oldest comes out without a direction.
+#[derive(Debug, Clone)]
+pub struct Headings {
+    turning: Turning,
+    capacity: usize,
+    released: usize,
+}
+
+impl Headings {
+    /// A look ahead of at most `capacity` samples that ignores reversals of up to `band`.
+    #[must_use]
+    pub fn new(band: f64, capacity: usize) -> Self {
+        Self {
+            turning: Turning::new(band),
+            capacity,
+            released: 0,
+        }
+    }
+
+    /// Takes the next sample and returns directions of earlier ones, as many as are now known: in
+    /// order, `count` samples for each.
+    #[must_use]
+    pub fn push(&mut self, y: f64) -> [(Option<Direction>, usize); 2] {
+        let before = self.turning.branch().map(|(heading, _)| heading);
+        let turn = self.turning.push(y);
+        let mut result = [(None, 0); 2];
+        if let Some((index, _)) = turn {
+            result[0] = (before, self.release(if index == 0 { 0 } else { index + 1 }));
+        }
+        result[1] = match self.turning.branch() {
+            Some((heading, extreme)) => (Some(heading), self.release(extreme + 1)),
+            None => (None, 0),
+        };
+        // Only while the series keeps away from its extreme, so that nothing came out just above.
+        let waiting = self.turning.count - self.released;
+        if waiting > self.capacity {
+            result[1] = (None, self.release(self.released + waiting - self.capacity));
+        }
+        result
+    }
+
+    /// The directions of the samples still waiting at the end of the series.
+    #[must_use]
+    pub fn finish(mut self) -> (Option<Direction>, usize) {
+        let count = self.release(self.turning.count);
+        (self.turning.heading, count)
+    }
+
+    /// The directions of all samples of a series.
+    #[must_use]
+    pub fn all(mut self, series: &[f64]) -> Vec<Option<Direction>> {
+        let mut result = Vec::with_capacity(series.len());
+        for &y in series {
+            for (heading, count) in self.push(y) {
+                result.extend(std::iter::repeat_n(heading, count));
+            }
+        }
+        let (heading, count) = self.finish();
+        result.extend(std::iter::repeat_n(heading, count));
+        result
+    }
+
+    fn release(&mut self, up_to: usize) -> usize {
+        let count = up_to.saturating_sub(self.released);
+        self.released += count;
+        count
+    }
+}
+
+/// [`Headings`] of a whole series.
+#[must_use]
+pub fn headings(series: &[f64], band: f64) -> Vec<Option<Direction>> {
+    Headings::new(band, series.len()).all(series)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Direction::{Falling, Rising};
+
+    #[test]
+    fn an_extreme_belongs_to_the_branch_before_it() {
+        let series = [0.0, 1.0, 2.0, 3.0, 3.0, 2.9, 1.0, 0.5, 2.0];
+        let expected = [
+            Rising, Rising, Rising, Rising, Falling, Falling, Falling, Falling, Rising,
+        ];
+        assert_eq!(headings(&series, 0.5), expected.map(Some));
+        assert_eq!(headings(&[1.0, 1.1, 0.9], 0.5), [None; 3]);
+        assert_eq!(headings(&[], 0.5), []);
+    }
+
+    /// The definition: from an extreme on, look for the next one in the whole series.
+    #[test]
+    fn turning_points_of_a_long_series() {
+        let legs = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0, 4.0, 3.5, 9.0];
+        let mut series = vec![legs[0]];
+        for pair in legs.windows(2) {
+            let wiggle = |n: i32| if n % 2 == 0 { 0.1 } else { 0.0 };
+            series.extend((1..=50).map(|n| {
+                pair[0] + (pair[1] - pair[0]) * f64::from(n) / 50.0
+                    - wiggle(n) * f64::from(50 - n) / 50.0
+            }));
+        }
+        let mut turning = Turning::new(0.75);
+        let found: Vec<_> = series.iter().filter_map(|&y| turning.push(y)).collect();
+        let values: Vec<f64> = found.iter().map(|(n, _)| series[*n]).collect();
+        // The wiggle from 4.0 to 3.5 and back is within the band.
+        let expected = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0];
+        assert_eq!(values.len(), expected.len(), "{values:?}");
+        for (value, expected) in values.iter().zip(expected) {
+            assert!((value - expected).abs() <= 0.1, "{values:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_remembered_leaves_every_operator_where_it_was() -> crate::error::Result<()> {
+        let plane = crate::model::Plane::new(1.0, 9.0, 9)?;
+        let (operator, sign) = (hysteron_core::Operator::Mkp, crate::model::Sign::Positive);
+        let model = crate::model::Model::new(operator, plane, vec![1.0; 45], 0.0, sign)?;
+        let mut n = 1_u64;
+        for length in 1..200 {
+            let mut series = Vec::new();
+            for _ in 0..length {
+                n = n.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                series.push((n >> 40) as f64 * 11.0 / f64::from(1 << 24));
+            }
+            let kept: Vec<f64> = remembered(&series).iter().map(|n| series[*n]).collect();
+            for start in [model.start(), model.saturated()] {
+                let (mut whole, mut short) = (start.clone(), start);
+                model.run(&mut whole, &series, &mut vec![0.0; length])?;
+                model.run(&mut short, &kept, &mut vec![0.0; kept.len()])?;
+                for (i, j) in (1..=9).flat_map(|j| (1..=j).map(move |i| (i, j))) {
+                    assert_eq!(whole.gamma(i, j)?, short.gamma(i, j)?, "{series:?}");
+                }
+            }
+        }
+        assert!(remembered(&[]).is_empty());
+        Ok(())
+    }
+
+    #[test]
+    fn waiting_is_bounded() {
+        let mut look = Headings::new(0.5, 3);
+        let mut out = Vec::new();
+        for y in [0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 1.0] {
+            for (heading, count) in look.push(y) {
+                out.extend(std::iter::repeat_n(heading, count));
+            }
+        }
+        // Three plateau samples wait when the turn is known; the two before them had to go without.
+        let known = [Some(Rising); 3]
+            .into_iter()
+            .chain([None; 2])
+            .chain([Some(Falling); 4]);
+        assert_eq!(out, known.collect::<Vec<_>>());
+    }
+}
