@@ -1,4 +1,4 @@
-"""The code of the first page, and that of the README, runs word for word in an empty folder."""
+"""The code of the first page, of the README and of docs/python.md runs word for word in an empty folder."""
 
 import pathlib
 import re
@@ -24,8 +24,9 @@ def run(code, folder):
     return done.stdout
 
 
-def test_readme(tmp_path):
-    code = blocks(ROOT / "README.md")
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_page(page, tmp_path):
+    code = blocks(ROOT / page)
     assert len(code) == 1
     assert float(run(code, tmp_path)) < 2
 
