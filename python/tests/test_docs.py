@@ -1,4 +1,4 @@
-"""The code of the first page, and that of the README, runs word for word in an empty folder."""
+"""The code of the first page, of the README and of docs/python.md runs word for word in an empty folder."""
 
 import pathlib
 import re
@@ -17,21 +17,22 @@ def blocks(page, fence="python"):
     return [block for block in found if not block.startswith(":tags: [remove-cell]")]
 
 
-def run(code, folder):
+def run(code, folder, saved):
     done = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert [path.name for path in folder.iterdir()] == ["spring.json"]
+    assert [path.name for path in folder.iterdir()] == [saved]
     return done.stdout
 
 
-def test_readme(tmp_path):
-    code = blocks(ROOT / "README.md")
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_page(page, tmp_path):
+    code = blocks(ROOT / page)
     assert len(code) == 1
-    assert float(run(code, tmp_path)) < 2
+    assert float(run(code, tmp_path, "actuator.json")) < 2
 
 
 def test_start(tmp_path):
     pytest.importorskip("matplotlib")
     code = blocks(DOCS / "start.md", "{code-cell} python")
     assert len(code) >= 5
-    assert run(code, tmp_path).count("%") == 1
+    assert run(code, tmp_path, "spring.json").count("%") == 1

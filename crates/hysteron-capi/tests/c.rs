@@ -195,15 +195,15 @@ fn a_wrong_vector_is_noticed() {
     assert!(!output.status.success());
 }
 
-/// The README's command lines and program word for word, in a folder that looks like a clone with
-/// the libraries built.
+/// The command lines and the program of the page on C word for word, in a folder that looks like a
+/// clone with the libraries built.
 #[test]
-fn the_readme_in_c() {
+fn the_page_on_c() {
     if !has("cc") {
         return;
     }
-    let (section, program) = programs::readme("From C");
-    let commands = section.split("```text\n").nth(1).unwrap();
+    let (page, program) = programs::page("c.md");
+    let commands = page.split("```text\n").nth(1).unwrap();
     let commands = commands.split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (include, libraries) = ("crates/hysteron-capi/include", "target/release");

@@ -48,15 +48,13 @@ pub fn links(cc: &str, flags: &[&str]) -> bool {
     done.is_ok_and(|done| done.status.success())
 }
 
-/// A section of the README, and the C program in it.
-pub fn readme(title: &str) -> (String, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
-    let readme = std::fs::read_to_string(path).unwrap();
-    let between = |text: &str, start: &str, end: &str| {
-        let after = text.split_once(start).unwrap().1;
-        after.split(end).next().unwrap().to_owned()
-    };
-    let section = between(&readme, &format!("\n## {title}\n"), "\n## ");
-    let program = between(&section, "```c\n", "```");
-    (section, program)
+/// The text of a page of `docs/`, and the C program in it.
+pub fn page(name: &str) -> (String, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../docs")
+        .join(name);
+    let page = std::fs::read_to_string(path).unwrap();
+    let after = page.split_once("```c\n").unwrap().1;
+    let program = after.split("```").next().unwrap().to_owned();
+    (page, program)
 }

@@ -1,7 +1,7 @@
 //! Makes docs/control.md: controllers compared on the built-in scenarios, medians over their seeds.
 //!
 //! ```text
-//! cargo run --release -p hysteron --example control > docs/control.md
+//! cargo run --release -p hysteron-measure --bin control > docs/control.md
 //! ```
 
 use hysteron::track::{Comparison, Scenario, Score, Tuning, track};
@@ -16,7 +16,7 @@ const SCENARIOS: [&str; 6] = [
 ];
 
 fn main() -> hysteron::Result<()> {
-    println!("{HEAD}");
+    print!("{}", include_str!("control.md"));
     for name in SCENARIOS {
         let scenario = Scenario::load(name)?;
         eprintln!("{name} …");
@@ -24,7 +24,7 @@ fn main() -> hysteron::Result<()> {
         println!("\n## `{name}`: {}\n", scenario.title);
         table(&scenario, &comparison);
     }
-    println!("{STEP}");
+    print!("\n{}", include_str!("control-step.md"));
     for name in &SCENARIOS[..2] {
         let mut scenario = Scenario::load(name)?;
         scenario.shared.tuning = Tuning::Step;
@@ -98,31 +98,3 @@ fn table(scenario: &Scenario, comparison: &Comparison) {
         );
     }
 }
-
-const HEAD: &str = "# Controllers compared
-
-All plants here are **simulated**; what they are made of is in `crates/hysteron/src/plant/`. Each number is the median over
-the scenario's runs, which differ in the noise of the sensors and in the recording that the model is identified from. This page is made by
-`cargo run --release -p hysteron --example control > docs/control.md`; a single scenario with its report by `hysteron track NAME -o DIR`.
-
-- **Controllers.** PID; the inverse model alone; both together; and the same with an inverse that adapts. The inverse *holds* the input
-  while the reference rests, or *anticipates* the next reversal and crosses the dead band at once.
-- **One rule for all.** Every controller with a PID has the same gains, from one test on the same plant: a relay in place of the controller
-  (Åström & Hägglund 1984), gains by Tyreus & Luyben 1992. The spring's loop around the temperature is tuned by a step test and SIMC
-  (Skogestad 2003) and is the same in all. The last section shows what a step test on one branch gives instead.
-- **Errors** are those of the true output, not of the noisy reading. *settled*: from `settle_s` after a disturbance on (two minutes on
-  the spring). What the jump of the load itself leaves is the same whoever controls.
-- **Prediction**: what the model in the loop expected of each sample before it learned from it. **Frozen**: the same, with the weights
-  as they were when the window began and nothing learned since.
-- **Lag**: from when the reference has gone back by a twentieth of its range after a reversal until the output has, each from its own
-  extreme since the reference left its rest. Below zero the output is ahead.
-- **Drive travel**: mean change of the drive from sample to sample, in % of its range.";
-
-const STEP: &str = "
-## Tuned by a step test instead
-
-A small step on the rising branch knows nothing of the dead band. SIMC then gives less proportional and far more integral action, and on this
-spring that is the better PID: alone it tracks better than with the relay's gains, and after the load step better than all others here.
-What a compensator gains is smaller beside it. Before the step the inverse takes a quarter to two fifths off its error on the spring and two
-thirds on the relays; after it the adaptive inverse errs half to three quarters as much as the fixed one. The model's predictions
-gain as much as before.";

@@ -1,17 +1,19 @@
-//! The README's program for a microcontroller, word for word.
+//! The program of the page on microcontrollers, word for word.
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
-use common::programs::{has, readme, run};
+use common::programs::{has, page, run};
 use common::{STRICT, here};
 use hysteron::Model;
 use hysteron_export::{COptions, CReal, c};
 use std::process::Command;
 
 #[test]
-fn the_readme_on_a_microcontroller() {
-    let (section, program) = readme("On a microcontroller");
+fn the_page_on_microcontrollers() {
+    let (text, program) = page("microcontroller.md");
+    // Wherever its lines are wrapped.
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let folder = tempfile::tempdir().unwrap();
     let vector = std::fs::read_to_string(here("../../vectors/inverse-mkp-20.json")).unwrap();
     let vector: serde_json::Value = serde_json::from_str(&vector).unwrap();
@@ -30,7 +32,7 @@ fn the_readme_on_a_microcontroller() {
         ),
         format!("takes {} bytes of RAM", memory.state + memory.turns),
     ] {
-        assert!(section.contains(&figure), "{figure}");
+        assert!(text.contains(&figure), "{figure}");
     }
     if !has("cc") {
         return;
