@@ -1,7 +1,7 @@
 //! Scenarios: read or refused with words; one that is read has references of a size that can be.
 
 use crate::worded;
-use hysteron::track::Scenario;
+use hysteron_sim::track::Scenario;
 use std::path::Path;
 
 pub fn read(text: &str) {

@@ -1,13 +1,12 @@
 //! From results to status codes, and the detail of the last failure.
 
 use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
-use crate::pointer::Arguments;
 #[cfg(feature = "handles")]
 use hysteron::Error;
 #[cfg(not(feature = "handles"))]
 use hysteron_core::Error;
 use std::cell::RefCell;
-use std::ffi::{CStr, c_char};
+use std::ffi::CStr;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -74,20 +73,9 @@ pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
     }
 }
 
-/// What was wrong with the last call that failed in this thread (functions `hysteron_core_…` leave no text).
-///
-/// Copies as much as fits into `text`, of `size` bytes, with a zero byte at the end, and returns the bytes that the whole
-/// takes with that zero. With a null pointer it only tells the size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_last_error(text: *mut c_char, size: usize) -> usize {
-    let size = if text.is_null() { 0 } else { size };
-    // SAFETY: `text` has `size` bytes by contract.
-    match unsafe { Arguments::default().array_out(text, size, "text") } {
-        Ok(text) => LAST
-            .try_with(|last| text.write_text(&last.borrow()))
-            .unwrap_or(0),
-        Err(_) => 0,
-    }
+/// Lets `read` see the text of the last failure of this thread; `None` while the thread ends.
+pub(crate) fn with_last<T>(read: impl FnOnce(&str) -> T) -> Option<T> {
+    LAST.try_with(|last| read(&last.borrow())).ok()
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ mod fault;
 #[cfg(feature = "fmi")]
 pub mod fmi;
 mod handles;
+mod last_error;
 #[cfg(feature = "handles")]
 mod memory;
 #[cfg(feature = "handles")]
@@ -42,7 +43,7 @@ pub use adaptive::*;
 pub use codes::*;
 #[cfg(feature = "handles")]
 pub use estimator::*;
-pub use fault::hysteron_last_error;
+pub use last_error::hysteron_last_error;
 #[cfg(feature = "handles")]
 pub use memory::*;
 #[cfg(feature = "handles")]

@@ -1,6 +1,7 @@
 //! `hysteron adapt`
 
-use crate::{Result, args, print, recording, text};
+use crate::terminal::{Result, print};
+use crate::{args, recording, text};
 use hysteron::{Adapted, Columns, Compared, Errors, Model, TableWriter};
 use serde_json::{Value, json};
 

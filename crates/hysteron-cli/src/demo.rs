@@ -1,9 +1,10 @@
 //! `hysteron demo`
 
-use crate::{Result, args, evaluate, print, text};
-use hysteron::rig::{Experiment, Reproduction};
+use crate::terminal::{Result, print};
+use crate::{args, evaluate, text};
 use hysteron::{AtomicFolder, Errors, InverseRun};
 use hysteron_report::Report;
+use hysteron_sim::rig::{Experiment, Reproduction};
 use serde_json::json;
 use std::path::Path;
 

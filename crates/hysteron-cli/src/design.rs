@@ -1,6 +1,7 @@
 //! `hysteron design`
 
-use crate::{Result, args, print, text};
+use crate::terminal::{Result, print};
+use crate::{args, text};
 use hysteron::{
     AtomicFile, Design, DesignOptions, Excitation, Own, Plane, Quantity, Rates, TableReader,
     TableWriter,

@@ -1,6 +1,7 @@
 //! `hysteron evaluate`
 
-use crate::{Result, args, print, recording, say, text};
+use crate::terminal::{Result, print, say};
+use crate::{args, recording, text};
 use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
 use hysteron_report::Report;
 use serde_json::{Value, json};

@@ -1,6 +1,7 @@
 //! `hysteron export`
 
-use crate::{Result, args, print};
+use crate::args;
+use crate::terminal::{Result, print};
 use hysteron_export::{COptions, Fmu, FmuOptions};
 use serde_json::json;
 

@@ -1,6 +1,7 @@
 //! `hysteron fit`
 
-use crate::{Result, args, prepare, print, progress, recording, say, text};
+use crate::terminal::{Result, print, say};
+use crate::{args, prepare, progress, recording, text};
 use hysteron::{
     Advice, Columns, FirstOrder, FitOptions, FitSummary, Model, Open, Preparation, RateDependence,
     Recording, Sign, Solver, Step,

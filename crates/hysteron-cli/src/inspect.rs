@@ -1,6 +1,7 @@
 //! `hysteron inspect`
 
-use crate::{Result, args, print, recording, text};
+use crate::terminal::{Result, print};
+use crate::{args, recording, text};
 use hysteron::{
     Columns, ConfidenceSummary, Model, Plane, RecordingSummary, TableReader, Uncertain, Validation,
 };

@@ -13,17 +13,17 @@ mod progress;
 mod recording;
 mod remedy;
 mod table;
+mod terminal;
 mod text;
 mod track;
 
 use args::{Cli, Command};
 use clap::Parser;
 use std::error::Error;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
-
-type Result<T> = std::result::Result<T, Box<dyn Error>>;
+use terminal::say;
 
 fn main() -> ExitCode {
     // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works
@@ -98,16 +98,4 @@ fn parse() -> Cli {
         }
         error.exit()
     })
-}
-
-/// Tells a person something, on standard error.
-fn say(message: std::fmt::Arguments<'_>) {
-    eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));
-}
-
-/// Prints to standard output for people, or JSON; an error there is returned, not a panic.
-fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{}", hysteron::printable(text))?;
-    Ok(out.flush()?)
 }

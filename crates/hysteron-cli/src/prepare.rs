@@ -1,6 +1,7 @@
 //! `hysteron prepare`, and the same steps before a fit.
 
-use crate::{Result, args, print, recording, say, text};
+use crate::terminal::{Result, print, say};
+use crate::{args, recording, text};
 use hysteron::{
     Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
     Smoothed, Step, TableWriter,

@@ -1,6 +1,7 @@
 //! Recordings from files, with what there is to say about their rows.
 
-use crate::{Result, args, say};
+use crate::args;
+use crate::terminal::{Result, say};
 use hysteron::{Columns, Note, Others, Recording, TableReader};
 use std::path::Path;
 

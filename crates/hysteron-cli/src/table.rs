@@ -1,6 +1,7 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
-use crate::{Result, args, print, progress, recording, say};
+use crate::terminal::{Result, print, say};
+use crate::{args, progress, recording};
 use hysteron::{Counts, Model, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;

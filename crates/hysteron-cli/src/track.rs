@@ -1,8 +1,9 @@
 //! `hysteron track`
 
-use crate::{Result, args, print, progress, say, text};
-use hysteron::track::{Comparison, Kind, Scenario, track};
+use crate::terminal::{Result, print, say};
+use crate::{args, progress, text};
 use hysteron::{AtomicFile, AtomicFolder, Own, Quantity};
+use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 use serde_json::json;
 use std::path::Path;
 

@@ -1,10 +1,16 @@
-//! Where the input is, and the branch it travels between two turning points.
+//! Turning points, and the branch that the input travels between two of them.
 
 use core::slice::IterMut;
 
-use crate::Real;
 use crate::everett::{Grid, Split};
-use crate::state::Turn;
+use crate::scalar::Real;
+
+/// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there with `γ` in `[0, 1]`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turn<T> {
+    pub(crate) x: T,
+    pub(crate) y: T,
+}
 
 /// The start of every history among the turning points: the input below the plane, after endless
 /// heights. There are enough of these for a look at two corners back to need no case of its own.

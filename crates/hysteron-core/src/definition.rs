@@ -2,9 +2,12 @@
 //!
 //! Kept plain on purpose: it is what the fast paths are tested against.
 
+use crate::error::Error;
+use crate::operator::Operator;
 use crate::operator::{mkp, relay};
+use crate::plane::Plane;
 use crate::plane::{operator_count, operator_index};
-use crate::{Error, Operator, Plane, Real};
+use crate::scalar::Real;
 
 /// The plain model over weights and operator states that the caller holds.
 ///

@@ -110,7 +110,7 @@ impl fmt::Display for Error {
             Error::Levels(k) => write!(
                 f,
                 "{k} levels: a plane has from 2 to {} levels",
-                crate::MAX_LEVELS
+                crate::plane::MAX_LEVELS
             ),
             Error::Range => write!(
                 f,

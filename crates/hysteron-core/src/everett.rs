@@ -5,8 +5,9 @@
 //! the prefix sum `C[p][q] = Σ μ_ij over j ≤ p, i > q`, and between corners it is exactly piecewise
 //! linear on triangles (Everett 1955; Mayergoyz 1991).
 
+use crate::error::{Error, NegativeWeights};
 use crate::plane::{operator_count, operator_index};
-use crate::{Error, NegativeWeights, Real};
+use crate::scalar::Real;
 
 /// Elements of the table for `levels` levels: `(K + 1)(K + 2)/2`, the corners `0 ≤ q ≤ p ≤ K`.
 #[must_use]

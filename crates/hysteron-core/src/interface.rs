@@ -1,8 +1,11 @@
 //! The state seen on the plane, as in the chapter's Fig. 6.
 
+use crate::branch::Turn;
+use crate::error::Error;
 use crate::operator::mkp;
-use crate::state::{State, Turn};
-use crate::{Error, Plane, Real};
+use crate::plane::Plane;
+use crate::scalar::Real;
+use crate::state::State;
 
 /// Which of the plane's three sets an operator belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,11 +5,15 @@
 //! row or column of the Everett table tells the grid cell, and inside the cell there are two linear
 //! pieces to solve. The chapter's minimum (10) and maximum (13) over candidates are that first crossing.
 
+use crate::branch::Turn;
+use crate::error::Error;
 use crate::everett::{Grid, Split, table_index};
+use crate::model::Model;
+use crate::operator::Operator;
 use crate::relay;
+use crate::scalar::Real;
 use crate::search::{Branch, Goal, along, ceil_index, first_true, within};
-use crate::state::{State, Turn};
-use crate::{Error, Model, Operator, Real};
+use crate::state::State;
 
 /// The inverse of a model whose weights are not negative ([`Model::inverse`]).
 #[derive(Debug, Clone, Copy)]

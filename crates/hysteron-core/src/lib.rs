@@ -33,6 +33,7 @@ mod state;
 pub use adapt::{
     Adaptation, Estimator, Learning, Method, Outcome, estimator_len, estimator_len_of_parts,
 };
+pub use branch::Turn;
 pub use definition::Definition;
 pub use error::{Error, NegativeWeights};
 pub use everett::{table_index, table_len};
@@ -42,4 +43,4 @@ pub use model::{ClippedCount, Model, Output};
 pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index};
 pub use scalar::Real;
-pub use state::{State, Turn, turn_capacity};
+pub use state::{State, turn_capacity};

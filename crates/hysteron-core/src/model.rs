@@ -1,8 +1,12 @@
 //! The forward model, `O(1)` per sample whatever the number of levels.
 
+use crate::branch::Turn;
+use crate::error::{Error, NegativeWeights};
 use crate::everett;
-use crate::state::{State, Turn};
-use crate::{Clipped, Error, NegativeWeights, Operator, Plane, Real};
+use crate::operator::Operator;
+use crate::plane::{Clipped, Plane};
+use crate::scalar::Real;
+use crate::state::State;
 
 /// A model ready to run: the configuration apart from the [`State`].
 ///

@@ -1,6 +1,7 @@
 //! The three elementary operators of the chapter's Fig. 5, as defined.
 
-use crate::{Plane, Real};
+use crate::plane::Plane;
+use crate::scalar::Real;
 
 /// Which elementary operator a model is a sum of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,6 +1,7 @@
 //! The discrete Preisach plane of equation (3).
 
-use crate::{Error, Real};
+use crate::error::Error;
+use crate::scalar::Real;
 
 /// Most levels a plane may have: its operators are then counted within 31 bits.
 pub const MAX_LEVELS: usize = 46_340;

@@ -1,6 +1,7 @@
 //! Relays move in jumps: their normalised positions are the whole numbers of the levels passed.
 
-use crate::{Plane, Real};
+use crate::plane::Plane;
+use crate::scalar::Real;
 
 /// The position after `input`, from the last input and the position there. Rising, it is the last level
 /// reached; falling, the level below the last one left. There the Everett function is the table itself.

@@ -1,9 +1,12 @@
 //! Weights that change while a model runs.
 
+use crate::branch::Turn;
+use crate::error::Error;
 use crate::everett;
+use crate::model::Model;
 use crate::plane::operator_index;
-use crate::state::{State, Turn};
-use crate::{Error, Model, Real};
+use crate::scalar::Real;
+use crate::state::State;
 
 impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
     /// Puts other weights in the place of the present ones. `O(K²)`. States of the model have to be

@@ -1,7 +1,8 @@
 //! Where on a branch a goal for the output is met: what both directions of the inverse share.
 
-use crate::Real;
-use crate::state::{State, Turn};
+use crate::branch::Turn;
+use crate::scalar::Real;
+use crate::state::State;
 
 /// The part of a branch that a goal is met on, once the turning points before it are passed.
 pub(crate) struct Branch<T> {

@@ -1,15 +1,12 @@
 //! What a model remembers of its input: the dominant turning points, in memory that the caller provides.
 
-use crate::branch::{Place, START};
+use crate::branch::{Place, START, Turn};
+use crate::error::Error;
 use crate::everett::{Grid, Split, Triangle};
-use crate::{Error, Operator, Plane, Real, relay};
-
-/// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there with `γ` in `[0, 1]`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Turn<T> {
-    pub(crate) x: T,
-    pub(crate) y: T,
-}
+use crate::operator::Operator;
+use crate::plane::Plane;
+use crate::relay;
+use crate::scalar::Real;
 
 /// Memory that a state needs, `4K + 8` turning points: the `2K` corners `(M, m)` that a staircase
 /// can have, two for each grid cell it can cross; the peak of the branch being travelled and the

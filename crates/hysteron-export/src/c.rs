@@ -154,7 +154,7 @@ pub fn c<'a>(
     options: &COptions<'_>,
 ) -> Result<CExport> {
     let target = target.into();
-    crate::check(model)?;
+    crate::refusal::check(model)?;
     let name = name::choose(options.name, options.source)?;
     match options.real {
         CReal::Float => write::<f32>(model, target, options, name),

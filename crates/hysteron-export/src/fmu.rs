@@ -82,7 +82,7 @@ pub struct Fmu {
 pub fn fmu<'a>(model: &Model, options: &FmuOptions, target: impl Into<Target<'a>>) -> Result<Fmu> {
     let target = target.into();
     let path = target.path();
-    crate::check(model)?;
+    crate::refusal::check(model)?;
     if options.inverse {
         model.inverse()?;
     }
@@ -162,8 +162,8 @@ fn identifier(name: &str) -> Result<&str> {
             "it has {letters} letters, and {LONGEST} are the most"
         ));
     }
-    if crate::is_device(name) {
-        return refused(crate::DEVICE);
+    if crate::refusal::is_device(name) {
+        return refused(crate::refusal::DEVICE);
     }
     let mut letters = name.chars();
     let first = letters

@@ -15,7 +15,7 @@ use crate::word::{choice, direction};
 use hysteron::control::{
     self, Compensator, Course, Gains, InnerLoop, Reading, Rest, Scheme, Target,
 };
-use hysteron::track::course;
+use hysteron_sim::track::course;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 

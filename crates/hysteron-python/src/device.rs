@@ -6,7 +6,7 @@ use crate::shared::Shared;
 use crate::word::another_kind;
 use hysteron::Direction;
 use hysteron::control::{Controller, Reading, Target, Trace};
-use hysteron::track::Event;
+use hysteron_sim::track::Event;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -70,7 +70,7 @@ fn exception(error: &Error) -> PyErr {
         Error::Recording { .. } => "RecordingError",
         Error::Fit(_) => "FitError",
         Error::Filter(_) => "FilterError",
-        Error::Rig(_) => "RigError",
+        Error::Plant(_) => "RigError",
         Error::Preparation(_) => "PreparationError",
         Error::Design(_) => "DesignError",
         Error::Thermal(_) => "ThermalError",

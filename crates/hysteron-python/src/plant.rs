@@ -3,8 +3,8 @@
 use crate::error::{Raise, number};
 use crate::said::{arguments, options};
 use crate::shared::Shared;
-use hysteron::plant::{self, PreisachPlantOptions, SpringPlantOptions};
-use hysteron::track::{Event, PlantOptions};
+use hysteron_sim::plant::{self, PreisachPlantOptions, SpringPlantOptions};
+use hysteron_sim::track::{Event, PlantOptions};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -8,7 +8,7 @@ use crate::said::told;
 use crate::trace::Trace;
 use crate::watched::watched;
 use crate::whole::Whole;
-use hysteron::track::{Comparison as Found, Scenario, Score};
+use hysteron_sim::track::{Comparison as Found, Scenario, Score};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -215,7 +215,7 @@ pub(crate) fn track(
         scenario.seeds = seeds.of("seeds")?;
     }
     let inner = watched(py, progress, |watch| {
-        hysteron::track::track(&scenario, &|done, all| {
+        hysteron_sim::track::track(&scenario, &|done, all| {
             watch("runs", done as f64 / all as f64)
         })
     })?;
@@ -253,7 +253,7 @@ pub(crate) fn tune(
     scenario: &Bound<'_, PyAny>,
 ) -> PyResult<(Option<Pid>, Option<Pid>)> {
     let scenario = scenario_of(scenario)?;
-    let (scheme, gains) = detached(py, || hysteron::track::tune(&scenario)).raise()?;
+    let (scheme, gains) = detached(py, || hysteron_sim::track::tune(&scenario)).raise()?;
     Ok((
         gains.map(Pid::of),
         scheme.inner.map(|inner| Pid::of(inner.gains)),

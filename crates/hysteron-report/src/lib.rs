@@ -7,33 +7,18 @@
 //!
 //! The figures stay legible in grey: curves differ in line style and lightness, never in colour alone.
 
-mod captions;
-mod dead_band;
 mod decimate;
 mod draw;
 mod error;
-mod figure;
-mod figures;
-mod files;
+mod evaluation;
 mod frame;
-mod instants;
 mod number;
-mod page;
 mod plane;
 mod png;
 mod quantity;
-mod report;
-mod source;
+mod stack;
 mod track;
-mod view;
 
 pub use error::ReportError;
-pub use figure::Figure;
-pub use figures::excitation_map;
-pub use report::Report;
+pub use evaluation::{Figure, Report, excitation_map};
 pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};
-
-#[cfg(test)]
-mod fixture;
-#[cfg(test)]
-mod tests;

@@ -66,6 +66,25 @@ pub(crate) fn power_of_ten(exponent: i32) -> String {
         .collect()
 }
 
+/// A percentage with two significant digits.
+pub(crate) fn percent(value: f64) -> String {
+    format!("{}\u{a0}%", significant(value, 2))
+}
+
+/// `text` with a capital at its start.
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters
+        .next()
+        .map(|first| first.to_uppercase().chain(characters).collect())
+        .unwrap_or_default()
+}
+
+/// `a` minus `b`, sample by sample.
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

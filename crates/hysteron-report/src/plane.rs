@@ -6,7 +6,6 @@ use crate::draw::colour::of_share;
 use crate::draw::panel::{Labels, Panel, threshold};
 use crate::draw::style::Stroke;
 use crate::quantity::Labelled;
-use crate::source::Source;
 use hysteron::Plane;
 use std::fmt::Write;
 
@@ -43,15 +42,6 @@ pub(crate) struct Half {
 }
 
 impl Half {
-    pub(crate) fn of_weights(source: Source<'_>) -> Self {
-        Self::of_values(source.plane(), source.weights())
-    }
-
-    /// The operator states after the inputs `history`.
-    pub(crate) fn of_states(source: Source<'_>, history: &[f64]) -> Self {
-        Self::of_values(source.plane(), &source.states(history))
-    }
-
     /// A value for each operator, in the order of the weights.
     pub(crate) fn of_values(plane: &Plane, values: &[f64]) -> Self {
         let levels = plane.levels();
@@ -199,24 +189,25 @@ pub(crate) fn axes(plane: &Plane, input: &Labelled) -> [Axis; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture;
+    use crate::evaluation::fixture;
 
     #[test]
     fn a_fine_plane_is_drawn_in_blocks_that_keep_the_sum() {
         let mut fixture = fixture::sma(10);
         fixture.refine(300);
-        let source = Source::new(&fixture.model);
-        let half = Half::of_weights(source);
+        let model = &fixture.model;
+        let half = Half::of_values(model.plane(), model.weights());
         assert_eq!((half.block, half.side), (3, 100));
         let drawn: f64 = half.cells().map(|cell| cell.sum).sum();
-        assert!((drawn - source.weights().iter().sum::<f64>()).abs() < 1e-9);
+        assert!((drawn - model.weights().iter().sum::<f64>()).abs() < 1e-9);
         assert!(half.remark().is_some());
     }
 
     #[test]
     fn cells_stand_on_their_levels() {
         let fixture = fixture::sma(10);
-        let half = Half::of_weights(Source::new(&fixture.model));
+        let model = &fixture.model;
+        let half = Half::of_values(model.plane(), model.weights());
         let corner = half.cells().last().map(|cell| (cell.alpha, cell.beta));
         assert_eq!((half.cells().count(), corner), (210, Some((80.0, 80.0))));
     }

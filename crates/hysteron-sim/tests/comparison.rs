@@ -3,7 +3,7 @@
 
 mod loops;
 
-use hysteron::track::{Comparison, Kind, track};
+use hysteron_sim::track::{Comparison, Kind, track};
 use loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario};
 
 fn rmse(found: &Comparison, kind: Kind, window: usize) -> f64 {

@@ -7,8 +7,8 @@ mod loops;
 use hysteron::control::{
     Action, Compensator, Controller, Disturbance, LoopStatus, Scheme, SimulatedPlant, Target,
 };
-use hysteron::track::PlantOptions;
 use hysteron::{Adaptive, Model};
+use hysteron_sim::track::PlantOptions;
 use loops::{Known, rms};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

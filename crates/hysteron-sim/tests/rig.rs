@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::filter::{FilterError, low_pass};
-use hysteron::rig::{
+use hysteron::{Origin, Recording};
+use hysteron_sim::rig::{
     Direction, Experiment, MaterialPoint, Plant, Rig, RigError, Sensor, Spring, Transformation,
     Wire, prepared,
 };
-use hysteron::{Origin, Recording};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

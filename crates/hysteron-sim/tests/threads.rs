@@ -3,12 +3,12 @@
 
 mod loops;
 
-use hysteron::rig::{Experiment, prepared};
-use hysteron::track::track;
 use hysteron::{
     AdaptOptions, DesignOptions, FitOptions, Model, Open, Operator, Plane, PrepareOptions, Rates,
     Recording, Solver, Start, adapt, design, evaluate, fit, identify, prepare,
 };
+use hysteron_sim::rig::{Experiment, prepared};
+use hysteron_sim::track::track;
 use loops::{RELAYS, RELAYS_SINE, scenario};
 use rayon::ThreadPoolBuilder;
 

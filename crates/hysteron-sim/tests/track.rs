@@ -4,7 +4,7 @@
 mod loops;
 
 use hysteron::Error;
-use hysteron::track::{Scenario, track};
+use hysteron_sim::track::{Scenario, track};
 use loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario, text};
 use std::path::Path;
 
@@ -279,8 +279,8 @@ fn both_rules_give_gains_on_both_plants() {
             let more = format!("duration_s = {duration}\ncontrollers = [\"pid\"]");
             let mut one = scenario(&[base, &more, sine]);
             one.shared.tuning = match rule {
-                "relay" => hysteron::track::Tuning::Relay,
-                _ => hysteron::track::Tuning::Step,
+                "relay" => hysteron_sim::track::Tuning::Relay,
+                _ => hysteron_sim::track::Tuning::Step,
             };
             let found = track(&one, &|_, _| Ok(())).unwrap();
             let gains = found.gains.unwrap();

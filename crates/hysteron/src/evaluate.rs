@@ -1,13 +1,13 @@
 //! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
 
+use crate::error::Result;
 use crate::identify::simulate_from_unknown;
-use crate::series::range;
-use crate::series::{NOISE, Turning};
 use crate::model::{BandEvaluation, Inverse, Invert, Model, Start, State};
-use crate::series::Errors;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
-use crate::error::Result;
+use crate::series::Errors;
+use crate::series::range;
+use crate::series::{NOISE, Turning};
 use hysteron_core::Solution;
 
 /// Around a turning point the output stands still as far as it is within this part of its range. Twice

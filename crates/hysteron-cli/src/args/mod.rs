@@ -155,7 +155,7 @@ impl Load {
     pub(crate) fn apply(
         &self,
         model: hysteron::Model,
-    ) -> crate::Result<(hysteron::Model, Option<String>)> {
+    ) -> crate::terminal::Result<(hysteron::Model, Option<String>)> {
         match self.load.as_ref().map(|load| (load, load.parse())) {
             Some((_, Ok(load))) => Ok((model.at_load(load)?, None)),
             Some((column, Err(_))) => Ok((model, Some(column.clone()))),

@@ -6,9 +6,13 @@ use super::memory::{Layout, Slices};
 use super::trial::Trial;
 use super::{Adaptation, Learning, Method, Outcome, operators, parameters};
 use crate::branch::Place;
+use crate::branch::Turn;
+use crate::error::Error;
 use crate::everett;
-use crate::state::{State, Turn};
-use crate::{Error, Model, Operator, Real};
+use crate::model::Model;
+use crate::operator::Operator;
+use crate::scalar::Real;
+use crate::state::State;
 
 /// Adapts the weights of a [`Model`], and an offset beside it, from sample to sample.
 ///

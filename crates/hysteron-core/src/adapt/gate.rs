@@ -10,7 +10,8 @@
 //! has grown, and the scale follows it step by step.
 
 use super::Adaptation;
-use crate::{Model, Real};
+use crate::model::Model;
+use crate::scalar::Real;
 
 /// Surprises that the mean remembers. A branch takes some hundred samples, and its scale is not
 /// that of the next one.

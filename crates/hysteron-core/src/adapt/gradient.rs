@@ -2,7 +2,7 @@
 
 use super::memory::Slices;
 use super::vector::dot;
-use crate::Real;
+use crate::scalar::Real;
 
 /// Moves the parameters along the regressor by the share `gain` of the error, and by `leakage` to the off-line ones;
 /// `floor` is `c`.

@@ -4,7 +4,8 @@
 use super::memory::Slices;
 use super::operators::{touched, within};
 use super::trial::Errors;
-use crate::{Operator, Real};
+use crate::operator::Operator;
+use crate::scalar::Real;
 
 /// An increment under way.
 #[derive(Debug, Clone, Copy, PartialEq)]

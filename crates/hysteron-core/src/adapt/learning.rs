@@ -6,9 +6,11 @@ use super::least_squares::{self, Law};
 use super::trial::{Errors, Trial};
 use super::vector::dot;
 use super::{Method, gradient, parameters};
+use crate::branch::Turn;
+use crate::plane::Clipped;
 use crate::plane::operator_count;
-use crate::state::{State, Turn};
-use crate::{Clipped, Real};
+use crate::scalar::Real;
+use crate::state::State;
 
 /// What a sample taught.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,8 @@
 
 use super::memory::Slices;
 use super::vector::{dot, dot_and_add};
-use crate::Real;
 use crate::plane::operator_index;
+use crate::scalar::Real;
 
 /// One negative weight for each of so many parameters is led back in a sample.
 const PARAMETERS_PER_STEP: usize = 4;
@@ -133,7 +133,7 @@ mod tests {
     use super::super::memory::Layout;
     use super::super::{Method, parameters};
     use super::*;
-    use crate::operator_count;
+    use crate::plane::operator_count;
 
     const LEVELS: usize = 4;
     const N: usize = operator_count(LEVELS) + 1;

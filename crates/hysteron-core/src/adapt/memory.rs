@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::trial::Contest;
-use crate::Method;
+use crate::adapt::Method;
 use crate::everett::table_len;
 use crate::plane::operator_count;
 

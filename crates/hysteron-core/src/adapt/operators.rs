@@ -1,9 +1,11 @@
 //! The states of all operators, kept up to date from sample to sample: what an estimator regresses on.
 
+use crate::branch::Turn;
+use crate::operator::Operator;
 use crate::operator::{mkp, ridge};
 use crate::plane::operator_index;
-use crate::state::{State, Turn};
-use crate::{Operator, Real};
+use crate::scalar::Real;
+use crate::state::State;
 
 /// The rows or columns `first..=last` whose ridges a move from `x` to `to` touches: one more than the cells crossed.
 pub(super) fn touched<T: Real>(x: T, to: T, levels: usize) -> (usize, usize) {

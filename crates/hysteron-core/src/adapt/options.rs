@@ -1,6 +1,7 @@
 //! How an estimator learns: the method and the guards around it.
 
-use crate::{Error, Real};
+use crate::error::Error;
+use crate::scalar::Real;
 
 /// How the weights follow the error `e` of the prediction; `φ` is what the operators put out, `κ` the offset's share.
 ///

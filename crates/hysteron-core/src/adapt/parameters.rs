@@ -4,9 +4,12 @@ use super::Method;
 use super::least_squares::packed;
 use super::memory::Slices;
 use super::operators;
+use crate::branch::Turn;
 use crate::everett::{fill_row, table_index, table_len};
-use crate::state::{State, Turn};
-use crate::{Model, Operator, Real};
+use crate::model::Model;
+use crate::operator::Operator;
+use crate::scalar::Real;
+use crate::state::State;
 
 /// Writes the derivative of the output with respect to each parameter, `share` for the offset.
 pub(super) fn regressor<T, S>(

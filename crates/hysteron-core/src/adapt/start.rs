@@ -5,9 +5,11 @@ use super::gate::Gate;
 use super::memory::Layout;
 use super::trial::Trial;
 use super::{Adaptation, Method, least_squares, parameters};
+use crate::error::Error;
 use crate::everett;
+use crate::model::Model;
 use crate::plane::operator_count;
-use crate::{Error, Model, Real};
+use crate::scalar::Real;
 
 impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.

@@ -5,7 +5,7 @@
 //! no worse, so that what was learned in the middle of a burst of wrong readings does not become good as long as the
 //! burst is shorter than half a trial.
 
-use crate::Real;
+use crate::scalar::Real;
 
 /// Sums of squares over the samples of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,6 +1,6 @@
 //! Sums over slices, in lanes: one running sum alone would wait for each addition to end before the next.
 
-use crate::Real;
+use crate::scalar::Real;
 
 const LANES: usize = 8;
 

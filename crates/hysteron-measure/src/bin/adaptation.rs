@@ -1,5 +1,5 @@
 //! Adapts models over measured recordings, and prints `docs/adaptation.md`:
-//! `cargo run --release -p hysteron --example adaptation -- ../shared/data`
+//! `cargo run --release -p hysteron-measure --bin adaptation -- ../shared/data`
 
 use hysteron::{
     AdaptOptions, Adaptive, Columns, Direction, DriftParts, Errors, FitOptions, Learner, Model,

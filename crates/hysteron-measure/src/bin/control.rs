@@ -4,7 +4,7 @@
 //! cargo run --release -p hysteron-measure --bin control > docs/control.md
 //! ```
 
-use hysteron::track::{Comparison, Scenario, Score, Tuning, track};
+use hysteron_sim::track::{Comparison, Scenario, Score, Tuning, track};
 
 const SCENARIOS: [&str; 6] = [
     "load-step",

@@ -1,7 +1,7 @@
 //! How fast weights are identified, against SciPy's dense way in the same run, and how time and memory grow:
-//! `cargo run --release -p hysteron --example fit-speed`
+//! `cargo run --release -p hysteron-measure --bin fit-speed`
 
-#[path = "scipy/mod.rs"]
+#[path = "../scipy/mod.rs"]
 mod scipy;
 
 use hysteron::{FitOptions, Model, Operator, Plane, Recording, Sign, fit};

@@ -1,8 +1,8 @@
 //! Compares designed profiles with other experiments at the same rates, and prints `docs/profiles.md`:
-//! `cargo run --release -p hysteron --example profiles`
+//! `cargo run --release -p hysteron-measure --bin profiles`
 
-use hysteron::rig::{Experiment, LEVELS, RANGE_DEGC};
 use hysteron::{DesignOptions, Excitation, Operator, Plane, Rates, design, excitation, ramps};
+use hysteron_sim::rig::{Experiment, LEVELS, RANGE_DEGC};
 use std::error::Error;
 
 /// Typical of a wire that is heated by a current and cools in still air, °C/s.

@@ -1,7 +1,7 @@
 //! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
-//! `cargo run --release -p hysteron --example recordings -- ../shared/data`
+//! `cargo run --release -p hysteron-measure --bin recordings -- ../shared/data`
 
-#[path = "scipy/mod.rs"]
+#[path = "../scipy/mod.rs"]
 mod scipy;
 
 use hysteron::{

@@ -210,6 +210,11 @@ impl Axis {
     }
 }
 
+/// Time runs from edge to edge.
+pub(crate) fn time_axis(label: &Labelled, span: Span) -> Axis {
+    Axis::new(label, span.padded(0.005))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

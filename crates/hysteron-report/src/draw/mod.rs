@@ -7,5 +7,6 @@ pub(crate) mod colour_bar;
 pub(crate) mod marker;
 pub(crate) mod panel;
 pub(crate) mod sheet;
+pub(crate) mod stretches;
 pub(crate) mod style;
 pub(crate) mod text;

@@ -10,6 +10,7 @@ use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::LABEL;
 use crate::plane::{Half, axes};
+use crate::stack::Figures;
 
 /// Wider than a figure over time: three planes and two scales side by side.
 const WIDTH: f64 = 920.0;

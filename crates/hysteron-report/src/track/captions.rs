@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::view::View;
-use crate::captions::capitalised;
+use crate::number::capitalised;
 
 /// The short title at the head of a figure.
 pub(super) fn title(figure: Figure, view: &View<'_>) -> String {

@@ -2,8 +2,8 @@
 
 use super::report::{NamedTrace, TrackReport, TrackTable};
 use crate::error::ReportError;
-use hysteron::track::{Comparison, Median, Scenario};
 use hysteron::{AtomicFolder, Quantity};
+use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one. See

@@ -2,7 +2,6 @@
 
 use super::view::View;
 use super::{before_after, input, reversal, series, weights_time};
-use std::fmt;
 
 /// A figure of the report, named after what it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,11 +63,5 @@ impl Figure {
             Self::WeightsTime => weights_time::svg(view),
             Self::BeforeAfter => before_after::svg(view),
         }
-    }
-}
-
-impl fmt::Display for Figure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.stem())
     }
 }

@@ -4,14 +4,15 @@ use super::figure::Figure;
 use super::report::NamedTrace;
 use super::stack::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
-use crate::dead_band::stretches;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Panel};
 use crate::draw::sheet::{Key, Sheet};
+use crate::draw::stretches::extent;
+use crate::draw::stretches::stretches;
 use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
 use crate::draw::text;
-use crate::view::extent;
+use crate::stack::Figures;
 use hysteron::control::{LoopStatus, Trace};
 
 /// Height of a row of the status strip.
@@ -164,7 +165,7 @@ fn heading(run: &NamedTrace<'_>, flags: &[(&str, &str, &str, Flag)]) -> Heading 
     let status = &run.trace.status;
     let share = |(word, _, _, flag): &(&str, &str, &str, Flag)| {
         let count = status.iter().filter(|status| flag(status)).count();
-        let percent = crate::captions::percent(100.0 * count as f64 / status.len().max(1) as f64);
+        let percent = crate::number::percent(100.0 * count as f64 / status.len().max(1) as f64);
         (count > 0).then(|| format!("{word} {percent}"))
     };
     Heading {

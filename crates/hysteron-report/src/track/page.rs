@@ -1,10 +1,10 @@
 //! The page of a comparison.
 
-use super::captions::{caption, title};
 use super::figure::Figure;
 use super::view::View;
 use crate::frame;
 use crate::number::{count, significant};
+use crate::stack::Figures;
 use maud::{Markup, html};
 
 /// The sections of the page and their figures.
@@ -101,17 +101,12 @@ fn facts(view: &View<'_>) -> Markup {
 }
 
 fn section(name: &str, figures: &[Figure], view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
-    let numbered = || {
-        let numbered = drawn.iter().enumerate();
-        numbered.filter(|(_, (figure, _))| figures.contains(figure))
-    };
+    let drawn_here = |figure: &&Figure| drawn.iter().any(|(drawn, _)| drawn == *figure);
     html! {
-        @if numbered().next().is_some() {
+        @if figures.iter().any(|figure| drawn_here(&figure)) {
             section {
                 h2 { (name) }
-                @for (number, (figure, svg)) in numbered() {
-                    (frame::picture(figure.stem(), number, svg, &[title(*figure, view), caption(*figure, view)], html! {}))
-                }
+                @for figure in figures { (view.picture(*figure, drawn, html! {})) }
             }
         }
     }

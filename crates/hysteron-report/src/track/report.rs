@@ -1,10 +1,8 @@
 //! What is reported, and its parts checked against each other.
 
-use super::figure::Figure;
-use super::page;
 use super::view::View;
 use crate::error::ReportError;
-use crate::files;
+use crate::stack::{self, Figures};
 use hysteron::control::Trace;
 use hysteron::{AtomicFolder, Plane, Quantity, Target};
 use std::path::{Path, PathBuf};
@@ -107,10 +105,7 @@ impl TrackReport<'_> {
     /// [`ReportError::Row`] where the parts do not fit together, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
     pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
-        let mut folder = AtomicFolder::create(dir, None)?;
-        let paths = self.write_into(&mut folder, Path::new(""))?;
-        folder.commit()?;
-        Ok(paths)
+        stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }
 
     /// As [`TrackReport::write`], into the folder `within` another one that is being written.
@@ -124,10 +119,7 @@ impl TrackReport<'_> {
         within: &Path,
     ) -> Result<Vec<PathBuf>, ReportError> {
         self.check()?;
-        let view = View::new(self);
-        let figures = Figure::ALL.map(|figure| (figure, figure.svg(&view)));
-        let place = files::Place { folder, within };
-        files::write_report(place, figures.into_iter(), |drawn| page::html(&view, drawn))
+        View::new(self).write(folder, within)
     }
 
     fn check(&self) -> Result<(), ReportError> {

@@ -5,12 +5,13 @@ use super::report::TrackReport;
 use super::series::{beyond, named, robust};
 use super::stack::{WIDTH, height, stack};
 use super::view::View;
+use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Key;
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
-use crate::figures::time_axis;
-use crate::view::View as Recorded;
-use hysteron::track::{ReversalLag, reversal_lags};
+use crate::number::difference;
+use crate::stack::Figures;
+use hysteron_sim::track::{ReversalLag, reversal_lags};
 
 /// The part of a run before the first event, or of all of it, in which the start has died down.
 const BEGUN: f64 = 1.0 / 3.0;
@@ -68,7 +69,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let references: Vec<Vec<f64>> = runs.iter().map(|run| part(&run.trace.reference)).collect();
     let outputs: Vec<Vec<f64>> = runs.iter().map(|run| part(&run.trace.output)).collect();
     let pairs = outputs.iter().zip(&references);
-    let errors: Vec<Vec<f64>> = pairs.map(|(y, r)| Recorded::discrepancy(y, r)).collect();
+    let errors: Vec<Vec<f64>> = pairs.map(|(y, r)| difference(y, r)).collect();
     let (error, cut) = robust(errors.iter().map(Vec::as_slice));
     let asked = Span::of(references.iter().flatten());
     let span = Span {

@@ -4,13 +4,14 @@ use super::figure::Figure;
 use super::report::NamedTrace;
 use super::stack::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
-use crate::dead_band::stretches;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::panel::Panel;
 use crate::draw::sheet::{Key, Sheet};
+use crate::draw::stretches::extent;
+use crate::draw::stretches::stretches;
 use crate::draw::style::{BEYOND, FOLLOWER, REFERENCE, ZERO};
-use crate::view::View as Recorded;
-use crate::view::extent;
+use crate::number::difference;
+use crate::stack::Figures;
 
 /// The part of all values that must be seen; what lies far beyond is cut off.
 const SEEN: f64 = 0.98;
@@ -60,7 +61,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
 }
 
 fn error_of(run: &NamedTrace<'_>) -> Vec<f64> {
-    Recorded::discrepancy(&run.trace.output, &run.trace.reference)
+    difference(&run.trace.output, &run.trace.reference)
 }
 
 pub(super) fn error(view: &View<'_>) -> String {
@@ -70,7 +71,7 @@ pub(super) fn error(view: &View<'_>) -> String {
 }
 
 pub(super) fn prediction(view: &View<'_>) -> Option<String> {
-    let of = |run: &NamedTrace<'_>| Recorded::discrepancy(&run.trace.prediction, &run.trace.output);
+    let of = |run: &NamedTrace<'_>| difference(&run.trace.prediction, &run.trace.output);
     let runs = view.report.runs.iter().map(|run| (*run, of(run)));
     let told: Vec<_> = runs
         .filter(|(_, values)| values.iter().any(|value| value.is_finite()))

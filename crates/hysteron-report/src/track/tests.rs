@@ -21,7 +21,7 @@ fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
                 let value = node.value();
                 assert!(
                     !value.contains("NaN") && !value.contains("inf"),
-                    "{figure}: {value}"
+                    "{figure:?}: {value}"
                 );
             }
         }
@@ -99,7 +99,7 @@ fn simulated_runs_say_so_in_every_figure() {
                 assert_eq!(
                     svg.contains("simulated, not measured"),
                     simulated,
-                    "{figure}"
+                    "{figure:?}"
                 );
             }
         });
@@ -197,7 +197,7 @@ fn a_single_sample_is_drawn() {
 fn many_samples_stay_small() {
     let fixture = Fixture::new(&FOUR, 100_000);
     for (figure, svg) in figures(&fixture) {
-        assert!(svg.len() < 400_000, "{figure}: {} bytes", svg.len());
+        assert!(svg.len() < 400_000, "{figure:?}: {} bytes", svg.len());
     }
 }
 

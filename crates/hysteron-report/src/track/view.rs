@@ -1,14 +1,13 @@
 //! What every figure and caption reads: the parts of the report in the words and units that are shown.
 
-use super::captions;
 use super::figure::Figure;
 use super::report::{NamedTrace, TrackReport};
 use super::reversal::{self, Reversal};
+use super::{captions, page};
+use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::sheet::Sheet;
-use crate::figures::time_axis;
 use crate::quantity::Labelled;
-use crate::view::note;
+use crate::stack::Figures;
 
 /// A report, ready to be drawn.
 pub(super) struct View<'a> {
@@ -61,15 +60,33 @@ impl<'a> View<'a> {
             "measured"
         }
     }
+}
 
-    /// The empty sheet of a figure.
-    pub(super) fn sheet(&self, figure: Figure, width: f64) -> Sheet {
-        let title = captions::title(figure, self);
-        Sheet::new(figure.stem(), width, &title, note(self.report.simulated))
+impl Figures for View<'_> {
+    type Figure = Figure;
+    const ALL: &'static [Figure] = &Figure::ALL;
+
+    fn stem(figure: Figure) -> &'static str {
+        figure.stem()
     }
 
-    /// The finished figure with its caption as spoken text.
-    pub(super) fn finish(&self, figure: Figure, sheet: Sheet, height: f64) -> String {
-        sheet.finish(height, &captions::caption(figure, self))
+    fn simulated(&self) -> bool {
+        self.report.simulated
+    }
+
+    fn title(&self, figure: Figure) -> String {
+        captions::title(figure, self)
+    }
+
+    fn caption(&self, figure: Figure) -> String {
+        captions::caption(figure, self)
+    }
+
+    fn svg(&self, figure: Figure) -> Option<String> {
+        figure.svg(self)
+    }
+
+    fn page(&self, drawn: &[(Figure, String)]) -> String {
+        page::html(self, drawn)
     }
 }

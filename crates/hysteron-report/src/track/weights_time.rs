@@ -12,6 +12,7 @@ use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, MODELLED, ZERO};
 use crate::plane::MINUS;
+use crate::stack::Figures;
 use hysteron::Plane;
 use hysteron::control::Trace;
 use std::collections::BTreeMap;

@@ -5,8 +5,8 @@ use super::divided;
 use super::drift::DriftOptions;
 use super::relays::Relays;
 use super::sensor::{SensorChain, SensorOptions, step_for_lag};
-use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use crate::rig::{RigError, check};
+use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use serde::Deserialize;
 
 /// Highest drive, V; the lowest is 0.

@@ -3,8 +3,8 @@
 use super::divided;
 use super::fatigue::FatigueOptions;
 use super::sensor::{SensorChain, SensorOptions};
-use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use crate::rig::{Plant, Rig, RigError, check};
+use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use serde::Deserialize;
 
 /// Largest load, N. Beyond it the law of the outer rings turns over (580 MPa); from 10 N on it is steep.

@@ -1,7 +1,9 @@
 //! The plant of a scenario, and what happens to it.
 
+use crate::plant::{
+    PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions,
+};
 use hysteron::control::{Disturbance, SimulatedPlant};
-use crate::plant::{PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions};
 use hysteron::{Quantity, Result};
 use serde::Deserialize;
 

@@ -1,8 +1,8 @@
 //! How well a run tracked its reference, by stretches of time.
 
 use super::{Event, Scenario};
-use hysteron::control::{Snapshot, Trace};
 use hysteron::Direction;
+use hysteron::control::{Snapshot, Trace};
 use hysteron::{Model, Result, Turning};
 use serde::Serialize;
 
@@ -222,8 +222,8 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use hysteron::control::LoopStatus;
     use hysteron::Operator;
+    use hysteron::control::LoopStatus;
     use hysteron::{Plane, Sign};
 
     fn score(trace: &Trace, from_s: f64, to_s: f64) -> Score {

@@ -3,7 +3,7 @@
 
 use hysteron::Model;
 use hysteron::control::{Gains, InnerLoop, Rest, Scheme, SimulatedPlant};
-use hysteron::track::{Scenario, track};
+use hysteron_sim::track::{Scenario, track};
 use std::path::Path;
 use std::sync::OnceLock;
 

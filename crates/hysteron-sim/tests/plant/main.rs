@@ -6,12 +6,12 @@ mod options;
 mod time;
 
 use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
-use hysteron::plant::{
+use hysteron::{Error, Result};
+use hysteron_sim::plant::{
     DriftOptions, FatigueOptions, PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant,
     SpringPlantOptions,
 };
-use hysteron::rig::RigError;
-use hysteron::{Error, Result};
+use hysteron_sim::rig::RigError;
 
 const PERFECT: SensorOptions = SensorOptions {
     lag_s: 0.0,
@@ -55,5 +55,12 @@ fn worst(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn refused<T>(result: Result<T>) -> bool {
-    matches!(result, Err(Error::Rig(RigError::OutOfRange { .. })))
+    result.is_err_and(|error| matches!(of_the_rig(&error), Some(RigError::OutOfRange { .. })))
+}
+
+fn of_the_rig(error: &Error) -> Option<&RigError> {
+    match error {
+        Error::Plant(error) => error.downcast_ref(),
+        _ => None,
+    }
 }

@@ -1,13 +1,13 @@
 //! A model that learns while it runs.
 
-use crate::progress::SAMPLES_BETWEEN;
 use crate::error::{Error, Result};
 use crate::model::{Model, Sign, State};
-use hysteron_core::{Policy, Solution};
+use crate::progress::SAMPLES_BETWEEN;
 use crate::progress::Watch;
 use hysteron_core::{
     Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
 };
+use hysteron_core::{Policy, Solution};
 
 /// A [`Model`] whose weights and offset follow the plant, with the state that it runs in.
 ///

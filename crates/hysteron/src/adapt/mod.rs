@@ -10,12 +10,12 @@ pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
 pub use parts::DriftParts;
 
-use hysteron_core::{Adaptation, Method, Outcome};
 use crate::error::{Error, Result};
-use crate::series::Errors;
 use crate::model::{FitSummary, Model, Start};
-use crate::recording::Recording;
 use crate::progress::Watch;
+use crate::recording::Recording;
+use crate::series::Errors;
+use hysteron_core::{Adaptation, Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
 
@@ -89,7 +89,6 @@ impl Adapted {
         let pairs = recording.output.iter().zip(&self.output_model);
         pairs.map(|(measured, model)| measured - model).collect()
     }
-
 }
 
 /// Runs an estimator over a recording, which predicts each sample before it learns from it.

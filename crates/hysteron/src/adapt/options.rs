@@ -1,13 +1,13 @@
 //! How a model is adapted to a recording, and what follows from both where nothing is said.
 
-use crate::adapt::parts::DriftParts;
-use crate::series::range;
-use hysteron_core::{Adaptation, Method};
 use crate::adapt::adaptive::Adaptive;
+use crate::adapt::parts::DriftParts;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
-use crate::recording::Recording;
 use crate::prepare::noise;
+use crate::recording::Recording;
+use crate::series::range;
+use hysteron_core::{Adaptation, Method};
 use serde::Serialize;
 
 /// Gain of the gradient methods.

@@ -1,9 +1,9 @@
 //! A few ways in which weights change under load and drift, in place of all weights.
 
-use hysteron_core::Adaptation;
 use crate::adapt::adaptive::Adaptive;
-use crate::model::Model;
 use crate::error::Result;
+use crate::model::Model;
+use hysteron_core::Adaptation;
 use hysteron_core::operator_index;
 
 /// Levels by which the weights are shifted along the diagonal of the plane.

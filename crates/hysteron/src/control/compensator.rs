@@ -7,10 +7,10 @@
 //! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
 
 use crate::adapt::Adaptive;
-use hysteron_core::{Direction, Outcome, Policy, Solution};
-use crate::model::{Model, Sign, State};
 use crate::error::Result;
+use crate::model::{Model, Sign, State};
 use crate::series::Turning;
+use hysteron_core::{Direction, Outcome, Policy, Solution};
 
 /// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
 /// inverse goes back across the dead band only for a difference of this many tolerances.

@@ -3,8 +3,8 @@
 use super::pid::limited;
 use super::watch::{Sight, Watch};
 use super::{LoopStatus, Pid, Reading, Rest, Scheme};
-use hysteron_core::{Direction, Outcome};
 use crate::error::Result;
+use hysteron_core::{Direction, Outcome};
 
 /// What the output should be, and where it goes next.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Rest, Scheme, SimulatedPlant, run};
-//! use hysteron::plant::{PreisachPlant, PreisachPlantOptions};
+//! use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions};
 //! use hysteron::{FitOptions, Recording, fit};
 //!
 //! let new = || PreisachPlant::new(&PreisachPlantOptions::default()); // volts in, µm out

@@ -1,10 +1,10 @@
 //! A controller on a simulated plant, sample by sample.
 
 use super::{Controller, Disturbance, SimulatedPlant, Target, Trace};
-use crate::progress::SAMPLES_BETWEEN;
-use hysteron_core::Direction;
 use crate::error::Result;
+use crate::progress::SAMPLES_BETWEEN;
 use crate::progress::Watch;
+use hysteron_core::Direction;
 
 /// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! PID gains from a test on a device, real or simulated.
 
-use crate::series::mean_and_deviation;
 use super::Gains;
 use crate::error::{Error, Result};
+use crate::series::mean_and_deviation;
 
 /// Periods of the relay test that are left out, and those that count.
 const SETTLED: usize = 3;

@@ -1,9 +1,9 @@
 //! What came of an adaptation as a table.
 
 use crate::adapt::Adapted;
+use crate::data::output::TableWriter;
 use crate::error::{Error, Result};
 use crate::recording::Recording;
-use crate::data::output::TableWriter;
 
 impl Adapted {
     /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned

@@ -1,7 +1,7 @@
 //! What is in the columns of a table, for whoever does not know their names yet.
 
-use crate::error::Result;
 use crate::data::table::TableReader;
+use crate::error::Result;
 use serde::Serialize;
 
 /// What is in a table.

@@ -1,8 +1,8 @@
 //! A designed input profile as a table.
 
+use crate::data::output::TableWriter;
 use crate::design::Design;
 use crate::error::Result;
-use crate::data::output::TableWriter;
 use std::path::Path;
 
 impl Design {

@@ -1,8 +1,8 @@
 //! Model files on disk.
 
 use crate::data::output::AtomicFile;
-use crate::data::output::{Own, Target};
 use crate::data::output::is_our_model;
+use crate::data::output::{Own, Target};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use std::path::Path;

@@ -1,13 +1,13 @@
 //! Simulation and inversion of tables row by row: memory does not grow with the file.
 
+use crate::data::output::{Added, Cell, TableWriter};
+use crate::data::table::TableReader;
 use crate::data::table::{Column, Row};
+use crate::error::Result;
+use crate::model::{Band, FirstOrder, Inverse, LoadDependence, Model, State, ThermalState};
 use crate::model::{Invert, anticipate, needs_time};
 use crate::series::Headings;
-use crate::data::output::{Added, Cell, TableWriter};
-use crate::model::{Band, FirstOrder, Inverse, LoadDependence, Model, State, ThermalState};
 use hysteron_core::{Direction, Policy, Status};
-use crate::error::Result;
-use crate::data::table::TableReader;
 use serde::Serialize;
 use std::collections::VecDeque;
 

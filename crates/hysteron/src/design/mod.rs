@@ -5,13 +5,13 @@ mod spiral;
 
 pub use profile::{Rates, ramps};
 
-use crate::identify::{Initial, Unresolved};
-use crate::series::range;
 use crate::error::{Error, Result};
-use crate::model::Excitation;
-use hysteron_core::Operator;
-use crate::model::Plane;
 use crate::identify::excitation;
+use crate::identify::{Initial, Unresolved};
+use crate::model::Excitation;
+use crate::model::Plane;
+use crate::series::range;
+use hysteron_core::Operator;
 use spiral::Corners;
 
 /// Most samples of a profile.
@@ -101,7 +101,6 @@ impl Design {
     pub fn count(&self, class: Excitation) -> usize {
         self.excitation.iter().filter(|e| **e == class).count()
     }
-
 }
 
 /// The shortest input profile that determines every operator: a spiral that shrinks from the whole plane to its middle, with

@@ -1,10 +1,10 @@
 //! What a fit should make its user look at again.
 
+use crate::error::Result;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
-use crate::error::Result;
 use std::fmt;
 
 /// Part of the operators from which on it matters that a start leaves them open.

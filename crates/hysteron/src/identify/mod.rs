@@ -21,12 +21,12 @@ pub use weights::experiment::plane_of;
 pub(crate) use weights::initial::simulate_from_unknown;
 pub(crate) use weights::sparse::Initial;
 
-use crate::series::Errors;
+use crate::error::Result;
 use crate::model::{FitSummary, LoadDependence, LoadPart, Model};
 use crate::progress::Watch;
-use doubt::confidence;
 use crate::recording::Recording;
-use crate::error::Result;
+use crate::series::Errors;
+use doubt::confidence;
 use weights::problem::Problem;
 
 /// Identifies a model: the weights and offset that minimise the squared error over the recording.

@@ -1,11 +1,11 @@
 //! Whether an output goes with its input, as weights from zero on demand.
 
+use crate::error::Result;
+use crate::model::Sign;
+use crate::recording::Recording;
 use crate::series::headings;
 use crate::series::noise_band;
 use hysteron_core::Direction;
-use crate::recording::Recording;
-use crate::error::Result;
-use crate::model::Sign;
 
 /// From here on the output goes against the input on so much of its way that no monotone model can follow: an
 /// ideal loop has nothing of it, a symmetric butterfly a half.

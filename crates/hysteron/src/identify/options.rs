@@ -1,8 +1,8 @@
 //! What a fit may choose, and what it tells afterwards.
 
+use crate::model::Sign;
 use crate::model::{Solver, Start};
 use hysteron_core::Operator;
-use crate::model::Sign;
 
 /// What a fit may choose.
 ///

@@ -4,13 +4,13 @@ mod model;
 
 pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
 
-use crate::recording::gaps;
-use crate::series::range;
-use crate::series::NOISE;
+use crate::error::Result;
 use crate::model::Plane;
 use crate::recording::Recording;
-use crate::error::Result;
+use crate::recording::gaps;
+use crate::series::NOISE;
 use crate::series::Turning;
+use crate::series::range;
 use hysteron_core::ridge;
 use serde::Serialize;
 

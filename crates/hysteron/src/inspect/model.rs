@@ -1,7 +1,7 @@
 //! What is in a model.
 
-use crate::model::{Confidence, Excitation, Model};
 use crate::error::Result;
+use crate::model::{Confidence, Excitation, Model};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! A 95 % band around the modelled output: how far off the weights may put it, and the noise.
 
-use crate::model::confidence::{Confidence, INTERVAL};
 use crate::error::{Error, Result};
+use crate::model::confidence::{Confidence, INTERVAL};
 use crate::model::{Model, State};
 use crate::recording::Recording;
 use serde::Serialize;
@@ -156,12 +156,12 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::model::summary::FitSummary;
-    use crate::model::load::LoadPart;
-    use hysteron_core::Operator;
     use crate::model::Plane;
     use crate::model::Sign;
+    use crate::model::load::LoadPart;
+    use crate::model::summary::FitSummary;
     use hysteron_core::Definition;
+    use hysteron_core::Operator;
     use rand::{RngExt, SeedableRng};
 
     /// A model with `factors` at random, and an input that wanders over and beyond its plane.
@@ -238,7 +238,10 @@ mod tests {
             })
             .collect();
         let recording = Recording::new(input, output).unwrap();
-        let band = crate::evaluate::evaluate(&model, &recording).unwrap().band.unwrap();
+        let band = crate::evaluate::evaluate(&model, &recording)
+            .unwrap()
+            .band
+            .unwrap();
         assert_eq!(band.coverage_percent, 75.0);
         assert_eq!(band.half_width, half);
     }

@@ -1,13 +1,13 @@
 //! The model file: JSON, versioned, every fault named by its field.
 
-use crate::model::summary::FitSummary;
-use crate::recording::{LARGEST, Quantity};
 use crate::error::{Error, Result};
+use crate::model::Plane;
 use crate::model::body::FirstOrder;
 use crate::model::load::{LoadDependence, LoadPart};
+use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
+use crate::recording::{LARGEST, Quantity};
 use hysteron_core::Operator;
-use crate::model::Plane;
 use serde::{Deserialize, Serialize};
 
 const FORMAT: &str = "hysteron-model";
@@ -239,7 +239,6 @@ impl Model {
         // Numbers and strings only: there is nothing that JSON cannot hold.
         serde_json::to_string(&file).unwrap_or_default() + "\n"
     }
-
 }
 
 impl LoadEntry {

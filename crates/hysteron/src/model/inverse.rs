@@ -1,10 +1,10 @@
 //! The inverse of a model in its own units: of one target, and of a series of them.
 
-use hysteron_core::{Direction, Policy, Solution};
 use crate::error::{Error, Result};
 use crate::model::policy::Invert;
 use crate::model::{Model, Sign, State};
 use crate::remedy::{Remedy, Setting};
+use hysteron_core::{Direction, Policy, Solution};
 
 impl Model {
     /// The inverse of this model.

@@ -18,16 +18,16 @@ pub use body::{FirstOrder, ThermalState};
 pub use confidence::{Confidence, INTERVAL};
 pub use excitation::Excitation;
 pub use inverse::Inverse;
-pub(crate) use load::{bernstein, no_load};
 pub use load::{LoadDependence, LoadPart};
+pub(crate) use load::{bernstein, no_load};
 pub use policy::Invert;
 pub(crate) use policy::anticipate;
 pub use summary::{FitSummary, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Score, Validation};
 
-use crate::recording::Quantity;
 use crate::error::{Error, Result};
+use crate::recording::Quantity;
 use hysteron_core::Operator;
 use hysteron_core::{Turn, table_len, turn_capacity};
 

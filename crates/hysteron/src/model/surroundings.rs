@@ -1,9 +1,9 @@
 //! The output of an actuator for what it is driven with: through its thermal body, under its load, with its band.
 
-use crate::model::band::ends;
-use crate::model::body::needs_time;
 use crate::error::{Error, Result};
 use crate::model::Model;
+use crate::model::band::ends;
+use crate::model::body::needs_time;
 use crate::remedy::{Remedy, Setting};
 use std::borrow::Cow;
 

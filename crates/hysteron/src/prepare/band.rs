@@ -5,8 +5,8 @@
 //! smallest still to come.
 
 use super::noise::resolution;
-use hysteron_core::Direction;
 use crate::series::Turning;
+use hysteron_core::Direction;
 
 /// Makes `values` monotone between reversals of more than `band`, in place. No value moves by more than half the band.
 pub(super) fn settle(values: &mut [f64], band: f64) {

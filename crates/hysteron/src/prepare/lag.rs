@@ -3,11 +3,11 @@
 //! A thermocouple behind the wire follows it as `τ dT/dt + T = T_wire`. With `τ` known the lag is undone; it
 //! can be estimated where the material itself does not depend on rate, for then a static model fits best when the lag is gone.
 
-use crate::series::filter::low_pass;
 use crate::error::{Error, Result};
 use crate::identify::{FitOptions, fit_experiment};
-use crate::recording::Recording;
 use crate::progress::Watch;
+use crate::recording::Recording;
+use crate::series::filter::low_pass;
 
 /// Levels of the models that compare lags: enough to tell loops apart, few enough to be fitted forty times.
 const LEVELS: usize = 12;

@@ -20,12 +20,12 @@ pub use noise::noise;
 pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
 
+use crate::error::{Error, Result};
+use crate::progress::Watch;
+use crate::recording::Recording;
+use crate::series::NOISE;
 use crate::series::filter::low_pass;
 use crate::series::range;
-use crate::error::{Error, Result};
-use crate::series::NOISE;
-use crate::recording::Recording;
-use crate::progress::Watch;
 
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -6,11 +6,11 @@
 //! not comes from rate; one that both explain alike comes from a plane that is too coarse or a start that is not known.
 
 use super::{PrepareOptions, Step, prepare};
-use crate::series::range;
-use crate::identify::{FitOptions, fit};
-use crate::series::NOISE;
-use crate::recording::Recording;
 use crate::error::Result;
+use crate::identify::{FitOptions, fit};
+use crate::recording::Recording;
+use crate::series::NOISE;
+use crate::series::range;
 use serde::Serialize;
 
 /// Time constants tried on either clock, from the mean step to a tenth of the whole.

@@ -1,8 +1,7 @@
 //! The steps together.
 
-use super::test_series::{behind_sensor, gaussian, two_rates};
+use super::test_series::{gaussian, two_rates};
 use super::*;
-use hysteron_sim::Experiment;
 
 fn with_noise(recording: &Recording, input: f64, output: f64) -> Recording {
     let add = |values: &[f64], sigma: f64, seed: u64| -> Vec<f64> {
@@ -80,51 +79,6 @@ fn irregular_time_is_resampled_only_for_a_filter() {
     let (prepared, report) = prepare(&noisy, &PrepareOptions::default()).unwrap();
     assert_eq!(report.resampled, Some(0.25));
     assert_eq!(prepared.len(), clean.len() + 20);
-}
-
-/// The thermocouple of the simulated spring, 1.5 s behind, found and undone from a noisy recording. At one current the lag only
-/// widens the loops, which a static model can too; so the spring is heated faster as well.
-#[test]
-fn the_lag_of_the_rigs_thermocouple_is_found() {
-    let mut truth: Option<Recording> = None;
-    for current_a in [2.0, 3.0] {
-        let experiment = Experiment {
-            sample_interval_s: 0.1,
-            current_a,
-            ..Experiment::default()
-        };
-        let run = experiment.truth().unwrap();
-        let Some(all) = &mut truth else {
-            truth = Some(run);
-            continue;
-        };
-        all.input.extend(run.input);
-        all.output.extend(run.output);
-        all.time = Some((0..all.input.len()).map(|n| n as f64 * 0.1).collect());
-    }
-    let (truth, tau) = (truth.unwrap(), 1.5);
-    let lagging = Recording {
-        input: behind_sensor(&truth.input, 0.1, tau),
-        ..truth.clone()
-    };
-    let noisy = with_noise(&lagging, 0.1, 0.02);
-    let options = PrepareOptions {
-        lag: Step::Auto,
-        ..PrepareOptions::default()
-    };
-    let (prepared, report) = prepare(&noisy, &options).unwrap();
-    let lag = report.lag.unwrap();
-    println!("{lag:?}");
-    let found = lag.undone.unwrap();
-    // Corners of the input that low-pass and derivative have rounded.
-    assert!((found / tau - 1.0).abs() < 0.25, "{found}");
-    let error = |r: &Recording| smooth::distance(&r.input, &truth.input);
-    assert!(
-        error(&prepared) < 0.3 * error(&noisy),
-        "{} {}",
-        error(&prepared),
-        error(&noisy)
-    );
 }
 
 #[test]

@@ -4,8 +4,8 @@ mod gaps;
 
 pub(crate) use gaps::gaps;
 
-use crate::series::range;
 use crate::error::{Error, Result};
+use crate::series::range;
 use std::path::PathBuf;
 
 /// A physical quantity: its name and, where known, its unit.

@@ -1,10 +1,10 @@
 //! The relay test (Åström & Hägglund 1984), and gains by Tyreus & Luyben 1992.
 
 use super::{TESTS, middle, refused};
-use hysteron::Result;
-use hysteron::control::{Controller, Gains, RelayTest, Scheme};
 use crate::track::scenario::Scenario;
 use crate::track::score::median;
+use hysteron::Result;
+use hysteron::control::{Controller, Gains, RelayTest, Scheme};
 
 /// Where the relay's two commands lie between the lowest and the highest level.
 const COMMANDS: [f64; 2] = [0.25, 0.75];

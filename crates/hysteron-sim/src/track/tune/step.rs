@@ -5,10 +5,10 @@
 //! ([`Gains::from_step`]).
 
 use super::{TESTS, middle, no_answer};
-use hysteron::Result;
-use hysteron::mean_and_deviation;
-use hysteron::control::{Controller, Gains, InnerLoop, Scheme};
 use crate::track::scenario::Scenario;
+use hysteron::Result;
+use hysteron::control::{Controller, Gains, InnerLoop, Scheme};
+use hysteron::mean_and_deviation;
 
 /// Samples of a test before and after the step.
 const SAMPLES: usize = 200;
@@ -40,7 +40,8 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let (level, _) = mean_and_deviation(&temperature[..LEVEL]);
     // Less than a level in the whole test is noise, or a heater that cannot do what the model is asked for.
     let one = scenario.model.plane()?.step();
-    if mean_and_deviation(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0 {
+    if mean_and_deviation(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0
+    {
         return Err(no_answer("temperature", SAMPLES, scenario));
     }
     let passed = (steepest - LEVEL) as f64 * scenario.interval_s;

@@ -1,9 +1,9 @@
 //! The columns of a file that a recording does not use, kept beside it to be written again.
 
-use crate::recording::Recording;
 use crate::data::output::TableWriter;
 use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
+use crate::recording::Recording;
 
 /// All columns of the file that a recording was read from, in their order and with their names; units
 /// that stood in a row below them stand behind them, and a time in another unit is in seconds.

@@ -1,14 +1,14 @@
 //! Recordings from files.
 
+use crate::data::recording::columns::Columns;
+use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::{Samples, interpolate};
-use crate::data::recording::columns::Columns;
-use crate::recording::{Origin, Quantity, Recording, Source};
-use crate::data::recording::others::Others;
-use crate::data::table::{Column, TableReader};
 use crate::data::table::ReadOptions;
-use crate::remedy::{Remedy, Setting};
+use crate::data::table::{Column, TableReader};
 use crate::error::Result;
+use crate::recording::{Origin, Quantity, Recording, Source};
+use crate::remedy::{Remedy, Setting};
 use std::path::Path;
 
 impl Recording {

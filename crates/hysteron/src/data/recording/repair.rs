@@ -1,7 +1,7 @@
 //! Rows of a recording that cannot be used as they are, and what is done about them.
 
-use crate::error::Place;
 use crate::data::table::Remark;
+use crate::error::Place;
 use std::fmt;
 
 /// What becomes of rows that cannot be used as they are.

@@ -2,9 +2,9 @@
 
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
-use crate::recording::gaps;
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};
+use crate::recording::gaps;
 use crate::remedy::{Remedy, Setting};
 
 /// Where the time is among the series.

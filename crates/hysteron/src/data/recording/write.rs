@@ -1,8 +1,8 @@
 //! Recordings into files.
 
 use crate::data::output::TableWriter;
-use crate::recording::{Origin, Recording};
 use crate::error::Result;
+use crate::recording::{Origin, Recording};
 use std::path::Path;
 
 impl Recording {

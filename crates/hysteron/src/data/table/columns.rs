@@ -3,8 +3,8 @@
 use super::names::{self, Found, Missing};
 use super::time::TimeUnit;
 use super::{Column, Remark, Source, TableReader};
-use crate::recording::Quantity;
 use crate::error::Result;
+use crate::recording::Quantity;
 
 impl TableReader {
     /// Finds a column: by its exact name; by its name without its unit, in upper or lower case; by

@@ -19,8 +19,8 @@ pub use remark::Remark;
 pub(crate) use budget::Budget;
 
 use crate::data::recording::Places;
-use crate::error::{Error, Place, Result};
 use crate::data::recording::Repair;
+use crate::error::{Error, Place, Result};
 use hashing::Hash;
 use numbers::Numbers;
 pub(crate) use parquet::caught;

@@ -1,14 +1,14 @@
 //! A fit whose levels, smoothness or bootstrap are left to the data.
 
-use crate::identify::choose::validate::{Candidates, cross_validate};
-use crate::identify::options::FitOptions;
-use crate::progress::Watch;
-use crate::identify::fit_experiment;
 use crate::error::{Error, Result};
+use crate::identify::choose::validate::{Candidates, cross_validate};
+use crate::identify::fit_experiment;
+use crate::identify::options::FitOptions;
+use crate::identify::stages::body::fit_thermal;
 use crate::model::Model;
+use crate::progress::Watch;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
-use crate::identify::stages::body::fit_thermal;
 
 /// What is not taken from the options but chosen, each where it is true.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,12 +1,12 @@
 //! Errors on branches that were left out of the whole fit, choices included.
 
-use crate::identify::weights::problem::Problem;
+use crate::error::Result;
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::FitOptions;
+use crate::identify::weights::problem::Problem;
 use crate::progress::Watch;
-use crate::series::range;
 use crate::recording::Recording;
-use crate::error::Result;
+use crate::series::range;
 
 /// Groups of branches that are left out in turn.
 const FOLDS: usize = 5;

@@ -1,16 +1,16 @@
 //! Cross-validation that leaves out whole branches: the samples of one branch are so alike that leaving
 //! out some of them would test nothing.
 
+use crate::error::Result;
+use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::NormalEquations;
-use crate::identify::options::FitOptions;
-use crate::progress::Watch;
-use crate::series::range;
-use crate::recording::Recording;
-use crate::error::Result;
 use crate::model::Solver;
 use crate::model::{Score, Validation};
 use crate::parallel;
+use crate::progress::Watch;
+use crate::recording::Recording;
+use crate::series::range;
 
 /// Folds at most.
 const FOLDS: usize = 10;

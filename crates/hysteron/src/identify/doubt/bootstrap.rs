@@ -1,17 +1,17 @@
 //! The bootstrap over branches: how far the weights would have come out otherwise.
 
+use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
-use crate::model::Solver;
-use crate::progress::Watch;
 use crate::model::LoadPart;
-use crate::error::Result;
+use crate::model::Solver;
+use crate::parallel;
+use crate::progress::Watch;
 use faer::Mat;
 use faer::linalg::solvers::Llt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use crate::parallel;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// With fewer branches than this, parts of branches take their place.
@@ -46,26 +46,26 @@ pub(crate) fn replicates(
     let errors = left_out_errors(problem, fitted, &unit, units, watch)?;
     let done = AtomicUsize::new(0);
     parallel::map(options.bootstrap, |seed| {
-            let count = done.fetch_add(1, Ordering::Relaxed);
-            watch("confidence", count as f64 / options.bootstrap as f64)?;
-            let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
-            let signs: Vec<f64> = (0..units)
-                .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
-                .collect();
-            let turned = errors.iter().zip(&unit);
-            let mut noise: Vec<f64> = turned
-                .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
-                .collect();
-            let moved = free.take_off(&mut noise);
-            let x = replicate(equations, factor.as_ref(), problem, &solution.x, &noise)?;
-            // The free columns follow: those of the noise, and what the columns leave to them.
-            let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
-            let mut left = problem.regressor.forward(experiment, &difference)?;
-            let taken = free.take_off(&mut left);
-            let free_values: Vec<f64> = (0..moved.len())
-                .map(|n| solution.free[n] + moved[n] - taken[n])
-                .collect();
-            Ok(problem.at_middle(&x, &free_values, fitted.sign))
+        let count = done.fetch_add(1, Ordering::Relaxed);
+        watch("confidence", count as f64 / options.bootstrap as f64)?;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
+        let signs: Vec<f64> = (0..units)
+            .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
+            .collect();
+        let turned = errors.iter().zip(&unit);
+        let mut noise: Vec<f64> = turned
+            .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
+            .collect();
+        let moved = free.take_off(&mut noise);
+        let x = replicate(equations, factor.as_ref(), problem, &solution.x, &noise)?;
+        // The free columns follow: those of the noise, and what the columns leave to them.
+        let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
+        let mut left = problem.regressor.forward(experiment, &difference)?;
+        let taken = free.take_off(&mut left);
+        let free_values: Vec<f64> = (0..moved.len())
+            .map(|n| solution.free[n] + moved[n] - taken[n])
+            .collect();
+        Ok(problem.at_middle(&x, &free_values, fitted.sign))
     })
 }
 

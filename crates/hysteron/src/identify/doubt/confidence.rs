@@ -1,15 +1,15 @@
 //! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
 //! the output.
 
+use crate::error::Result;
+use crate::identify::doubt::bootstrap;
 use crate::identify::doubt::excitation::Unresolved;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::{NormalEquations, not_definite};
 use crate::identify::weights::sparse::Initial;
+use crate::model::Confidence;
 use crate::model::Start;
 use crate::progress::Watch;
-use crate::identify::doubt::bootstrap;
-use crate::model::Confidence;
-use crate::error::Result;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 

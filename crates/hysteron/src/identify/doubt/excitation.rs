@@ -5,14 +5,14 @@
 //! `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the centred Gram matrix: a diagonal element of 1 says that the weight
 //! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
 
-use crate::identify::weights::sparse::{Initial, SparseForm};
 use crate::error::{Error, Result};
-use crate::series::{NOISE, Turning, noise_band};
-use hysteron_core::Operator;
-use crate::model::Plane;
+use crate::identify::weights::sparse::{Initial, SparseForm};
 use crate::model::Excitation;
+use crate::model::Plane;
+use crate::series::{NOISE, Turning, noise_band};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
+use hysteron_core::Operator;
 use hysteron_core::{Definition, operator_index};
 
 /// Ridge `ε`. The centred Gram matrix counts samples: an operator that alone swings fully, for a few samples, has an

@@ -1,14 +1,14 @@
 //! Identification of a thermal body together with the weights behind it.
 
-use crate::model::{FirstOrder, needs_time};
-use crate::identify::stages::nelder_mead::minimise;
-use crate::series::range;
 use crate::error::{Error, Result};
-use crate::identify::options::FitOptions;
-use crate::model::Model;
-use crate::recording::Recording;
-use crate::progress::Watch;
 use crate::identify::fit_experiment;
+use crate::identify::options::FitOptions;
+use crate::identify::stages::nelder_mead::minimise;
+use crate::model::Model;
+use crate::model::{FirstOrder, needs_time};
+use crate::progress::Watch;
+use crate::recording::Recording;
+use crate::series::range;
 use serde_json::json;
 
 /// Samples that the search looks at, or up to three times as many; the last fit sees all.

@@ -1,15 +1,15 @@
 //! Recordings put together into one experiment: their samples one after the other, their branches, and
 //! the functions of the load.
 
+use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::regressor::MOST_RECORDINGS;
-use crate::model::bernstein;
-use crate::series::range;
-use crate::series::{branches, noise_band};
-use crate::error::{Error, Result};
 use crate::model::Plane;
+use crate::model::bernstein;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::range;
+use crate::series::{branches, noise_band};
 use std::ops::Range;
 
 pub(crate) struct Experiment {

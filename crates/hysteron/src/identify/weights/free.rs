@@ -1,9 +1,9 @@
 //! Columns whose values may have any sign: the output with every operator off, for each function of
 //! the load. They are eliminated: for every choice of weights the best ones follow at once.
 
+use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::regressor::Regressor;
-use crate::error::Result;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 

@@ -1,10 +1,10 @@
 //! The start of a recording, with a model that is known: how much of each operator is on before the first sample.
 
+use crate::error::Result;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
 use crate::model::Model;
-use hysteron_core::Operator;
 use crate::recording::Recording;
-use crate::error::Result;
+use hysteron_core::Operator;
 
 /// Sweeps end when none moves the output by more than this part of the model's range, and at the latest after so many.
 const ENOUGH: f64 = 1e-9;

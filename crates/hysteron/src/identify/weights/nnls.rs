@@ -2,9 +2,9 @@
 //! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
 //! and with a factor that is updated, not made anew.
 
-use crate::progress::Watch;
-use crate::identify::weights::cholesky::Cholesky;
 use crate::error::{Error, Result};
+use crate::identify::weights::cholesky::Cholesky;
+use crate::progress::Watch;
 
 /// Of the variables above zero, the part by which a step may increase them: more at once save
 /// gradients, but many of them leave again.

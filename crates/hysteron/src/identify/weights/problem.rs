@@ -1,16 +1,16 @@
 //! A fit put as a linear problem: checked options, regressor, target, and the choice of the sign.
 
+use crate::error::{Error, Result};
+use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::{NormalEquations, STEPS, Solution};
-use crate::identify::options::FitOptions;
+use crate::model::{LoadPart, Sign};
 use crate::model::{Solver, Start};
 use crate::progress::Watch;
-use crate::error::{Error, Result};
-use crate::model::{LoadPart, Sign};
-use hysteron_core::Operator;
 use crate::recording::Recording;
+use hysteron_core::Operator;
 
 /// Most memory that the Gram matrix may take.
 const GRAM_BYTES: u128 = 4 << 30;

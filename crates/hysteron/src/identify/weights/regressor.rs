@@ -8,13 +8,13 @@
 //! starting on, both with weights from zero on. Over several recordings the set `0 ≤ ν_s ≤ μ` is the
 //! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
 
+use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
+use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Watch;
 use hysteron_core::Operator;
-use crate::model::Plane;
-use crate::error::Result;
 use std::ops::Range;
 
 /// Most recordings in one experiment: a pattern of starts has a bit for each.

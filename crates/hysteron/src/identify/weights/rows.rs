@@ -1,8 +1,8 @@
 //! The rows of `W`, sample by sample: the factors of the turning points before the branch, which stay
 //! the same along it, and the three of the branch itself.
 
-use crate::identify::weights::sparse::Initial;
 use crate::error::Result;
+use crate::identify::weights::sparse::Initial;
 use crate::model::State;
 use hysteron_core::{Model, Turn, turn_capacity};
 

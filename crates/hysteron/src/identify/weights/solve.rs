@@ -5,14 +5,14 @@
 //! take the ridge's effect away again: the residual of each step is computed by a run of the model,
 //! not from the Gram matrix. From zero on they lead to the solution of smallest norm.
 
+use crate::error::{Error, Result};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
+use crate::identify::weights::{nnls, pivoting};
 use crate::model::Solver;
 use crate::progress::Watch;
-use crate::identify::weights::{nnls, pivoting};
-use crate::error::{Error, Result};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 

@@ -4,11 +4,11 @@
 //! Along a branch only three factors of a row change; those of the turning points before it stay. So
 //! sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a branch.
 
-use crate::progress::Watch;
-use crate::identify::weights::rows::{Rows, Term};
-use hysteron_core::Operator;
-use crate::model::Plane;
 use crate::error::Result;
+use crate::identify::weights::rows::{Rows, Term};
+use crate::model::Plane;
+use crate::progress::Watch;
+use hysteron_core::Operator;
 use hysteron_core::{Model, operator_index, table_index, table_len};
 
 /// Where the operators stand before the first sample.

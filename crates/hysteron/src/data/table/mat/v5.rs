@@ -14,7 +14,10 @@ const STRUCTURE: u32 = 2;
 const NUMERIC: std::ops::RangeInclusive<u32> = 6..=15;
 
 /// The real numeric arrays of a file with at most two dimensions, those in structures too.
-pub(in crate::data::table) fn read(bytes: &[u8], budget: &mut Budget) -> Result<Vec<Variable>, String> {
+pub(in crate::data::table) fn read(
+    bytes: &[u8],
+    budget: &mut Budget,
+) -> Result<Vec<Variable>, String> {
     let (Some(mark), Some(elements)) = (bytes.get(126..128), bytes.get(128..)) else {
         return Err(DAMAGED.into());
     };

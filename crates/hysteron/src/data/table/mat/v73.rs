@@ -11,7 +11,10 @@ const MOST_GROUPS: usize = 10_000;
 
 /// The real numeric arrays of a file with at most two dimensions. Those in a group, which is a
 /// structure of MATLAB, are `group.name`.
-pub(in crate::data::table) fn read(path: &Path, budget: &mut Budget) -> Result<Vec<Variable>, String> {
+pub(in crate::data::table) fn read(
+    path: &Path,
+    budget: &mut Budget,
+) -> Result<Vec<Variable>, String> {
     let size = std::fs::metadata(path).map_or(0, |about| about.len());
     // The library holds the file, and as much again of what it finds in it.
     budget.take(2 * u128::from(size), "the file")?;

@@ -1,23 +1,23 @@
 //! Fig. 8(b): how large the weights are.
 
-use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::plane::{Cell, Half, axes};
-use crate::view::View;
+use crate::stack::Figures;
 
 pub(super) const WIDTH: f64 = 600.0;
 
 pub(super) fn svg(view: &View<'_>) -> String {
-    let half = Half::of_weights(view.source);
+    let half = Half::of_values(view.source.plane(), view.source.weights());
     let span = Span::from_zero(half.cells().map(|cell| cell.sum));
     let scale = Axis::new(&view.output.renamed("weight μ"), span);
 
-    let mut sheet = sheet(Figure::WeightsMap, view, WIDTH);
+    let mut sheet = view.sheet(Figure::WeightsMap, WIDTH);
     let mut keys = Vec::new();
     keys.extend((span.low < 0.0).then(|| Key::Text("cells with − : weights below zero".into())));
     keys.extend(half.remark().map(Key::Text));
@@ -35,7 +35,7 @@ pub(super) fn svg(view: &View<'_>) -> String {
         span.largest(),
     );
     half.signs(&mut sheet.canvas, &panel, view.source.zero());
-    finish(Figure::WeightsMap, view, sheet, bottom)
+    view.finish(Figure::WeightsMap, sheet, bottom)
 }
 
 /// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`; returns the panel and

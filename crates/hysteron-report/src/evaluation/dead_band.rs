@@ -1,24 +1,7 @@
-//! Stretches of a recording in which the output stands still while the input travels.
+//! The dead band that holds the largest error.
 
+use crate::draw::stretches::stretches;
 use std::ops::Range;
-
-/// The stretches of samples that do not move.
-pub(crate) fn stretches(moving: &[bool]) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for (k, &moves) in moving.iter().enumerate() {
-        match (moves, start) {
-            (false, None) => start = Some(k),
-            (true, Some(begin)) => {
-                found.push(begin..k);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found.extend(start.map(|begin| begin..moving.len()));
-    found
-}
 
 /// A dead band and the sample in it where modelled and measured input are farthest apart.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,13 +35,6 @@ pub(crate) fn worst(moving: &[bool], modelled: &[f64], measured: &[f64]) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn stretches_reach_both_ends() {
-        assert_eq!(stretches(&[false, false, true, false]), [0..2, 3..4]);
-        assert!(stretches(&[true, true]).is_empty());
-        assert!(stretches(&[]).is_empty());
-    }
 
     #[test]
     fn worst_ignores_larger_errors_where_the_output_moves() {

@@ -1,20 +1,20 @@
 //! Fig. 8(a): where the weights are not zero.
 
-use super::{finish, sheet};
 use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, left_of};
 use crate::draw::sheet::{Key, MARGIN};
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::plane::{Half, axes};
-use crate::view::View;
+use crate::stack::Figures;
 
 const WIDTH: f64 = 520.0;
 
 pub(super) fn svg(view: &View<'_>) -> String {
-    let half = Half::of_weights(view.source);
+    let half = Half::of_values(view.source.plane(), view.source.weights());
     let zero = view.source.zero();
-    let mut sheet = sheet(Figure::WeightsPlane, view, WIDTH);
+    let mut sheet = view.sheet(Figure::WeightsPlane, WIDTH);
     let [alpha, beta] = axes(view.source.plane(), &view.input);
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left;
@@ -54,10 +54,5 @@ pub(super) fn svg(view: &View<'_>) -> String {
         some.iter().map(|cell| panel.point(cell.alpha, cell.beta)),
         radius,
     );
-    finish(
-        Figure::WeightsPlane,
-        view,
-        sheet,
-        area.bottom() + BELOW + 4.0,
-    )
+    view.finish(Figure::WeightsPlane, sheet, area.bottom() + BELOW + 4.0)
 }

@@ -1,20 +1,20 @@
 //! Fig. 11: output over input, modelled and measured.
 
 use super::over_time::measured_and_modelled;
-use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::MARGIN;
 use crate::draw::style::{BAND, MEASURED, MODELLED};
-use crate::figure::Figure;
-use crate::view::View;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
+use crate::stack::Figures;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
 
 pub(super) fn svg(view: &View<'_>) -> String {
-    let mut sheet = sheet(Figure::Loops, view, WIDTH);
+    let mut sheet = view.sheet(Figure::Loops, WIDTH);
     sheet.legend(&measured_and_modelled(view));
     let (input, output, modelled) = (
         &view.recording.input,
@@ -41,5 +41,5 @@ pub(super) fn svg(view: &View<'_>) -> String {
     }
     panel.loops(&mut sheet.canvas, input, output, &MEASURED);
     panel.loops(&mut sheet.canvas, input, modelled, &MODELLED);
-    finish(Figure::Loops, view, sheet, area.bottom() + BELOW + 4.0)
+    view.finish(Figure::Loops, sheet, area.bottom() + BELOW + 4.0)
 }

@@ -1,10 +1,12 @@
 //! Titles and captions: what each figure shows, with its numbers.
 
-use crate::figure::Figure;
-use crate::figures::{classes_counted, dead_band_shown};
-use crate::number::{count, significant};
+use crate::evaluation::figure::Figure;
+use crate::evaluation::figures::{classes_counted, dead_band_shown};
+use crate::evaluation::view::View;
+use crate::number::count;
+use crate::number::{capitalised, percent};
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::stack::Figures;
 use hysteron::Errors;
 
 /// The short title at the head of a figure.
@@ -158,11 +160,6 @@ pub(crate) fn rmse_and_max(errors: &Errors, quantity: &Labelled) -> String {
     )
 }
 
-/// A percentage with two significant digits.
-pub(crate) fn percent(value: f64) -> String {
-    format!("{}\u{a0}%", significant(value, 2))
-}
-
 fn inverse_errors(view: &View<'_>) -> Option<String> {
     let inverse = view.inverse()?;
     let policy = |name: &str, run: &hysteron::InverseRun| {
@@ -205,13 +202,4 @@ fn dead_band(view: &View<'_>) -> String {
 
 fn at_index(series: &[f64], k: usize) -> f64 {
     series.get(k).copied().unwrap_or(f64::NAN)
-}
-
-/// `text` with a capital at its start.
-pub(crate) fn capitalised(text: &str) -> String {
-    let mut characters = text.chars();
-    characters
-        .next()
-        .map(|first| first.to_uppercase().chain(characters).collect())
-        .unwrap_or_default()
 }

@@ -1,9 +1,9 @@
 //! The report itself.
 
 use crate::error::ReportError;
-use crate::figure::Figure;
-use crate::view::View;
-use crate::{figures, files, page};
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
+use crate::stack::{self, Figures};
 use hysteron::Evaluation;
 use hysteron::Model;
 use hysteron::Recording;
@@ -38,10 +38,7 @@ impl Report<'_> {
     /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
     pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
-        let mut folder = AtomicFolder::create(dir, None)?;
-        let paths = self.write_into(&mut folder, Path::new(""))?;
-        folder.commit()?;
-        Ok(paths)
+        stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }
 
     /// As [`Report::write`], into the folder `within` another one that is being written.
@@ -54,12 +51,7 @@ impl Report<'_> {
         folder: &mut AtomicFolder,
         within: &Path,
     ) -> Result<Vec<PathBuf>, ReportError> {
-        let view = self.view()?;
-        let figures = Figure::ALL.map(|figure| (figure, figures::svg(figure, &view)));
-        let place = files::Place { folder, within };
-        files::write_report(place, figures.into_iter(), |drawn| {
-            page::html(self.title, &view, drawn)
-        })
+        self.view()?.write(folder, within)
     }
 
     /// A single figure as an SVG document; `None` where the evaluation has nothing to show in it.
@@ -68,7 +60,7 @@ impl Report<'_> {
     ///
     /// [`ReportError::Length`] where the evaluation belongs to another recording.
     pub fn svg(&self, figure: Figure) -> Result<Option<String>, ReportError> {
-        Ok(figures::svg(figure, &self.view()?))
+        Ok(self.view()?.svg(figure))
     }
 
     /// The parts of the report, once they fit together.

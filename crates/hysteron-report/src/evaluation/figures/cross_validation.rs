@@ -1,16 +1,16 @@
 //! How levels and smoothness were chosen: the error on left-out branches, a line for each number of levels.
 
-use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::LINES;
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::number::{magnitude, power_of_ten, significant};
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::stack::Figures;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 340.0;
@@ -44,7 +44,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     };
     let x = Axis::named(&name, labels);
 
-    let mut sheet = sheet(Figure::CrossValidation, view, WIDTH);
+    let mut sheet = view.sheet(Figure::CrossValidation, WIDTH);
     let stroke = |n: usize| match lines.len() {
         1 => LINES[LINES.len() - 2],
         _ => LINES[n % LINES.len()],
@@ -86,7 +86,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         }
     }
     let height = area.bottom() + BELOW + 4.0;
-    Some(finish(Figure::CrossValidation, view, sheet, height))
+    Some(view.finish(Figure::CrossValidation, sheet, height))
 }
 
 /// `10⁻⁸` where it is one.

@@ -1,23 +1,24 @@
 //! Figs. 12 and 14: modelled minus measured over time.
 
 use super::over_time::{Curve, WIDTH, plot, policies};
-use super::{finish, sheet};
-use crate::captions::rmse_and_max;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Key;
 use crate::draw::style::{ANTICIPATE, DISCREPANCY, MODELLED, ZERO};
-use crate::figure::Figure;
-use crate::view::View;
+use crate::evaluation::captions::rmse_and_max;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
+use crate::number::difference;
+use crate::stack::Figures;
 
 const PLOT_HEIGHT: f64 = 210.0;
 
 pub(super) fn output(view: &View<'_>) -> String {
-    let mut sheet = sheet(Figure::OutputDiscrepancy, view, WIDTH);
+    let mut sheet = view.sheet(Figure::OutputDiscrepancy, WIDTH);
     sheet.legend(&[
         Key::Line(DISCREPANCY, format!("modelled − {}", view.recorded())),
         Key::Text(rmse_and_max(&view.evaluation.forward, &view.output)),
     ]);
-    let difference = View::discrepancy(&view.evaluation.output_model, &view.recording.output);
+    let difference = difference(&view.evaluation.output_model, &view.recording.output);
     let curves = [Curve {
         values: &difference,
         stroke: DISCREPANCY,
@@ -28,15 +29,15 @@ pub(super) fn output(view: &View<'_>) -> String {
     );
     let (panel, height) = plot(&mut sheet, view, y, &curves, &[], PLOT_HEIGHT);
     panel.level(&mut sheet.canvas, 0.0, &ZERO);
-    finish(Figure::OutputDiscrepancy, view, sheet, height)
+    view.finish(Figure::OutputDiscrepancy, sheet, height)
 }
 
 pub(super) fn input(view: &View<'_>) -> Option<String> {
     let inverse = view.inverse()?;
-    let mut sheet = sheet(Figure::InputDiscrepancy, view, WIDTH);
+    let mut sheet = view.sheet(Figure::InputDiscrepancy, WIDTH);
     sheet.legend(&policies(&inverse.moving));
-    let hold = View::discrepancy(&inverse.hold.input_model, &view.recording.input);
-    let anticipate = View::discrepancy(&inverse.anticipate.input_model, &view.recording.input);
+    let hold = difference(&inverse.hold.input_model, &view.recording.input);
+    let anticipate = difference(&inverse.anticipate.input_model, &view.recording.input);
     let curves = [
         Curve {
             values: &hold,
@@ -53,7 +54,7 @@ pub(super) fn input(view: &View<'_>) -> Option<String> {
     );
     let (panel, height) = plot(&mut sheet, view, y, &curves, &inverse.moving, PLOT_HEIGHT);
     panel.level(&mut sheet.canvas, 0.0, &ZERO);
-    Some(finish(Figure::InputDiscrepancy, view, sheet, height))
+    Some(view.finish(Figure::InputDiscrepancy, sheet, height))
 }
 
 /// The range of the differences, with zero in it.

@@ -1,15 +1,16 @@
 //! Figs. 10 and 13: modelled and measured series over time.
 
-use super::{finish, sheet};
-use crate::dead_band::stretches;
+use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::stretches::extent;
+use crate::draw::stretches::stretches;
 use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
-use crate::figure::Figure;
-use crate::quantity::Labelled;
-use crate::view::{View, extent};
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
+use crate::stack::Figures;
 
 /// Width of a figure over time.
 pub(super) const WIDTH: f64 = 760.0;
@@ -22,7 +23,7 @@ pub(super) struct Curve<'a> {
 }
 
 pub(super) fn output(view: &View<'_>) -> String {
-    let mut sheet = sheet(Figure::OutputTime, view, WIDTH);
+    let mut sheet = view.sheet(Figure::OutputTime, WIDTH);
     sheet.legend(&measured_and_modelled(view));
     let curves = [
         Curve {
@@ -43,7 +44,7 @@ pub(super) fn output(view: &View<'_>) -> String {
         panel.band(&mut sheet.canvas, &view.time, band, BAND);
     }
     draw(&mut sheet, view, &panel, &curves);
-    finish(Figure::OutputTime, view, sheet, height)
+    view.finish(Figure::OutputTime, sheet, height)
 }
 
 /// Legend of both outputs, and of the band where there is one.
@@ -60,7 +61,7 @@ pub(super) fn measured_and_modelled(view: &View<'_>) -> Vec<Key> {
 
 pub(super) fn input(view: &View<'_>) -> Option<String> {
     let inverse = view.inverse()?;
-    let mut sheet = sheet(Figure::InputTime, view, WIDTH);
+    let mut sheet = view.sheet(Figure::InputTime, WIDTH);
     let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];
     keys.extend(policies(&inverse.moving));
     sheet.legend(&keys);
@@ -88,7 +89,7 @@ pub(super) fn input(view: &View<'_>) -> Option<String> {
         PLOT_HEIGHT,
     )
     .1;
-    Some(finish(Figure::InputTime, view, sheet, height))
+    Some(view.finish(Figure::InputTime, sheet, height))
 }
 
 /// Legend of the inverse's policies, and of the dead band where there is one.
@@ -141,9 +142,4 @@ fn draw(sheet: &mut Sheet, view: &View<'_>, panel: &Panel, curves: &[Curve<'_>])
     for curve in curves {
         panel.curve(&mut sheet.canvas, &view.time, curve.values, &curve.stroke);
     }
-}
-
-/// Time runs from edge to edge.
-pub(crate) fn time_axis(label: &Labelled, span: Span) -> Axis {
-    Axis::new(label, span.padded(0.005))
 }

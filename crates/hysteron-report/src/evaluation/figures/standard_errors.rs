@@ -1,15 +1,15 @@
 //! How uncertain the weights are: standard errors over the plane, relative to the largest weight.
 
 use super::weights_map::{WIDTH, plot};
-use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Short;
 use crate::draw::sheet::Key;
 use crate::draw::style::Stroke;
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::plane::Half;
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::stack::Figures;
 use hysteron::Excitation;
 use std::fmt::Write;
 
@@ -40,7 +40,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let high = if high > 0.0 { high } else { 1.0 };
     let scale = Axis::new(&label, Span { low: 0.0, high });
 
-    let mut sheet = sheet(Figure::StandardErrors, view, WIDTH);
+    let mut sheet = view.sheet(Figure::StandardErrors, WIDTH);
     let excitation = confidence.excitation.iter();
     let unknown: Vec<f64> = excitation
         .map(|class| f64::from(u8::from(*class == Excitation::Never)))
@@ -73,5 +73,5 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         );
     }
     sheet.canvas.path(&slashes, None, Some(&UNKNOWN));
-    Some(finish(Figure::StandardErrors, view, sheet, bottom))
+    Some(view.finish(Figure::StandardErrors, sheet, bottom))
 }

@@ -1,14 +1,14 @@
 //! The plane coloured by what recordings say of each operator.
 
-use super::finish;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Rect, rect_data};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::Stroke;
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::stack::Figures;
 use hysteron::{Excitation, Plane, Quantity};
 
 const STEM: &str = "excitation-map";
@@ -41,10 +41,10 @@ pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -
 /// The same for the recording that a model was fitted to, where its file tells.
 pub(super) fn of_model(view: &View<'_>) -> Option<String> {
     let confidence = view.confidence()?;
-    let sheet = super::sheet(Figure::Excitation, view, WIDTH);
+    let sheet = view.sheet(Figure::Excitation, WIDTH);
     let classes = &confidence.excitation;
     let (sheet, height) = draw(sheet, view.source.plane(), classes, &view.input);
-    Some(finish(Figure::Excitation, view, sheet, height))
+    Some(view.finish(Figure::Excitation, sheet, height))
 }
 
 /// How many operators are in each class, in words.

@@ -1,11 +1,12 @@
 //! The page of an evaluation.
 
-use crate::captions::{caption, percent, title};
-use crate::figure::Figure;
-use crate::figures::classes_counted;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::figures::classes_counted;
+use crate::evaluation::view::View;
 use crate::frame;
+use crate::number::percent;
 use crate::number::{count, significant};
-use crate::view::View;
+use crate::stack::Figures;
 use hysteron::{Confidence, Errors};
 use maud::{Markup, html};
 
@@ -45,7 +46,7 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
 ];
 
 /// The page around the figures in `drawn`.
-pub(crate) fn html(heading: &str, view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
     let lead = html! {
         "A hysteresis model of " (view.output.name) " over " (view.input.name) ", tested on a recording of both."
     };
@@ -60,7 +61,12 @@ pub(crate) fn html(heading: &str, view: &View<'_>, drawn: &[(Figure, String)]) -
              introduces the MKP model; its figure numbers are given with each caption."
         }
     };
-    frame::html(heading, lead, view.simulated().then_some(simulated), body)
+    frame::html(
+        view.heading,
+        lead,
+        view.simulated().then_some(simulated),
+        body,
+    )
 }
 
 fn facts(view: &View<'_>) -> Markup {
@@ -178,15 +184,10 @@ fn section(
 }
 
 fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
-    let mut numbered = drawn.iter().enumerate();
-    let Some((number, (_, svg))) = numbered.find(|(_, (candidate, _))| *candidate == figure) else {
-        return html! {};
-    };
     let beside = html! {
         @if let Some(number) = figure.chapter_number() {
             " " span.beside { "Beside Fig. " (number) " of the chapter." }
         }
     };
-    let words = [title(figure, view), caption(figure, view)];
-    frame::picture(figure.stem(), number, svg, &words, beside)
+    view.picture(figure, drawn, beside)
 }

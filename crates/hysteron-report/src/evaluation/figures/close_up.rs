@@ -1,15 +1,18 @@
 //! Fig. 15: the dead band with the largest input discrepancy, close up.
 
-use super::over_time::{WIDTH, policies, time_axis};
-use super::{finish, sheet};
-use crate::dead_band::{Worst, stretches, worst};
+use super::over_time::{WIDTH, policies};
+use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::stretches::extent;
+use crate::draw::stretches::stretches;
 use crate::draw::style::{ANTICIPATE, GUIDE, MEASURED, MODELLED};
-use crate::figure::Figure;
-use crate::view::{View, extent};
+use crate::evaluation::dead_band::{Worst, worst};
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
+use crate::stack::Figures;
 use std::ops::Range;
 
 const OUTPUT_HEIGHT: f64 = 150.0;
@@ -26,7 +29,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         [&inverse.hold, &inverse.anticipate].map(|run| part(&run.input_model, &window));
     let time = part(&view.time, &window);
 
-    let mut sheet = sheet(Figure::DeadBand, view, WIDTH);
+    let mut sheet = view.sheet(Figure::DeadBand, WIDTH);
     let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];
     keys.extend(policies(&inverse.moving));
     keys.push(Key::Line(GUIDE, "largest discrepancy of hold".into()));
@@ -80,12 +83,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     below.curve(canvas, time, input, &MEASURED);
     below.curve(canvas, time, hold, &MODELLED);
     below.curve(canvas, time, anticipate, &ANTICIPATE);
-    Some(finish(
-        Figure::DeadBand,
-        view,
-        sheet,
-        lower.bottom() + BELOW + 4.0,
-    ))
+    Some(view.finish(Figure::DeadBand, sheet, lower.bottom() + BELOW + 4.0))
 }
 
 /// The dead band that the figure shows.

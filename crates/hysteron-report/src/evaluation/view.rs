@@ -1,15 +1,18 @@
 //! What every figure and caption reads: the report's parts in the words and units that are shown.
 
+use crate::evaluation::figure::Figure;
+use crate::evaluation::report::Report;
+use crate::evaluation::source::Source;
+use crate::evaluation::{captions, figures, page};
 use crate::quantity::Labelled;
-use crate::report::Report;
-use crate::source::Source;
+use crate::stack::Figures;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
 use hysteron::{Origin, Recording};
 use std::borrow::Cow;
-use std::ops::Range;
 
 /// A report, ready to be drawn.
 pub(crate) struct View<'a> {
+    pub(crate) heading: &'a str,
     pub(crate) recording: &'a Recording,
     pub(crate) evaluation: &'a Evaluation,
     pub(crate) source: Source<'a>,
@@ -23,10 +26,10 @@ pub(crate) struct View<'a> {
 impl<'a> View<'a> {
     pub(crate) fn new(report: &Report<'a>) -> Self {
         let &Report {
+            title: heading,
             model,
             recording,
             evaluation,
-            ..
         } = report;
         let source = Source::new(model);
         let samples = recording.input.len();
@@ -41,6 +44,7 @@ impl<'a> View<'a> {
             ),
         };
         Self {
+            heading,
             recording,
             evaluation,
             source,
@@ -79,10 +83,6 @@ impl<'a> View<'a> {
         Some([lower, upper])
     }
 
-    pub(crate) fn simulated(&self) -> bool {
-        self.recording.origin == Origin::Simulated
-    }
-
     /// What the recorded curves are called.
     pub(crate) fn recorded(&self) -> &'static str {
         if self.simulated() {
@@ -91,32 +91,33 @@ impl<'a> View<'a> {
             "measured"
         }
     }
+}
 
-    /// Modelled minus recorded.
-    pub(crate) fn discrepancy(modelled: &[f64], recorded: &[f64]) -> Vec<f64> {
-        modelled
-            .iter()
-            .zip(recorded)
-            .map(|(modelled, recorded)| modelled - recorded)
-            .collect()
+impl Figures for View<'_> {
+    type Figure = Figure;
+    const ALL: &'static [Figure] = &Figure::ALL;
+
+    fn stem(figure: Figure) -> &'static str {
+        figure.stem()
     }
-}
 
-/// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one sample has a width.
-pub(crate) fn extent(time: &[f64], stretch: &Range<usize>) -> [f64; 2] {
-    let between = |before: Option<usize>, after: usize| {
-        let after = time.get(after).or(time.last()).copied().unwrap_or(0.0);
-        before
-            .and_then(|k| time.get(k))
-            .map_or(after, |before| 0.5 * (before + after))
-    };
-    [
-        between(stretch.start.checked_sub(1), stretch.start),
-        between(stretch.end.checked_sub(1), stretch.end),
-    ]
-}
+    fn simulated(&self) -> bool {
+        self.recording.origin == Origin::Simulated
+    }
 
-/// What stands at the corner of a figure.
-pub(crate) fn note(simulated: bool) -> Option<&'static str> {
-    simulated.then_some("simulated, not measured")
+    fn title(&self, figure: Figure) -> String {
+        captions::title(figure, self)
+    }
+
+    fn caption(&self, figure: Figure) -> String {
+        captions::caption(figure, self)
+    }
+
+    fn svg(&self, figure: Figure) -> Option<String> {
+        figures::svg(figure, self)
+    }
+
+    fn page(&self, drawn: &[(Figure, String)]) -> String {
+        page::html(self, drawn)
+    }
 }

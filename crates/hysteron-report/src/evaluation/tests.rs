@@ -1,8 +1,8 @@
 //! Reports as a whole, of good recordings and of poor ones.
 #![allow(clippy::unwrap_used)]
 
-use crate::fixture::{Fixture, sma};
-use crate::{Figure, Report};
+use crate::evaluation::fixture::{Fixture, sma};
+use crate::evaluation::{Figure, Report};
 use hysteron::{Origin, Quantity, Recording};
 
 fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {

@@ -1,16 +1,16 @@
 //! Fig. 6: operator states on the plane at a few instants.
 
-use super::{finish, sheet};
 use crate::draw::canvas::{Anchor, Canvas, Rect};
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::{GUIDE, LABEL, TICK};
 use crate::draw::text;
-use crate::figure::Figure;
-use crate::instants::candidates;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::instants::candidates;
+use crate::evaluation::view::View;
 use crate::plane::{Half, axes};
-use crate::view::View;
+use crate::stack::Figures;
 
 const WIDTH: f64 = 760.0;
 const COLUMNS: usize = 3;
@@ -27,7 +27,7 @@ struct Instant {
 }
 
 pub(super) fn svg(view: &View<'_>) -> String {
-    let mut sheet = sheet(Figure::PlaneEvolution, view, WIDTH);
+    let mut sheet = view.sheet(Figure::PlaneEvolution, WIDTH);
     sheet.legend(&[
         Key::Marker(Marker::Ring, "γ = 0: S".into(), "min"),
         Key::Marker(Marker::Square, "0 < γ < 1: boundary".into(), ""),
@@ -58,7 +58,7 @@ pub(super) fn svg(view: &View<'_>) -> String {
         states(&mut sheet.canvas, &panel, instant);
         present(&mut sheet.canvas, view, &panel, instant.sample);
     }
-    finish(Figure::PlaneEvolution, view, sheet, bottom + BELOW + 4.0)
+    view.finish(Figure::PlaneEvolution, sheet, bottom + BELOW + 4.0)
 }
 
 /// The first instants at which the operators disagree; a plane that is all on or all off has no boundary to show.
@@ -69,7 +69,7 @@ fn instants(view: &View<'_>) -> Vec<Instant> {
     let all: Vec<Instant> = looked_at
         .map(|sample| Instant {
             sample,
-            half: Half::of_states(view.source, &input[..=sample]),
+            half: Half::of_values(view.source.plane(), &view.source.states(&input[..=sample])),
         })
         .collect();
     let (telling, uniform): (Vec<_>, Vec<_>) = all

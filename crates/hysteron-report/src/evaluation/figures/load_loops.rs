@@ -1,14 +1,14 @@
 //! Fig. 2: the major loops of one model at several loads.
 
-use super::{finish, sheet};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::{ANTICIPATE, MEASURED, MODELLED};
-use crate::figure::Figure;
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 use crate::quantity::Labelled;
-use crate::view::View;
+use crate::stack::Figures;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
@@ -35,7 +35,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         keys.push(Key::Line(stroke, words));
     }
 
-    let mut sheet = sheet(Figure::LoadLoops, view, WIDTH);
+    let mut sheet = view.sheet(Figure::LoadLoops, WIDTH);
     sheet.legend(&keys);
     let x = Axis::new(&view.input, Span::of(&input).padded(0.03));
     let outputs = loops.iter().flat_map(|(output, _)| output);
@@ -52,5 +52,5 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         panel.loops(&mut sheet.canvas, &input, output, stroke);
     }
     let height = area.bottom() + BELOW + 4.0;
-    Some(finish(Figure::LoadLoops, view, sheet, height))
+    Some(view.finish(Figure::LoadLoops, sheet, height))
 }

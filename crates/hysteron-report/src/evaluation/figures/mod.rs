@@ -16,12 +16,9 @@ pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
 pub(crate) use excitation_map::counts as classes_counted;
-pub(crate) use over_time::time_axis;
 
-use crate::captions;
-use crate::draw::sheet::Sheet;
-use crate::figure::Figure;
-use crate::view::{View, note};
+use crate::evaluation::figure::Figure;
+use crate::evaluation::view::View;
 
 /// The figure as SVG; `None` where this report has no such figure.
 pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
@@ -40,19 +37,4 @@ pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
         Figure::InputDiscrepancy => discrepancy::input(view),
         Figure::DeadBand => close_up::svg(view),
     }
-}
-
-/// The empty sheet of a figure.
-fn sheet(figure: Figure, view: &View<'_>, width: f64) -> Sheet {
-    Sheet::new(
-        figure.stem(),
-        width,
-        &captions::title(figure, view),
-        note(view.simulated()),
-    )
-}
-
-/// The finished figure with its caption as spoken text.
-fn finish(figure: Figure, view: &View<'_>, sheet: Sheet, height: f64) -> String {
-    sheet.finish(height, &captions::caption(figure, view))
 }

@@ -1,0 +1,19 @@
+//! What is said to people and to programs.
+
+use std::error::Error;
+use std::io::Write;
+
+/// What a command comes to.
+pub(crate) type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+/// Tells a person something, on standard error.
+pub(crate) fn say(message: std::fmt::Arguments<'_>) {
+    eprintln!("hysteron: {}", hysteron::printable(&message.to_string()));
+}
+
+/// Prints to standard output for people, or JSON; an error there is returned, not a panic.
+pub(crate) fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", hysteron::printable(text))?;
+    Ok(out.flush()?)
+}

@@ -1,0 +1,105 @@
+//! What both reports are made of: figures with titles and captions, written as files around a page.
+
+use crate::draw::sheet::Sheet;
+use crate::error::ReportError;
+use crate::frame;
+use crate::png;
+use hysteron::{AtomicFile, AtomicFolder, Own, Target, printable};
+use maud::{Markup, html};
+use std::path::{Path, PathBuf};
+
+/// A set of figures and the page around them.
+pub(crate) trait Figures {
+    /// Names a figure.
+    type Figure: Copy + PartialEq + 'static;
+
+    /// Every figure, in the order of the page.
+    const ALL: &'static [Self::Figure];
+
+    /// The figure's file name without extension.
+    fn stem(figure: Self::Figure) -> &'static str;
+
+    /// Whether the data are simulated; every figure then says so.
+    fn simulated(&self) -> bool;
+
+    /// The short title at the head of a figure.
+    fn title(&self, figure: Self::Figure) -> String;
+
+    /// What a figure shows, in a sentence or two.
+    fn caption(&self, figure: Self::Figure) -> String;
+
+    /// The figure as SVG; `None` where there is nothing to show in it.
+    fn svg(&self, figure: Self::Figure) -> Option<String>;
+
+    /// The page around the figures in `drawn`.
+    fn page(&self, drawn: &[(Self::Figure, String)]) -> String;
+
+    /// The empty sheet of a figure.
+    fn sheet(&self, figure: Self::Figure, width: f64) -> Sheet {
+        let note = self.simulated().then_some("simulated, not measured");
+        Sheet::new(Self::stem(figure), width, &self.title(figure), note)
+    }
+
+    /// The finished figure with its caption as spoken text.
+    fn finish(&self, figure: Self::Figure, sheet: Sheet, height: f64) -> String {
+        sheet.finish(height, &self.caption(figure))
+    }
+
+    /// A drawn figure on the page, with its number, title and caption; `beside` ends the caption.
+    fn picture(
+        &self,
+        figure: Self::Figure,
+        drawn: &[(Self::Figure, String)],
+        beside: Markup,
+    ) -> Markup {
+        let mut numbered = drawn.iter().enumerate();
+        let Some((number, (_, svg))) = numbered.find(|(_, (drawn, _))| *drawn == figure) else {
+            return html! {};
+        };
+        let words = [self.title(figure), self.caption(figure)];
+        frame::picture(Self::stem(figure), number, svg, &words, beside)
+    }
+
+    /// Writes each figure that there is as SVG and PNG, and the page `index.html`, into the folder
+    /// `within` the one that is being written. Returns the paths, the page first.
+    fn write(&self, folder: &mut AtomicFolder, within: &Path) -> Result<Vec<PathBuf>, ReportError> {
+        let mut drawn = Vec::new();
+        let mut names = vec![within.join("index.html")];
+        for &figure in Self::ALL {
+            // Names come from anywhere; XML allows no control characters.
+            let Some(svg) = self.svg(figure).map(|svg| printable(&svg).into_owned()) else {
+                continue;
+            };
+            let stem = Self::stem(figure);
+            let [svg_name, png_name] =
+                ["svg", "png"].map(|extension| within.join(format!("{stem}.{extension}")));
+            write_file(folder, &svg_name, svg.as_bytes())?;
+            let pixels = png::of_svg(&svg).map_err(|reason| ReportError::Raster {
+                path: folder.path().join(&png_name),
+                reason,
+            })?;
+            write_file(folder, &png_name, &pixels)?;
+            names.extend([svg_name, png_name]);
+            drawn.push((figure, svg));
+        }
+        write_file(folder, &names[0], printable(&self.page(&drawn)).as_bytes())?;
+        Ok(names.iter().map(|name| folder.path().join(name)).collect())
+    }
+}
+
+/// Makes the folder `dir`, lets `write` fill it, and puts it into place whole.
+pub(crate) fn write_folder<'t>(
+    dir: impl Into<Target<'t>>,
+    write: impl FnOnce(&mut AtomicFolder, &Path) -> Result<Vec<PathBuf>, ReportError>,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let mut folder = AtomicFolder::create(dir, None)?;
+    let paths = write(&mut folder, Path::new(""))?;
+    folder.commit()?;
+    Ok(paths)
+}
+
+fn write_file(folder: &mut AtomicFolder, name: &Path, content: &[u8]) -> Result<(), ReportError> {
+    Ok(folder.file(name, |path| {
+        AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(content)
+    })?)
+}
