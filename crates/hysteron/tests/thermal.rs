@@ -83,19 +83,17 @@ fn a_known_body_is_found_again_through_noise() {
 
 #[test]
 fn ramp_and_step_of_a_measured_wire_validate_each_other() {
-    let read = |name: &str| {
-        let path = shared(name)?;
+    let names = ["sma_baraghini_Ramp02.csv", "sma_baraghini_Step02.csv"];
+    let [Some(ramp), Some(step)] = shared(names) else {
+        return;
+    };
+    let [ramp, step] = [ramp, step].map(|path| {
         let columns = Columns {
             time: Some("time_s"),
             ..Columns::new("duty", "position_m")
         };
-        Some(Recording::read(&path, columns, Repair::Refuse).unwrap().0)
-    };
-    let ramp = read("sma_baraghini_Ramp02.csv");
-    let step = read("sma_baraghini_Step02.csv");
-    let (Some(ramp), Some(step)) = (ramp, step) else {
-        return;
-    };
+        Recording::read(&path, columns, Repair::Refuse).unwrap().0
+    });
     let options = FitOptions::default();
     // Fitted on the other one, the static model errs by 39 % and 32 % of the range.
     for (fitted, held_out) in [(&ramp, &step), (&step, &ramp)] {
