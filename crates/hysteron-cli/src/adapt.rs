@@ -31,7 +31,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         load: None,
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
-    let mut adapted = hysteron::adapt(&model, &recording, &args.into())?;
+    let mut adapted = hysteron::adapt(&model, &recording, &args.into(), hysteron::Progress::NONE)?;
     if let Some(adapted) = adapted
         .model
         .fit

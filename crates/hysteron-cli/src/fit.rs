@@ -3,8 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Columns, FirstOrder, FitOptions, FitSummary, Model, Open, Preparation, RateDependence,
-    Recording, Sign, Solver, Step,
+    Advice, Auto, Columns, FirstOrder, Fit, FitOptions, FitSummary, Model, Preparation, Progress,
+    RateDependence, Recording, Sign, Solver, Step,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -53,11 +53,11 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 }
 
 fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
-    let (levels, open_levels) = match args.levels {
+    let (levels, auto_levels) = match args.levels {
         args::Levels::Auto => (FitOptions::default().levels, true),
         args::Levels::Fixed(levels) => (levels, false),
     };
-    let (smooth, open_smooth) = match args.smooth {
+    let (smooth, auto_smooth) = match args.smooth {
         Step::Auto => (0.0, true),
         Step::Off => (0.0, false),
         Step::Value(smooth) => (smooth, false),
@@ -82,17 +82,23 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         bootstrap: args.bootstrap.unwrap_or_default(),
     };
     let bar = progress::stages();
-    let watch = |stage: &'static str, done: f64| {
+    let told = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let open = Open {
-        levels: open_levels,
-        smooth: open_smooth,
-        bootstrap: args.bootstrap.is_none(),
-    };
-    let thermal = args.thermal.is_some();
-    let model = hysteron::identify(recordings, &options, open, thermal, &watch)?;
+    let mut fit = Fit::from(options)
+        .thermal(args.thermal.is_some())
+        .progress(Progress::new(&told));
+    if auto_levels {
+        fit = fit.levels(Auto);
+    }
+    if auto_smooth {
+        fit = fit.smooth(Auto);
+    }
+    if args.bootstrap.is_none() {
+        fit = fit.bootstrap(Auto);
+    }
+    let model = fit.run(recordings)?;
     bar.finish_and_clear();
     Ok(model)
 }

@@ -17,7 +17,7 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     };
     let (recording, others) = recording::read_with_others(&args.data, columns, &args.repair)?;
     let options = options(&args.steps, PrepareOptions::default());
-    let (prepared, report) = hysteron::prepare(&recording, &options)?;
+    let (prepared, report) = hysteron::prepare(&recording, &options, hysteron::Progress::NONE)?;
     let rate = hysteron::rate_dependence(&prepared)?;
     let left_out = others.write_to(&prepared, recording.time.as_deref(), table)?;
     if !left_out.is_empty() {
@@ -59,7 +59,8 @@ pub(crate) fn before_fit(
     let (recording, report) = match options == PrepareOptions::all(Step::Off) {
         true => (recording, None),
         false => {
-            let (prepared, report) = hysteron::prepare(&recording, &options)?;
+            let (prepared, report) =
+                hysteron::prepare(&recording, &options, hysteron::Progress::NONE)?;
             for line in lines(&report, &recording) {
                 say(format_args!("{line}"));
             }

@@ -2,7 +2,7 @@
 
 use crate::terminal::{Result, print, say};
 use crate::{args, progress, text};
-use hysteron::{AtomicFile, AtomicFolder, Own, Quantity};
+use hysteron::{AtomicFile, AtomicFolder, Own, Progress, Quantity};
 use hysteron_sim::track::{Comparison, Kind, Scenario, track};
 use serde_json::json;
 use std::path::Path;
@@ -32,10 +32,11 @@ pub(crate) fn run(args: &args::Track) -> Result<()> {
     });
     let folder = folder.transpose()?;
     let bar = progress::stages();
-    let comparison = track(&scenario, &|done, all| {
-        progress::stage(&bar, "runs", done as f64 / all as f64);
+    let told = |stage: &'static str, done: f64| {
+        progress::stage(&bar, stage, done);
         Ok(())
-    });
+    };
+    let comparison = track(&scenario, Progress::new(&told));
     bar.finish_and_clear();
     let comparison = comparison?;
     if let Some(folder) = folder {

@@ -3,6 +3,7 @@
 
 mod loops;
 
+use hysteron::Progress;
 use hysteron_sim::track::{Comparison, Kind, track};
 use loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario};
 
@@ -15,7 +16,7 @@ fn compare(base: &str, reference: &str, disturbance: &str) {
     let kinds = r#"controllers = ["pid", "inverse-pid", "adaptive-pid"]"#;
     let found = track(
         &scenario(&[base, kinds, reference, disturbance]),
-        &|_, _| Ok(()),
+        Progress::NONE,
     )
     .unwrap();
     let last = found.windows.len() - 1;
@@ -50,7 +51,7 @@ ramp_s = 60
 rest_s = 60
 "#;
     let kinds = r#"controllers = ["inverse-pid", "inverse-pid-anticipate"]"#;
-    let found = track(&scenario(&[SPRING, kinds, rests]), &|_, _| Ok(())).unwrap();
+    let found = track(&scenario(&[SPRING, kinds, rests]), Progress::NONE).unwrap();
     for (w, window) in found.windows.iter().enumerate() {
         let [hold, anticipate] = [0, 1].map(|k| found.scores[k][0][w]);
         println!(

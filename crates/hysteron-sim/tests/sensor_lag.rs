@@ -1,7 +1,7 @@
 //! The lag of a simulated sensor is found in its recording.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Errors, PrepareOptions, Recording, Step, prepare};
+use hysteron::{Errors, PrepareOptions, Progress, Recording, Step, prepare};
 use hysteron_sim::rig::Experiment;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -64,7 +64,7 @@ fn the_lag_of_the_rigs_thermocouple_is_found() {
         lag: Step::Auto,
         ..PrepareOptions::default()
     };
-    let (prepared, report) = prepare(&noisy, &options).unwrap();
+    let (prepared, report) = prepare(&noisy, &options, Progress::NONE).unwrap();
     let lag = report.lag.unwrap();
     println!("{lag:?}");
     let found = lag.undone.unwrap();

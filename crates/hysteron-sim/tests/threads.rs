@@ -4,8 +4,8 @@
 mod loops;
 
 use hysteron::{
-    AdaptOptions, DesignOptions, FitOptions, Model, Open, Operator, Plane, PrepareOptions, Rates,
-    Recording, Solver, Start, adapt, design, evaluate, fit, identify, prepare,
+    AdaptOptions, Auto, DesignOptions, Fit, FitOptions, Model, Operator, Plane, PrepareOptions,
+    Progress, Rates, Recording, Solver, Start, adapt, design, evaluate, prepare,
 };
 use hysteron_sim::rig::{Experiment, prepared};
 use hysteron_sim::track::track;
@@ -72,39 +72,41 @@ fn fits_with_their_confidence() {
         ("relay", relay),
     ];
     for (name, options) in all {
-        same(name, || fit(&recording, &options).unwrap().to_json());
+        same(name, || {
+            Fit::from(&options).run(&recording).unwrap().to_json()
+        });
     }
 }
 
 #[test]
 fn levels_and_smoothness_chosen_on_branches_left_out() {
     let recordings = [recording()];
-    let open = Open {
-        levels: true,
-        smooth: true,
-        bootstrap: false,
-    };
-    let chosen = || identify(&recordings, &options(), open, false, &|_, _| Ok(()));
+    let fit = Fit::from(options()).levels(Auto).smooth(Auto);
+    let chosen = || fit.run(&recordings);
     same("auto", || chosen().unwrap().to_json());
 }
 
 #[test]
 fn what_is_done_with_a_model() {
     let recording = recording();
-    let model: Model = fit(
-        &recording,
-        &FitOptions {
-            bootstrap: 0,
-            ..options()
-        },
-    )
+    let model: Model = Fit::from(&FitOptions {
+        bootstrap: 0,
+        ..options()
+    })
+    .run(&recording)
     .unwrap();
     same("evaluate", || format!("{:?}", evaluate(&model, &recording)));
     same("adapt", || {
-        format!("{:?}", adapt(&model, &recording, &AdaptOptions::default()))
+        format!(
+            "{:?}",
+            adapt(&model, &recording, &AdaptOptions::default(), Progress::NONE)
+        )
     });
     same("prepare", || {
-        format!("{:?}", prepare(&recording, &PrepareOptions::default()))
+        format!(
+            "{:?}",
+            prepare(&recording, &PrepareOptions::default(), Progress::NONE)
+        )
     });
     let rates = Rates {
         heating: 3.0,
@@ -119,6 +121,6 @@ fn comparisons_of_controllers() {
     let short = "duration_s = 8\nsettle_s = 1\nseeds = 2";
     let compared = scenario(&[RELAYS, short, RELAYS_SINE]);
     same("track", || {
-        format!("{:?}", track(&compared, &|_, _| Ok(())).unwrap())
+        format!("{:?}", track(&compared, Progress::NONE).unwrap())
     });
 }

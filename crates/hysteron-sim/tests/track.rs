@@ -3,7 +3,7 @@
 
 mod loops;
 
-use hysteron::Error;
+use hysteron::{Error, Progress};
 use hysteron_sim::track::{Scenario, track};
 use loops::{RELAYS, RELAYS_SINE, SPRING, SPRING_SINE, scenario, text};
 use std::path::Path;
@@ -208,7 +208,7 @@ fn a_refusal_names_the_field() {
 fn a_scenario_put_together_by_hand_is_checked_too() {
     let mut one = scenario(&[SPRING, SPRING_SINE]);
     one.seeds = 0;
-    let refused = track(&one, &|_, _| Ok(()));
+    let refused = track(&one, Progress::NONE);
     assert!(matches!(refused, Err(Error::Scenario { .. })));
 }
 
@@ -282,7 +282,7 @@ fn both_rules_give_gains_on_both_plants() {
                 "relay" => hysteron_sim::track::Tuning::Relay,
                 _ => hysteron_sim::track::Tuning::Step,
             };
-            let found = track(&one, &|_, _| Ok(())).unwrap();
+            let found = track(&one, Progress::NONE).unwrap();
             let gains = found.gains.unwrap();
             println!("{rule}: {gains:?}, inside {:?}", found.inner_gains);
             for gains in [Some(gains), found.inner_gains].into_iter().flatten() {
@@ -313,7 +313,7 @@ fn a_plant_that_does_not_answer_is_refused() {
             let shared =
                 format!("loop = {{ filter_s = 0.1, tolerance = 0.1, tuning = \"{rule}\" }}");
             let more = format!("{plant}\n{shared}\ncontrollers = [\"pid\"]");
-            let refused = track(&scenario(&[base, &more, sine]), &|_, _| Ok(())).unwrap_err();
+            let refused = track(&scenario(&[base, &more, sine]), Progress::NONE).unwrap_err();
             assert!(matches!(refused, Error::Scenario { .. }), "{refused}");
             assert!(
                 refused.to_string().contains("no PID can be tuned"),
@@ -327,7 +327,7 @@ fn a_plant_that_does_not_answer_is_refused() {
 fn the_same_seeds_give_the_same_scores() {
     let more = "duration_s = 20\nseeds = 2\ncontrollers = [\"pid\", \"adaptive-pid\"]";
     let one = scenario(&[RELAYS, more, RELAYS_SINE]);
-    let scores = || format!("{:?}", track(&one, &|_, _| Ok(())).unwrap().scores);
+    let scores = || format!("{:?}", track(&one, Progress::NONE).unwrap().scores);
     let found = scores();
     assert_eq!(found, scores());
     assert!(!found.is_empty());
@@ -338,7 +338,7 @@ fn twice_the_samples_track_alike() {
     let rmse = |interval: &str| {
         let more =
             format!("duration_s = 1000\nseeds = 2\ncontrollers = [\"inverse-pid\"]\n{interval}");
-        let found = track(&scenario(&[SPRING, &more, SPRING_SINE]), &|_, _| Ok(())).unwrap();
+        let found = track(&scenario(&[SPRING, &more, SPRING_SINE]), Progress::NONE).unwrap();
         found.medians()[1].score.rmse
     };
     let (coarse, fine) = (rmse("interval_s = 0.2"), rmse("interval_s = 0.1"));

@@ -29,7 +29,6 @@ mod series;
 
 pub use adapt::{
     AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
-    adapt_watched,
 };
 #[cfg(feature = "data")]
 pub use data::{
@@ -47,8 +46,8 @@ pub use hysteron_core::{
     Output, Policy, Region, Solution, Status, operator_index,
 };
 pub use identify::{
-    AGAINST_INPUT, Advice, Candidates, FitOptions, LeftOut, Open, advice, cross_validate,
-    excitation, fit, fit_experiment, fit_thermal, identify, left_out, plane_of, way_against_input,
+    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, advice,
+    cross_validate, excitation, left_out, plane_of, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,
@@ -61,9 +60,9 @@ pub use model::{
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
-    Spikes, Step, noise, prepare, prepare_watched, rate_dependence,
+    Spikes, Step, noise, prepare, rate_dependence,
 };
-pub use progress::Watch;
+pub use progress::Progress;
 pub use recording::{Origin, Quantity, Recording, Source};
 pub use remedy::{Remedy, Setting, SettingValue};
 pub use series::{

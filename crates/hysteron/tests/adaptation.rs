@@ -5,8 +5,8 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, DriftParts, FirstOrder, FitOptions, Learner, Model, Operator,
-    Plane, Recording, Repair, Sign, Start, adapt, fit, fit_experiment,
+    AdaptOptions, Adaptive, Columns, DriftParts, FirstOrder, Fit, FitOptions, Learner, Model,
+    Operator, Plane, Progress, Recording, Repair, Sign, Start, adapt,
 };
 
 const LEARNERS: [Learner; 4] = [
@@ -58,7 +58,7 @@ fn by(learner: Learner) -> AdaptOptions {
 fn every_learner_follows_a_plant_with_another_stroke() {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
     for learner in LEARNERS {
-        let adapted = adapt(&model, &recording, &by(learner)).unwrap();
+        let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
         let (first, last) = (adapted.thirds[0], adapted.thirds[2]);
         // The plant is the model but for its stroke: what is left after fifty loops is what is still being learned, and with
         // the gradient methods a long tail of it.
@@ -77,7 +77,7 @@ fn every_learner_follows_a_plant_with_another_stroke() {
 fn drift_follows_a_shift_that_it_has_no_part_for() {
     // Two levels and a third more stroke; the parts are shifted by 1, 3 and 5.
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.3, 2), Start::Off));
-    let adapted = adapt(&model, &recording, &by(Learner::Drift)).unwrap();
+    let adapted = adapt(&model, &recording, &by(Learner::Drift), Progress::NONE).unwrap();
     // A sum of shifted parts is wider than a shift: about a quarter of the error stays.
     let last = adapted.thirds[2];
     assert!(last.adapting.rmse < 0.25 * last.fixed.rmse, "{last:?}");
@@ -137,7 +137,7 @@ fn the_start_is_on_or_found() {
             start,
             ..by(Learner::Drift)
         };
-        adapt(&model, &recording, &options).unwrap()
+        adapt(&model, &recording, &options, Progress::NONE).unwrap()
     };
     let [off, on] = [Start::Off, Start::On].map(|start| from(start).whole.fixed.rmse);
     assert!(on < 0.5 * off, "{on} {off}");
@@ -158,17 +158,17 @@ fn a_load_is_found_from_the_output_alone() {
         range: Some((20.0, 80.0)),
         ..FitOptions::default()
     };
-    let model = fit_experiment(&[at(0.0), at(1.0)], &options, &|_, _| Ok(())).unwrap();
+    let model = Fit::from(&options).run(&[at(0.0), at(1.0)]).unwrap();
     let target = Recording {
         load: None,
         ..at(0.9)
     };
-    let adapted = adapt(&model, &target, &by(Learner::Drift)).unwrap();
+    let adapted = adapt(&model, &target, &by(Learner::Drift), Progress::NONE).unwrap();
     let last = adapted.thirds[2];
     // The two parts hold the plant up to the fit's error, well below a hundredth.
     assert!(last.adapting.rmse < 0.05 * last.fixed.rmse, "{last:?}");
     assert!(adapted.model.load.is_none());
-    let refused = adapt(&model, &target, &by(Learner::LeastSquares)).unwrap_err();
+    let refused = adapt(&model, &target, &by(Learner::LeastSquares), Progress::NONE).unwrap_err();
     assert!(
         refused.to_string().contains("depends on a load"),
         "{refused}"
@@ -177,7 +177,7 @@ fn a_load_is_found_from_the_output_alone() {
         load: Some(2.0),
         ..by(Learner::Drift)
     };
-    let refused = adapt(&model, &target, &far).unwrap_err();
+    let refused = adapt(&model, &target, &far, Progress::NONE).unwrap_err();
     assert!(
         refused.to_string().contains("outside the range"),
         "{refused}"
@@ -191,10 +191,18 @@ fn the_adapted_file_says_how_it_came_about() {
         bootstrap: 20,
         ..FitOptions::default()
     };
-    let model = fit(&recorded(&wire(1.0, 0), Start::Off), &options).unwrap();
+    let model = Fit::from(&options)
+        .run(&recorded(&wire(1.0, 0), Start::Off))
+        .unwrap();
     assert!(model.fit.as_ref().unwrap().confidence.is_some());
     let recording = recorded(&wire(1.4, 0), Start::Off);
-    let adapted = adapt(&model, &recording, &by(Learner::LeastSquares)).unwrap();
+    let adapted = adapt(
+        &model,
+        &recording,
+        &by(Learner::LeastSquares),
+        Progress::NONE,
+    )
+    .unwrap();
     let read = Model::from_json(&adapted.model.to_json()).unwrap();
     assert_eq!(read, adapted.model);
     let summary = read.fit.unwrap();
@@ -243,7 +251,9 @@ fn frozen_it_stays_and_what_was_kept_comes_back() {
 fn what_cannot_be_adapted_is_refused() {
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
     let refused = |model: &Model, recording: &Recording, options: AdaptOptions| {
-        adapt(model, recording, &options).unwrap_err().to_string()
+        adapt(model, recording, &options, Progress::NONE)
+            .unwrap_err()
+            .to_string()
     };
     let mut heated = model.clone();
     heated.thermal = Some(FirstOrder {
@@ -282,7 +292,7 @@ fn what_cannot_be_adapted_is_refused() {
 #[test]
 fn two_samples_have_no_thirds() {
     let two = Recording::new(vec![20.0, 30.0], vec![5.0, 4.9]).unwrap();
-    let adapted = adapt(&wire(1.0, 0), &two, &by(Learner::Drift)).unwrap();
+    let adapted = adapt(&wire(1.0, 0), &two, &by(Learner::Drift), Progress::NONE).unwrap();
     assert_eq!(adapted.outcomes.len(), 2);
     assert!(adapted.thirds.is_empty());
 }
@@ -298,8 +308,8 @@ fn a_measured_alloy_is_followed_to_another_stress() {
         let columns = Columns::new("temperature_C", "strain_percent");
         Recording::read(&path, columns, Repair::Refuse).unwrap().0
     });
-    let model = fit(&before, &FitOptions::default()).unwrap();
-    let adapted = adapt(&model, &after, &AdaptOptions::default()).unwrap();
+    let model = Fit::from(FitOptions::default()).run(&before).unwrap();
+    let adapted = adapt(&model, &after, &AdaptOptions::default(), Progress::NONE).unwrap();
     // docs/adaptation.md: a tenth.
     assert!(
         adapted.again.rmse < 0.25 * adapted.whole.fixed.rmse,

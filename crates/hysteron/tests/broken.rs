@@ -1,7 +1,7 @@
 //! Recordings that cannot be used, each with the error that it gets.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use hysteron::{Columns, FitOptions, Recording, Repair, fit};
+use hysteron::{Columns, Fit, FitOptions, Recording, Repair};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ fn folder(name: &str) -> PathBuf {
 /// What reading a recording and fitting a model to it says, without the path.
 fn refusal(path: &Path, columns: Columns<'_>) -> String {
     let read = Recording::read(path, columns, Repair::Refuse);
-    let done = read.and_then(|(recording, _)| fit(&recording, &FitOptions::default()));
+    let done = read.and_then(|(recording, _)| Fit::from(FitOptions::default()).run(&recording));
     let said = done.expect_err(&path.display().to_string()).to_string();
     let place = path.display().to_string();
     assert!(said.contains(&place), "{said}");

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Excitation, FitOptions, INTERVAL, Model, Operator, Plane, Recording, Sign, Solver, Start,
-    evaluate_from, fit, fit_experiment,
+    Excitation, Fit, FitOptions, INTERVAL, Model, Operator, Plane, Recording, Sign, Solver, Start,
+    evaluate_from,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -76,7 +76,9 @@ fn intervals_hold_what_they_say() {
                 bootstrap: 100,
                 ..FitOptions::default()
             };
-            let found = fit(&Recording::new(input, output).unwrap(), &options).unwrap();
+            let found = Fit::from(&options)
+                .run(&Recording::new(input, output).unwrap())
+                .unwrap();
             let confidence = found.fit.as_ref().unwrap().confidence.as_ref().unwrap();
             for n in 0..model.weights().len() {
                 if confidence.excitation[n] == Excitation::Determined {
@@ -129,7 +131,7 @@ fn an_unknown_start_costs_little() {
                     start,
                     ..FitOptions::default()
                 };
-                let found = fit(&recording, &options).unwrap();
+                let found = Fit::from(&options).run(&recording).unwrap();
                 // With the weights given, the start that explains the recording best is no worse than that of the fit.
                 let again = evaluate_from(&found, &recording, start).unwrap().forward;
                 let fitted = found.fit.as_ref().unwrap().rmse;
@@ -172,7 +174,7 @@ fn an_unknown_start_with_weights_of_either_sign() {
         smooth: 1e-8,
         ..FitOptions::default()
     };
-    let found = fit(&recording, &options).unwrap();
+    let found = Fit::from(&options).run(&recording).unwrap();
     let fitted = found.fit.as_ref().unwrap().rmse;
     let again = evaluate_from(&found, &recording, Start::Unknown).unwrap();
     assert!(again.inverse.is_err());
@@ -214,7 +216,7 @@ fn recordings_with_starts_of_their_own_are_one_experiment() {
             start,
             ..FitOptions::default()
         };
-        fit_experiment(&recordings, &options, &|_, _| Ok(())).unwrap()
+        Fit::from(&options).run(&recordings).unwrap()
     };
     let unknown = fitted(Start::Unknown).fit.unwrap();
     // Whole operators on or off are fitted exactly; an operator that starts half on is, only as long as
@@ -255,7 +257,7 @@ fn weights_that_depend_on_a_load_are_recovered() {
         range: Some((20.0, 80.0)),
         ..FitOptions::default()
     };
-    let found = fit_experiment(&recordings, &options, &|_, _| Ok(())).unwrap();
+    let found = Fit::from(&options).run(&recordings).unwrap();
     assert_eq!(found.load.as_ref().unwrap().range(), (6.0, 10.0));
     let between = found.at_load(8.0).unwrap();
     let error = error_elsewhere(&between, &mixed(0.5), &mut rng);

@@ -1,7 +1,7 @@
 //! Identification of known models, and the optimality of what is found.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Error, FitOptions, Model, Operator, Plane, Recording, Sign, Solver, fit};
+use hysteron::{Error, Fit, FitOptions, Model, Operator, Plane, Recording, Sign, Solver};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -47,7 +47,9 @@ fn a_known_model_is_recovered() {
                 let input = reversal_curves(&plane);
                 let recording =
                     Recording::new(input.clone(), known.simulate(&input).unwrap()).unwrap();
-                let found = fit(&recording, &options(operator, 8, solver)).unwrap();
+                let found = Fit::from(&options(operator, 8, solver))
+                    .run(&recording)
+                    .unwrap();
                 assert_eq!(found.sign(), sign);
                 assert!(
                     (found.offset() - 3.5).abs() < 1e-6,
@@ -82,7 +84,9 @@ fn non_negative_least_squares_is_optimal() {
             .map(|t| (t / 9.0).sin() + rng.random_range(-0.5..0.5))
             .collect();
         let recording = Recording::new(input, output.clone()).unwrap();
-        let model = fit(&recording, &options(operator, levels, Solver::Nnls)).unwrap();
+        let model = Fit::from(&options(operator, levels, Solver::Nnls))
+            .run(&recording)
+            .unwrap();
         let rmse = model.fit.as_ref().unwrap().rmse;
         let squares = |model: &Model| -> f64 {
             let modelled = model.simulate(&recording.input).unwrap();
@@ -122,7 +126,9 @@ fn operators_never_excited_get_no_weight() {
     let output = input.iter().map(|t| t * 0.1).collect();
     let recording = Recording::new(input, output).unwrap();
     for solver in [Solver::Nnls, Solver::Ols] {
-        let model = fit(&recording, &options(Operator::Mkp, 20, solver)).unwrap();
+        let model = Fit::from(&options(Operator::Mkp, 20, solver))
+            .run(&recording)
+            .unwrap();
         let above = hysteron_core::operator_count(12);
         assert!(model.weights()[above..].iter().all(|mu| mu.abs() < 1e-9));
     }
@@ -132,7 +138,7 @@ fn operators_never_excited_get_no_weight() {
 fn what_cannot_be_fitted_is_refused() {
     let recording = |input: Vec<f64>| Recording::new(input, vec![1.0, 2.0, 4.0]);
     let constant = recording(vec![5.0; 3]).unwrap();
-    let error = fit(&constant, &FitOptions::default()).unwrap_err();
+    let error = Fit::from(FitOptions::default()).run(&constant).unwrap_err();
     assert!(
         error
             .to_string()
@@ -142,7 +148,7 @@ fn what_cannot_be_fitted_is_refused() {
     assert!(recording(vec![1.0, f64::NAN, 2.0]).is_err());
     assert!(recording(vec![1.0, 2.0]).is_err());
     let good = recording(vec![1.0, 2.0, 3.0]).unwrap();
-    let refuse = |options: FitOptions| fit(&good, &options).unwrap_err();
+    let refuse = |options: FitOptions| Fit::from(&options).run(&good).unwrap_err();
     for levels in [0, 1, 1_000_000] {
         let error = refuse(FitOptions {
             levels,
@@ -194,7 +200,7 @@ fn long_rests_do_not_spoil_the_fit() {
                 solver,
                 ..FitOptions::default()
             };
-            let model = fit(&recording, &options).unwrap();
+            let model = Fit::from(&options).run(&recording).unwrap();
             assert!(
                 model.fit.unwrap().nrmse_percent < 1e-4,
                 "{samples}, {levels}, {solver:?}"

@@ -5,7 +5,7 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    Columns, FitOptions, PrepareOptions, Recording, Repair, fit, prepare, rate_dependence,
+    Columns, Fit, FitOptions, PrepareOptions, Progress, Recording, Repair, prepare, rate_dependence,
 };
 use std::path::PathBuf;
 
@@ -106,7 +106,7 @@ fn recordings() -> Vec<(&'static str, Recording)> {
 }
 
 fn nrmse(recording: &Recording) -> f64 {
-    let model = fit(recording, &FitOptions::default()).unwrap();
+    let model = Fit::from(FitOptions::default()).run(recording).unwrap();
     model.fit.unwrap().nrmse_percent
 }
 
@@ -133,7 +133,8 @@ fn spikes_are_taken_from_the_two_that_have_them_and_nothing_gets_worse() {
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (name, recording) in recordings() {
-        let (prepared, report) = prepare(&recording, &PrepareOptions::default()).unwrap();
+        let (prepared, report) =
+            prepare(&recording, &PrepareOptions::default(), Progress::NONE).unwrap();
         let spikes = report.spikes.unwrap();
         assert_eq!(spikes.input.first, expected_spikes(name), "{name}");
         assert_eq!(
@@ -161,7 +162,7 @@ fn spikes_are_taken_from_the_two_that_have_them_and_nothing_gets_worse() {
         // Smoothing narrows the range that errors are measured by, by half a per cent of itself.
         assert!(after <= 1.01 * before, "{name}: {before} to {after}");
 
-        let (again, _) = prepare(&prepared, &PrepareOptions::default()).unwrap();
+        let (again, _) = prepare(&prepared, &PrepareOptions::default(), Progress::NONE).unwrap();
         // The noise that stays may be just above the 0.05 % that is left alone, and asks for a second, gentler filter.
         assert!(
             difference(&again.input, &prepared.input, input) < 0.1,

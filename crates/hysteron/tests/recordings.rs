@@ -4,7 +4,7 @@
 mod common;
 
 use common::shared;
-use hysteron::{Columns, FitOptions, Operator, Recording, Repair, Solver, fit};
+use hysteron::{Columns, Fit, FitOptions, Operator, Recording, Repair, Solver};
 
 /// RMSE over all rows at the optimum, from SciPy 1.17 on the dense matrix with a free offset
 /// (`scipy.optimize.nnls`, `numpy.linalg.lstsq`), plane 0 to 3.5, all off at the start.
@@ -30,7 +30,7 @@ fn the_optimum_is_scipys() {
                 solver,
                 ..FitOptions::default()
             };
-            let model = fit(&recording, &options).unwrap();
+            let model = Fit::from(&options).run(&recording).unwrap();
             let rmse = model.fit.unwrap().rmse;
             println!("K = {levels}, {solver:?}: {rmse:.6}, SciPy {expected:.6}");
             // The reference is given to six decimals.
@@ -55,7 +55,12 @@ fn with_a_free_offset_kp_fits_as_mkp_does() {
             levels: 10,
             ..FitOptions::default()
         };
-        fit(&recording, &options).unwrap().fit.unwrap().rmse
+        Fit::from(&options)
+            .run(&recording)
+            .unwrap()
+            .fit
+            .unwrap()
+            .rmse
     });
     assert!((errors[0] - errors[1]).abs() < 1e-9 * errors[0]);
 }

@@ -5,8 +5,7 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    Columns, FirstOrder, FitOptions, Model, Operator, Plane, Recording, Repair, Sign, evaluate,
-    fit, fit_thermal,
+    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign, evaluate,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -66,7 +65,10 @@ fn a_known_body_is_found_again_through_noise() {
         levels: 10,
         ..FitOptions::default()
     };
-    let model = fit_thermal(&[recording.clone()], &options, &|_, _| Ok(())).unwrap();
+    let model = Fit::from(&options)
+        .thermal(true)
+        .run(&[recording.clone()])
+        .unwrap();
     let body = model.thermal.unwrap();
     println!("{body:?}, {}", model.fit.as_ref().unwrap().nrmse_percent);
     // The output crosses its range within about a time constant, so noise of 1 % of it is 1 % of the time constant for
@@ -101,8 +103,11 @@ fn ramp_and_step_of_a_measured_wire_validate_each_other() {
             let error = evaluate(model, held_out).unwrap().forward;
             error.nrmse_percent.unwrap()
         };
-        let plain = percent(&fit(fitted, &options).unwrap());
-        let model = fit_thermal(std::slice::from_ref(fitted), &options, &|_, _| Ok(())).unwrap();
+        let plain = percent(&Fit::from(&options).run(fitted).unwrap());
+        let model = Fit::from(&options)
+            .thermal(true)
+            .run(std::slice::from_ref(fitted))
+            .unwrap();
         let heated = percent(&model);
         println!(
             "held out: static {plain:.2} %, {heated:.2} % with {:?}",
@@ -112,7 +117,7 @@ fn ramp_and_step_of_a_measured_wire_validate_each_other() {
         assert!(heated < plain / 3.0);
     }
     let both = [ramp, step];
-    let model = fit_thermal(&both, &options, &|_, _| Ok(())).unwrap();
+    let model = Fit::from(&options).thermal(true).run(&both).unwrap();
     let body = model.thermal.unwrap();
     let percent = model.fit.as_ref().unwrap().nrmse_percent;
     println!("both fitted: {percent:.2} % with {body:?}");
@@ -127,7 +132,7 @@ fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
         levels: 10,
         ..FitOptions::default()
     };
-    let model = fit_thermal(&[recording], &options, &|_, _| Ok(())).unwrap();
+    let model = Fit::from(&options).thermal(true).run(&[recording]).unwrap();
     let body = model.thermal.unwrap();
     println!("{body:?}, {:?}", model.fit.as_ref().unwrap().nrmse_percent);
     assert_eq!(body.tau_heating, body.tau_cooling);
@@ -138,11 +143,9 @@ fn one_loop_does_not_tell_heating_from_cooling_and_says_so() {
 fn what_cannot_be_fitted_is_refused() {
     let recording = Recording::new(vec![0.0, 1.0, 0.0], vec![0.0, 1.0, 0.5]).unwrap();
     let fault = |recording: &Recording| {
-        let fitted = fit_thermal(
-            std::slice::from_ref(recording),
-            &FitOptions::default(),
-            &|_, _| Ok(()),
-        );
+        let fitted = Fit::from(&FitOptions::default())
+            .thermal(true)
+            .run(std::slice::from_ref(recording));
         fitted.unwrap_err().to_string()
     };
     assert!(fault(&recording).contains("depends on time"));
@@ -247,7 +250,7 @@ fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
         levels: 10,
         ..FitOptions::default()
     };
-    let found = fit_thermal(&[recording], &options, &|_, _| Ok(())).unwrap();
+    let found = Fit::from(&options).thermal(true).run(&[recording]).unwrap();
     let body = found.thermal.unwrap();
     println!("{body:?}");
     // Exact data; what is left is that the plane found is not that of the truth.
@@ -272,7 +275,7 @@ fn a_model_at_one_load_keeps_its_body() {
         levels: 6,
         ..FitOptions::default()
     };
-    let model = fit_thermal(&recordings, &options, &|_, _| Ok(())).unwrap();
+    let model = Fit::from(&options).thermal(true).run(&recordings).unwrap();
     let light = model.at_load(6.0).unwrap();
     assert!(light.thermal.is_some() && light.thermal == model.thermal);
     assert!(light.inverse().is_err());

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Candidates, FitOptions, Model, Operator, Plane, Recording, Sign, cross_validate, fit, left_out,
+    Candidates, Fit, FitOptions, Model, Operator, Plane, Progress, Recording, Sign, cross_validate,
+    left_out,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -57,15 +58,18 @@ fn the_choice_beats_the_plain_fit_on_noise() {
         let all = std::slice::from_ref(&noisy);
         let candidates = Candidates::new(None, None);
         let (options, validation) =
-            cross_validate(all, &FitOptions::default(), &candidates, &|_, _| Ok(())).unwrap();
+            cross_validate(all, &FitOptions::default(), &candidates, Progress::NONE).unwrap();
         assert!(validation.whole_branches && options.smooth > 0.0);
         // What is left out has noise too: 3 % of the range.
         assert!(
             (2.5..4.5).contains(&validation.nrmse_percent),
             "{validation:?}"
         );
-        plain += error(&fit(&noisy, &FitOptions::default()).unwrap(), &material);
-        chosen += error(&fit(&noisy, &options).unwrap(), &material);
+        plain += error(
+            &Fit::from(FitOptions::default()).run(&noisy).unwrap(),
+            &material,
+        );
+        chosen += error(&Fit::from(&options).run(&noisy).unwrap(), &material);
     }
     println!("error against the truth: {plain:.5} plain, {chosen:.5} chosen");
     assert!(chosen < 0.8 * plain, "{chosen} of {plain}");
@@ -83,7 +87,7 @@ fn strength_means_the_same_at_any_number_of_levels() {
                 smooth: 1e-5,
                 ..FitOptions::default()
             };
-            let model = fit(&noisy, &options).unwrap();
+            let model = Fit::from(&options).run(&noisy).unwrap();
             model.simulate(&noisy.input).unwrap()
         })
         .collect();
@@ -106,7 +110,7 @@ fn samples_are_left_out_with_their_branch() {
         std::slice::from_ref(&noisy),
         &FitOptions::default(),
         None,
-        &|_, _| Ok(()),
+        Progress::NONE,
     )
     .unwrap();
     // Thirty samples a branch, which begins after its turning point.
@@ -123,7 +127,7 @@ fn samples_are_left_out_with_their_branch() {
         std::slice::from_ref(&other),
         &FitOptions::default(),
         None,
-        &|_, _| Ok(()),
+        Progress::NONE,
     )
     .unwrap();
     for n in 91..=120 {
@@ -135,7 +139,7 @@ fn samples_are_left_out_with_their_branch() {
             &[Recording::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 2.0]).unwrap()],
             &FitOptions::default(),
             None,
-            &|_, _| Ok(())
+            Progress::NONE
         )
         .is_err()
     );

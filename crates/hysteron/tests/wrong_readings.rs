@@ -4,7 +4,8 @@
 
 use hysteron::control::{Compensator, Controller, Reading, Rest, Scheme, Target};
 use hysteron::{
-    AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Recording, Sign, adapt,
+    AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Progress, Recording, Sign,
+    adapt,
 };
 
 /// What a converter of twelve bits says when its wire is off.
@@ -70,11 +71,11 @@ fn same(clean: &Adapted, other: &Adapted, what: &str) {
 fn a_cell_of_full_scale_in_the_last_row_is_not_in_the_model() {
     let recording = recorded(&spring(13.5));
     for learner in LEARNERS {
-        let clean = adapt(&spring(10.0), &recording, &by(learner)).unwrap();
+        let clean = adapt(&spring(10.0), &recording, &by(learner), Progress::NONE).unwrap();
         let last = recording.len() - 1;
         for first in [last, last - 1, last - 6, last - 14] {
             let wrong = with_wrong(&recording, first..=last);
-            let adapted = adapt(&spring(10.0), &wrong, &by(learner)).unwrap();
+            let adapted = adapt(&spring(10.0), &wrong, &by(learner), Progress::NONE).unwrap();
             same(&clean, &adapted, &format!("{learner:?} from {first}"));
             assert_eq!(adapted.probation, 8);
             assert!(
@@ -87,7 +88,13 @@ fn a_cell_of_full_scale_in_the_last_row_is_not_in_the_model() {
             gate: Some(0.0),
             ..by(learner)
         };
-        let adapted = adapt(&spring(10.0), &with_wrong(&recording, last..=last), &open).unwrap();
+        let adapted = adapt(
+            &spring(10.0),
+            &with_wrong(&recording, last..=last),
+            &open,
+            Progress::NONE,
+        )
+        .unwrap();
         assert_eq!((adapted.probation, adapted.counts.rejected), (0, 0));
     }
 }
@@ -96,11 +103,11 @@ fn a_cell_of_full_scale_in_the_last_row_is_not_in_the_model() {
 fn one_cell_in_five_hundred_leaves_the_weights_as_they_are_without() {
     let recording = recorded(&spring(13.5));
     for learner in LEARNERS {
-        let clean = adapt(&spring(10.0), &recording, &by(learner)).unwrap();
+        let clean = adapt(&spring(10.0), &recording, &by(learner), Progress::NONE).unwrap();
         for first in [0, 137, 499] {
             let cells = (first..recording.len()).step_by(500);
             let wrong = with_wrong(&recording, cells.clone());
-            let adapted = adapt(&spring(10.0), &wrong, &by(learner)).unwrap();
+            let adapted = adapt(&spring(10.0), &wrong, &by(learner), Progress::NONE).unwrap();
             same(&clean, &adapted, &format!("{learner:?} from {first}"));
             for n in cells {
                 // At rest nothing is learned anyway.
@@ -183,7 +190,7 @@ fn a_model_that_ends_worse_is_told() {
         dead_zone: Some(0.0),
         ..by(Learner::Gradient)
     };
-    let adapted = adapt(&spring(10.0), &recording, &options).unwrap();
+    let adapted = adapt(&spring(10.0), &recording, &options, Progress::NONE).unwrap();
     let late = adapted.late.unwrap();
     assert!(
         adapted.worse && late.adapting.rmse > late.fixed.rmse,
@@ -193,6 +200,7 @@ fn a_model_that_ends_worse_is_told() {
         &spring(10.0),
         &recorded(&spring(13.5)),
         &by(Learner::Gradient),
+        Progress::NONE,
     )
     .unwrap();
     assert!(!better.worse);
@@ -201,6 +209,7 @@ fn a_model_that_ends_worse_is_told() {
         &spring(10.0),
         &recorded(&spring(10.0)),
         &by(Learner::LeastSquares),
+        Progress::NONE,
     )
     .unwrap();
     assert!(!same.worse, "{:?}", same.late);

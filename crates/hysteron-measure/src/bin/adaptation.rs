@@ -2,9 +2,9 @@
 //! `cargo run --release -p hysteron-measure --bin adaptation -- ../shared/data`
 
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, Direction, DriftParts, Errors, FitOptions, Learner, Model,
-    Plane, PrepareOptions, Recording, Repair, Sign, Start, State, Step, Turning, adapt, fit,
-    fit_experiment, plane_of, prepare,
+    AdaptOptions, Adaptive, Columns, Direction, DriftParts, Errors, Fit, FitOptions, Learner,
+    Model, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start, State, Step, Turning,
+    adapt, plane_of, prepare,
 };
 use std::error::Error;
 use std::ops::Range;
@@ -120,7 +120,7 @@ fn split(folder: &Path) -> Result<(Plane, Vec<Recording>)> {
         lag: Step::Off,
         band: Step::Off,
     };
-    let (whole, _) = prepare(&raw, &steps)?;
+    let (whole, _) = prepare(&raw, &steps, Progress::NONE)?;
     let ((low, high), _) = whole.ranges();
     let cold = |t: &f64| *t < whole.input[0] - 0.02 * (high - low);
     let begin = whole.input.iter().position(cold).unwrap_or(0);
@@ -147,7 +147,7 @@ fn cycles(folder: &Path) -> Result<()> {
             levels: LEVELS,
             ..FitOptions::default()
         };
-        fit(cycle, &options)
+        Fit::from(&options).run(cycle)
     };
     let line = |name: &str, cells: &[f64]| {
         let cells: Vec<String> = cells.iter().map(|c| format!(" {c:.2} |")).collect();
@@ -273,13 +273,13 @@ impl Loops {
                 output: target.output.repeat(passes),
                 ..target.clone()
             };
-            self.judge(&adapt(model, &many, options)?.model, to)
+            self.judge(&adapt(model, &many, options, Progress::NONE)?.model, to)
         };
         Ok(format!("{:.1}, {:.1}", after(1)?, after(PASSES)?))
     }
 
     fn row(&self, from: usize, to: usize) -> Result<()> {
-        let model = |n: usize| fit(&self.loops[n], &self.options);
+        let model = |n: usize| Fit::from(&self.options).run(&self.loops[n]);
         let before = model(from)?;
         let options = LEARNERS.map(|(_, learner)| adapting(learner));
         let options = options
@@ -303,7 +303,7 @@ impl Loops {
             load: Some(vec![self.stresses[n]; self.loops[n].len()]),
             ..self.loops[n].clone()
         };
-        let model = fit_experiment(&from.map(under), &self.options, &|_, _| Ok(()))?;
+        let model = Fit::from(&self.options).run(&from.map(under))?;
         let middle = DriftParts::of(&model, None)?.model;
         let known = match model.at_load(self.stresses[to]) {
             Ok(model) => format!("{:.1}", self.judge(&model, to)?),
@@ -316,7 +316,7 @@ impl Loops {
             self.stresses[from[1]],
             self.stresses[to],
             self.judge(&middle, to)?,
-            self.judge(&fit(&self.loops[to], &self.options)?, to)?,
+            self.judge(&Fit::from(&self.options).run(&self.loops[to])?, to)?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,
         );

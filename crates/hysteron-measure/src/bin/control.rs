@@ -4,6 +4,7 @@
 //! cargo run --release -p hysteron-measure --bin control > docs/control.md
 //! ```
 
+use hysteron::Progress;
 use hysteron_sim::track::{Comparison, Scenario, Score, Tuning, track};
 
 const SCENARIOS: [&str; 6] = [
@@ -20,7 +21,7 @@ fn main() -> hysteron::Result<()> {
     for name in SCENARIOS {
         let scenario = Scenario::load(name)?;
         eprintln!("{name} …");
-        let comparison = track(&scenario, &|_, _| Ok(()))?;
+        let comparison = track(&scenario, Progress::NONE)?;
         println!("\n## `{name}`: {}\n", scenario.title);
         table(&scenario, &comparison);
     }
@@ -29,7 +30,7 @@ fn main() -> hysteron::Result<()> {
         let mut scenario = Scenario::load(name)?;
         scenario.shared.tuning = Tuning::Step;
         eprintln!("{name}, tuned by a step test …");
-        let comparison = track(&scenario, &|_, _| Ok(()))?;
+        let comparison = track(&scenario, Progress::NONE)?;
         println!("\n### `{name}`, PID tuned by a step test\n");
         table(&scenario, &comparison);
     }

@@ -4,7 +4,7 @@
 #[path = "../scipy/mod.rs"]
 mod scipy;
 
-use hysteron::{FitOptions, Model, Operator, Plane, Recording, Sign, fit};
+use hysteron::{Fit, FitOptions, Model, Operator, Plane, Recording, Sign};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -33,7 +33,7 @@ fn main() -> Result<()> {
         let mut squares = 0.0;
         for _ in 0..7 {
             let start = Instant::now();
-            let model = fit(&recording, &options(levels))?;
+            let model = Fit::from(&options(levels)).run(&recording)?;
             best = best.min(start.elapsed().as_secs_f64());
             let rmse = model.fit.map_or(0.0, |fit| fit.rmse);
             squares = rmse * rmse * recording.len() as f64;
@@ -76,7 +76,7 @@ fn main() -> Result<()> {
 fn child(levels: usize, samples: usize) -> Result<()> {
     let recording = experiment(levels, samples)?;
     let start = Instant::now();
-    let model = fit(&recording, &options(levels))?;
+    let model = Fit::from(&options(levels)).run(&recording)?;
     let time = start.elapsed().as_secs_f64();
     let operators = model.plane().operators();
     println!(

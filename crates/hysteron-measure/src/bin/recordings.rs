@@ -5,8 +5,8 @@
 mod scipy;
 
 use hysteron::{
-    Candidates, Columns, FitOptions, LeftOut, Operator, Recording, Repair, Start, TableReader,
-    left_out, plane_of,
+    Candidates, Columns, FitOptions, LeftOut, Operator, Progress, Recording, Repair, Start,
+    TableReader, left_out, plane_of,
 };
 use std::error::Error;
 use std::path::Path;
@@ -80,7 +80,7 @@ fn row(name: &str, recording: Recording) -> Result<(), Box<dyn Error>> {
             levels: LEVELS,
             ..FitOptions::default()
         };
-        left_out(&recordings, &options, candidates, &|_, _| Ok(()))
+        left_out(&recordings, &options, candidates, Progress::NONE)
     };
     let auto = run(
         Operator::Mkp,

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Candidates, Evaluation, FitOptions, Model, Operator, Plane, Quantity, Recording, Sign,
-    cross_validate, evaluate, fit_experiment,
+    Candidates, Evaluation, Fit, FitOptions, Model, Operator, Plane, Progress, Quantity, Recording,
+    Sign, cross_validate, evaluate,
 };
 
 /// The parts of a report.
@@ -53,9 +53,9 @@ impl Fixture {
         let candidates = Candidates::new(Some(8), None);
         let options = FitOptions::default();
         let (mut options, validation) =
-            cross_validate(recordings, &options, &candidates, &|_, _| Ok(())).unwrap();
+            cross_validate(recordings, &options, &candidates, Progress::NONE).unwrap();
         options.bootstrap = 20;
-        self.model = fit_experiment(recordings, &options, &|_, _| Ok(())).unwrap();
+        self.model = Fit::from(&options).run(recordings).unwrap();
         if let Some(fit) = &mut self.model.fit {
             fit.validation = Some(validation);
         }

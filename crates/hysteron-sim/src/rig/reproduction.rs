@@ -1,7 +1,7 @@
 //! The chapter's sections 5 and 6 on the virtual rig: record twice, fit one recording, test on the other.
 
 use super::experiment::{Experiment, prepared};
-use hysteron::{Evaluation, FitOptions, Model, Recording, Result, evaluate, fit};
+use hysteron::{Evaluation, Fit, FitOptions, Model, Recording, Result, evaluate};
 
 /// Levels of the chapter's plane (Table 2).
 pub const LEVELS: usize = 20;
@@ -40,7 +40,7 @@ impl Reproduction {
             bootstrap: REPLICATES,
             ..FitOptions::default()
         };
-        let model = fit(&prepared[0], &options)?;
+        let model = Fit::from(&options).run(&prepared[0])?;
         let evaluation = evaluate(&model, &prepared[1])?;
         Ok(Self {
             raw,

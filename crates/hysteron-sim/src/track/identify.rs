@@ -3,7 +3,7 @@
 use super::{Reference, Scenario};
 use hysteron::control::{Controller, Scheme};
 use hysteron::{DesignOptions, Rates, design};
-use hysteron::{FitOptions, Model, Plane, Recording, Result, fit};
+use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 
 /// A model of the scenario's plant: from its file, or fitted to an experiment with the noise of `seed`.
 ///
@@ -20,15 +20,13 @@ pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Resul
         &profile(scenario, options.plane()?)?,
         seed,
     )?;
-    let mut model = fit(
-        &recording,
-        &FitOptions {
-            levels: options.levels,
-            range: Some(options.range),
-            smooth: options.smooth,
-            ..FitOptions::default()
-        },
-    )?;
+    let mut model = Fit::from(&FitOptions {
+        levels: options.levels,
+        range: Some(options.range),
+        smooth: options.smooth,
+        ..FitOptions::default()
+    })
+    .run(&recording)?;
     let [_, input, output] = scenario.plant.quantities();
     (model.input, model.output) = (input, output);
     Ok(model)

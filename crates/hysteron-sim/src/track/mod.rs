@@ -24,7 +24,7 @@ pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
 use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
-use hysteron::{Adaptive, Error, Model, Result, headings};
+use hysteron::{Adaptive, Error, Model, Progress, Result, headings};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
@@ -52,16 +52,14 @@ pub struct Comparison {
     pub inner_gains: Option<Gains>,
 }
 
-/// Told of each finished run, and now and then in between, how many of how many; an error it returns ends the work.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> Result<()> + Sync);
-
-/// Runs every controller of the scenario with every seed. `done` is told how far it is.
+/// Runs every controller of the scenario with every seed. `progress` is told of each finished run.
 ///
 /// # Errors
 /// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
 /// [`Error::Plant`] for a plant outside its physics, and as [`hysteron::fit`] for a model that cannot be identified.
 ///
 /// ```
+/// use hysteron::Progress;
 /// use hysteron_sim::track::{Scenario, track};
 /// let text = r#"
 /// title = "A sine on a simulated piezo-like actuator"
@@ -82,14 +80,14 @@ pub type Progress<'a> = &'a (dyn Fn(usize, usize) -> Result<()> + Sync);
 /// period_s = 2
 /// "#;
 /// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
-/// let comparison = track(&scenario, &|done, all| { eprintln!("{done} of {all}"); Ok(()) })?;
+/// let comparison = track(&scenario, Progress::NONE)?;
 /// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
 /// assert!(inverse_pid < pid);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
-pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
+pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> {
     let total = scenario.controllers.len() * scenario.seeds as usize;
-    done(0, total)?;
+    progress.tell("runs", 0.0)?;
     let (scheme, gains) = tune(scenario)?;
     let reference = scenario.references();
     let headings = headings(&reference, scenario.shared.tolerance);
@@ -105,7 +103,7 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
     let tell = |more: usize| {
         let mut finished = finished.lock().unwrap_or_else(PoisonError::into_inner);
         *finished += more;
-        done(*finished, total)
+        progress.tell("runs", *finished as f64 / total as f64)
     };
     type Seed = (Model, Vec<(Option<Trace>, Vec<Score>)>);
     let seeds: Vec<Seed> = (1..=u64::from(scenario.seeds))
@@ -116,7 +114,12 @@ pub fn track(scenario: &Scenario, done: Progress<'_>) -> Result<Comparison> {
             let runs = scenario.controllers.par_iter().map(|kind| {
                 let mut plant = scenario.plant.build(seed)?;
                 let mut controller = controller(scenario, &scheme, &model, gains, *kind)?;
-                let trace = run(plant.as_mut(), &mut controller, &course, &|_, _| tell(0))?;
+                let trace = run(
+                    plant.as_mut(),
+                    &mut controller,
+                    &course,
+                    Progress::new(&|_, _| tell(0)),
+                )?;
                 let score = |window| Score::of(&trace, window, scheme.drives, &model);
                 let scores = windows.iter().map(score).collect::<Result<Vec<_>>>()?;
                 tell(1)?;

@@ -1,8 +1,8 @@
 //! Loops on the simulated plants, for the tests of control, faults and comparisons.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use hysteron::Model;
 use hysteron::control::{Gains, InnerLoop, Rest, Scheme, SimulatedPlant};
+use hysteron::{Model, Progress};
 use hysteron_sim::track::{Scenario, track};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -92,7 +92,7 @@ pub struct Known {
 impl Known {
     fn of(parts: &[&str]) -> Self {
         let scenario = scenario(&[parts, &["controllers = [\"pid\"]"]].concat());
-        let found = track(&scenario, &|_, _| Ok(())).unwrap();
+        let found = track(&scenario, Progress::NONE).unwrap();
         Self {
             model: found.model,
             gains: found.gains.unwrap(),

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Model, Sign, State};
+use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
-use crate::progress::Watch;
 use hysteron_core::{
     Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
 };
@@ -109,13 +109,13 @@ impl Adaptive {
     /// [`Adaptive::step`] through samples, as many as the shorter series has.
     ///
     /// # Errors
-    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What `watch` returns; what was learned until
+    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What `progress` returns; what was learned until
     /// then stays.
     pub fn run(
         &mut self,
         input: &[f64],
         measured: &[f64],
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Vec<Learning<f64>>> {
         let pairs = || input.iter().zip(measured);
         if let Some(index) = pairs().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
@@ -124,7 +124,7 @@ impl Adaptive {
         let count = input.len().min(measured.len());
         let step = |(n, (x, y)): (usize, (&f64, &f64))| {
             if n % SAMPLES_BETWEEN == 0 {
-                watch("adaptation", n as f64 / count as f64)?;
+                progress.tell("adaptation", n as f64 / count as f64)?;
             }
             self.step(*x, *y)
         };

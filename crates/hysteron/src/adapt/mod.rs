@@ -12,7 +12,7 @@ pub use parts::DriftParts;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start};
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::Errors;
 use hysteron_core::{Adaptation, Method, Outcome};
@@ -99,7 +99,7 @@ impl Adapted {
 /// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
 /// let input: Vec<f64> = (0..1000).map(|n| 50.0 - 40.0 * (0.05 * f64::from(n)).cos()).collect();
 /// let output = model(1.5)?.simulate(&input)?;
-/// let adapted = adapt(&model(1.0)?, &Recording::new(input, output)?, &AdaptOptions::default())?;
+/// let adapted = adapt(&model(1.0)?, &Recording::new(input, output)?, &AdaptOptions::default(), Progress::NONE)?;
 /// let last = adapted.thirds[2];
 /// assert!(last.adapting.rmse < 0.05 * last.fixed.rmse);
 /// # Ok::<(), hysteron::Error>(())
@@ -109,19 +109,11 @@ impl Adapted {
 /// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Fit`] for a model with a thermal body, for one that
 /// depends on a load with another learner than [`Learner::Drift`], and for options that are of no use; [`Error::Core`] for
 /// options out of range and negative weights.
-pub fn adapt(model: &Model, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
-    adapt_watched(model, recording, options, &|_, _| Ok(()))
-}
-
-/// As [`adapt`], telling `watch` how far it is.
-///
-/// # Errors
-/// As [`adapt`], and what `watch` returns.
-pub fn adapt_watched(
+pub fn adapt(
     model: &Model,
     recording: &Recording,
     options: &AdaptOptions,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Adapted> {
     recording.check()?;
     refuse_unusable(model)?;
@@ -136,9 +128,10 @@ pub fn adapt_watched(
     let probation = on_probation(&adaptation, count);
     let (input, late_input) = recording.input.split_at(count - probation);
     let (output, late_output) = recording.output.split_at(count - probation);
-    let mut learned = adaptive.run(input, output, watch)?;
+    let mut learned = adaptive.run(input, output, progress)?;
     let mut last = adaptive.model()?;
-    learned.extend(adaptive.run(late_input, late_output, &|what, _| watch(what, 1.0))?);
+    let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
+    learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
     let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
     let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
     let counts = OutcomeCounts::of(&learned);

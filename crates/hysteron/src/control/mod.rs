@@ -20,7 +20,7 @@
 //!     input.extend(truth.input);
 //!     output.push(truth.output);
 //! }
-//! let model = fit(&Recording::new(input, output)?, &FitOptions::default())?;
+//! let model = Fit::from(FitOptions::default()).run(&Recording::new(input, output)?)?;
 //!
 //! let mut controller = Controller::new(Scheme {
 //!     interval_s: 0.01,
@@ -37,7 +37,7 @@
 //! })?;
 //! let reference: Vec<f64> = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos()).collect();
 //! let course = Course { reference: &reference, headings: &[], events: &[] };
-//! let trace = run(&mut new()?, &mut controller, &course, &|_, _| Ok(()))?;
+//! let trace = run(&mut new()?, &mut controller, &course, Progress::NONE)?;
 //! let late = 200..1000; // after the start
 //! let largest = late.map(|n| (trace.output[n] - reference[n]).abs()).fold(0.0, f64::max);
 //! assert!(largest < 3.0, "{largest} µm");

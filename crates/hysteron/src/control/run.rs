@@ -2,8 +2,8 @@
 
 use super::{Controller, Disturbance, SimulatedPlant, Target, Trace};
 use crate::error::Result;
+use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
-use crate::progress::Watch;
 use hysteron_core::Direction;
 
 /// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
@@ -21,19 +21,19 @@ pub struct Course<'a> {
 ///
 /// # Errors
 /// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite;
-/// what `watch` returns.
+/// what `progress` returns.
 pub fn run(
     plant: &mut dyn SimulatedPlant,
     controller: &mut Controller,
     course: &Course<'_>,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Trace> {
     let mut trace = Trace::default();
     let mut events = course.events.iter().peekable();
     let count = course.reference.len();
     for (n, &output) in course.reference.iter().enumerate() {
         if n % SAMPLES_BETWEEN == 0 {
-            watch("control loop", n as f64 / count as f64)?;
+            progress.tell("control loop", n as f64 / count as f64)?;
         }
         while let Some((_, event)) = events.next_if(|(at, _)| *at <= n) {
             plant.disturb(*event)?;

@@ -13,11 +13,11 @@ use serde::Serialize;
 /// the noise `ν` add as squares: half the width is `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
 ///
 /// ```
-/// use hysteron::{FitOptions, Recording, fit};
+/// use hysteron::{FitOptions, Recording, Fit};
 /// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
 /// let output = input.iter().enumerate().map(|(n, t)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin()).collect();
 /// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
-/// let model = fit(&Recording::new(input, output)?, &options)?;
+/// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;
 /// let half_width = band.run(&[20.0, 60.0, 40.0])?;
 /// assert!(half_width.iter().all(|h| (0.1..1.0).contains(h)));

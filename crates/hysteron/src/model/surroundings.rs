@@ -104,7 +104,7 @@ impl Model {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::identify::{FitOptions, fit};
+    use crate::identify::{Fit, FitOptions};
     use crate::recording::Recording;
 
     fn swings() -> Vec<f64> {
@@ -125,7 +125,7 @@ mod tests {
             bootstrap: 10,
             ..FitOptions::default()
         };
-        let model = fit(&recording, &options).unwrap();
+        let model = Fit::from(&options).run(&recording).unwrap();
         let around = Surroundings {
             time: None,
             load: Some(&load),

@@ -4,8 +4,8 @@
 //! can be estimated where the material itself does not depend on rate, for then a static model fits best when the lag is gone.
 
 use crate::error::{Error, Result};
-use crate::identify::{FitOptions, fit_experiment};
-use crate::progress::Watch;
+use crate::identify::{FitOptions, fit_weights};
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::filter::low_pass;
 
@@ -58,14 +58,19 @@ pub(super) fn growth(step: f64, tau: f64, cutoff: f64) -> f64 {
 }
 
 /// The lag whose undoing lets a static model fit best: tried on a grid of ratios, then narrowed by golden section (Kiefer 1953).
-pub(super) fn estimate(recording: &Recording, step: f64, watch: Watch<'_>) -> Result<Estimate> {
-    let watch: Watch<'_> = &|_, _| watch("sensor lag", f64::NAN);
+pub(super) fn estimate(
+    recording: &Recording,
+    step: f64,
+    progress: Progress<'_>,
+) -> Result<Estimate> {
+    let told = |_: &'static str, _: f64| progress.tell("sensor lag", f64::NAN);
+    let progress = Progress::new(&told);
     let error = |tau: f64| -> Result<f64> {
         let mut candidate = recording.clone();
         candidate.input = undo(&recording.input, step, tau)?;
-        rmse(&candidate, watch)
+        rmse(&candidate, progress)
     };
-    let rmse_before = rmse(recording, watch)?;
+    let rmse_before = rmse(recording, progress)?;
     let longest = LONGEST * step * (recording.len() - 1) as f64;
     if longest <= step {
         return Err(Error::Preparation(
@@ -109,12 +114,12 @@ pub(super) fn estimate(recording: &Recording, step: f64, watch: Watch<'_>) -> Re
     })
 }
 
-fn rmse(recording: &Recording, watch: Watch<'_>) -> Result<f64> {
+fn rmse(recording: &Recording, progress: Progress<'_>) -> Result<f64> {
     let options = FitOptions {
         levels: LEVELS,
         ..FitOptions::default()
     };
-    let model = fit_experiment(std::slice::from_ref(recording), &options, watch)?;
+    let model = fit_weights(std::slice::from_ref(recording), &options, progress)?;
     model
         .fit
         .map(|fit| fit.rmse)
@@ -149,7 +154,7 @@ mod tests {
         let (step, tau) = (0.25, 3.0);
         let mut recording = two_rates(step);
         recording.input = behind_sensor(&recording.input, step, tau);
-        let found = estimate(&recording, step, &|_, _| Ok(())).unwrap();
+        let found = estimate(&recording, step, Progress::NONE).unwrap();
         // Grid and golden section end within 1 %; the filter of the derivative and 12 levels cost more.
         assert!((found.tau / tau - 1.0).abs() < 0.15, "{}", found.tau);
         assert!(found.rmse_after < 0.5 * found.rmse_before);
@@ -158,7 +163,7 @@ mod tests {
     #[test]
     fn without_a_lag_none_is_worth_while() {
         let step = 0.25;
-        let found = estimate(&two_rates(step), step, &|_, _| Ok(())).unwrap();
+        let found = estimate(&two_rates(step), step, Progress::NONE).unwrap();
         assert!(
             found.rmse_after > (1.0 - WORTHWHILE) * found.rmse_before,
             "{} {}",

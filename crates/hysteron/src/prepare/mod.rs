@@ -21,7 +21,7 @@ pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
 
 use crate::error::{Error, Result};
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
 use crate::series::filter::low_pass;
@@ -120,7 +120,7 @@ impl PrepareOptions {
 /// let mut input: Vec<f64> = (0..300).map(|n| 40.0 * (f64::from(n) * 0.05).sin()).collect();
 /// let output = input.iter().map(|t| 0.5 * t).collect();
 /// input[100] = 0.0; // a reading that was lost
-/// let (prepared, report) = prepare(&Recording::new(input, output)?, &PrepareOptions::default())?;
+/// let (prepared, report) = prepare(&Recording::new(input, output)?, &PrepareOptions::default(), Progress::NONE)?;
 /// assert_eq!(report.spikes.map(|spikes| spikes.input.first), Some(vec![101])); // counted from 1
 /// assert!((prepared.input[100] + 38.36).abs() < 0.1);
 /// # Ok::<(), hysteron::Error>(())
@@ -132,23 +132,12 @@ impl PrepareOptions {
 pub fn prepare(
     recording: &Recording,
     options: &PrepareOptions,
-) -> Result<(Recording, Preparation)> {
-    prepare_watched(recording, options, &|_, _| Ok(()))
-}
-
-/// As [`prepare`], with a word to `watch` before each step and each fit.
-///
-/// # Errors
-/// As [`prepare`], and what `watch` returns.
-pub fn prepare_watched(
-    recording: &Recording,
-    options: &PrepareOptions,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<(Recording, Preparation)> {
     recording.check()?;
     options.check()?;
     let mut work = recording.clone();
-    watch("spikes", f64::NAN)?;
+    progress.tell("spikes", f64::NAN)?;
     let spikes = remove_spikes(&mut work, options.spikes);
     let sigma = [noise(&work.input), noise(&work.output)];
     let noisy = [0, 1].map(|n| {
@@ -160,7 +149,7 @@ pub fn prepare_watched(
         Step::Off => false,
         Step::Value(_) => true,
     };
-    watch("filters", f64::NAN)?;
+    progress.tell("filters", f64::NAN)?;
     let resampled = resample(
         &mut work,
         options.resample,
@@ -172,7 +161,7 @@ pub fn prepare_watched(
     let low_pass = smooth(&mut work, options.low_pass, sigma, noisy, step)?;
     let input_filter = low_pass.as_ref().and_then(|filter| filter.input.as_ref());
     let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
-    let lag = undo_lag(&mut work, options.lag, step, watch)?;
+    let lag = undo_lag(&mut work, options.lag, step, progress)?;
 
     // What is left of the noise on the input.
     let mut left = sigma[0] * input_cutoff.map_or(1.0, smooth::let_through);
@@ -282,7 +271,7 @@ fn undo_lag(
     work: &mut Recording,
     how: Step,
     step: Option<f64>,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Option<SensorLag>> {
     if how == Step::Off {
         return Ok(None);
@@ -297,7 +286,7 @@ fn undo_lag(
     match how {
         Step::Value(tau) => report.undone = Some(tau),
         _ => {
-            let found = lag::estimate(work, step, watch)?;
+            let found = lag::estimate(work, step, progress)?;
             let gain = 1.0 - found.rmse_after / found.rmse_before;
             report.undone = (gain >= lag::WORTHWHILE).then_some(found.tau);
             report.estimate = Some(found.tau);

@@ -7,7 +7,8 @@
 
 use super::{PrepareOptions, Step, prepare};
 use crate::error::Result;
-use crate::identify::{FitOptions, fit};
+use crate::identify::{Fit, FitOptions};
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
 use crate::series::range;
@@ -68,14 +69,14 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
         spikes: Step::Auto,
         ..PrepareOptions::all(Step::Off)
     };
-    let (recording, _) = prepare(recording, &without_spikes)?;
+    let (recording, _) = prepare(recording, &without_spikes, Progress::NONE)?;
     let Some(time) = &recording.time else {
         return Ok(None);
     };
     if time.len() < FEWEST || time[time.len() - 1] <= time[0] {
         return Ok(None);
     }
-    let model = fit(&recording, &FitOptions::default())?;
+    let model = Fit::from(FitOptions::default()).run(&recording)?;
     let modelled = model.simulate(&recording.input)?;
     let pairs = recording.output.iter().zip(&modelled);
     let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();

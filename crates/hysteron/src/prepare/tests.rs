@@ -22,7 +22,7 @@ fn with_noise(recording: &Recording, input: f64, output: f64) -> Recording {
 #[test]
 fn a_clean_recording_comes_through_unchanged() {
     let clean = two_rates(0.25);
-    let (prepared, report) = prepare(&clean, &PrepareOptions::default()).unwrap();
+    let (prepared, report) = prepare(&clean, &PrepareOptions::default(), Progress::NONE).unwrap();
     assert_eq!(prepared, clean);
     let low_pass = report.low_pass.unwrap();
     assert_eq!((low_pass.input, low_pass.output), (None, None));
@@ -33,7 +33,8 @@ fn a_clean_recording_comes_through_unchanged() {
 #[test]
 fn switched_off_nothing_is_done() {
     let noisy = with_noise(&two_rates(0.25), 0.5, 0.5);
-    let (prepared, report) = prepare(&noisy, &PrepareOptions::all(Step::Off)).unwrap();
+    let (prepared, report) =
+        prepare(&noisy, &PrepareOptions::all(Step::Off), Progress::NONE).unwrap();
     assert_eq!(prepared, noisy);
     assert_eq!(
         (report.spikes, report.low_pass, report.lag, report.band),
@@ -45,7 +46,7 @@ fn switched_off_nothing_is_done() {
 fn noise_goes_and_its_reversals_with_it() {
     let truth = two_rates(0.25);
     let noisy = with_noise(&truth, 0.3, 0.3);
-    let (prepared, _) = prepare(&noisy, &PrepareOptions::default()).unwrap();
+    let (prepared, _) = prepare(&noisy, &PrepareOptions::default(), Progress::NONE).unwrap();
     let error = |r: &Recording| smooth::distance(&r.input, &truth.input);
     // White noise over many samples a branch: the filter leaves a fraction.
     assert!(
@@ -59,7 +60,7 @@ fn noise_goes_and_its_reversals_with_it() {
     );
     assert!(band::reversals(&noisy.input) > 200);
     // And once more: next to nothing is left to do.
-    let (again, _) = prepare(&prepared, &PrepareOptions::default()).unwrap();
+    let (again, _) = prepare(&prepared, &PrepareOptions::default(), Progress::NONE).unwrap();
     let first = smooth::distance(&noisy.input, &prepared.input);
     assert!(smooth::distance(&prepared.input, &again.input) < 0.05 * first);
     let first = smooth::distance(&noisy.output, &prepared.output);
@@ -73,10 +74,10 @@ fn irregular_time_is_resampled_only_for_a_filter() {
     for time in &mut clean.time.as_mut().unwrap()[last..] {
         *time += 5.0;
     }
-    let (prepared, report) = prepare(&clean, &PrepareOptions::default()).unwrap();
+    let (prepared, report) = prepare(&clean, &PrepareOptions::default(), Progress::NONE).unwrap();
     assert_eq!((prepared.len(), report.resampled), (clean.len(), None));
     let noisy = with_noise(&clean, 0.3, 0.3);
-    let (prepared, report) = prepare(&noisy, &PrepareOptions::default()).unwrap();
+    let (prepared, report) = prepare(&noisy, &PrepareOptions::default(), Progress::NONE).unwrap();
     assert_eq!(report.resampled, Some(0.25));
     assert_eq!(prepared.len(), clean.len() + 20);
 }
@@ -87,10 +88,12 @@ fn short_and_constant_recordings_come_through_unchanged() {
         for slope in [0.0, 1.0] {
             let line: Vec<f64> = (0..count).map(|n| f64::from(n) * slope).collect();
             let mut recording = Recording::new(line.clone(), line).unwrap();
-            let (prepared, _) = prepare(&recording, &PrepareOptions::default()).unwrap();
+            let (prepared, _) =
+                prepare(&recording, &PrepareOptions::default(), Progress::NONE).unwrap();
             assert_eq!(prepared, recording);
             recording.time = Some(vec![3.0; recording.len()]);
-            let (prepared, _) = prepare(&recording, &PrepareOptions::default()).unwrap();
+            let (prepared, _) =
+                prepare(&recording, &PrepareOptions::default(), Progress::NONE).unwrap();
             assert_eq!(prepared, recording);
             assert_eq!(rate_dependence(&recording).unwrap(), None);
         }
@@ -120,7 +123,7 @@ fn values_that_cannot_be_are_refused() {
         },
     ];
     for options in bad {
-        let refused = prepare(&recording, &options);
+        let refused = prepare(&recording, &options, Progress::NONE);
         assert!(matches!(refused, Err(Error::Preparation(_))), "{options:?}");
     }
     let too_high = PrepareOptions {
@@ -128,7 +131,7 @@ fn values_that_cannot_be_are_refused() {
         ..default
     };
     assert!(matches!(
-        prepare(&recording, &too_high),
+        prepare(&recording, &too_high, Progress::NONE),
         Err(Error::Filter(_))
     ));
     let timeless = Recording {
@@ -146,7 +149,7 @@ fn values_that_cannot_be_are_refused() {
         },
     ] {
         assert!(matches!(
-            prepare(&timeless, &options),
+            prepare(&timeless, &options, Progress::NONE),
             Err(Error::Preparation(_))
         ));
     }

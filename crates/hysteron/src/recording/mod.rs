@@ -114,6 +114,13 @@ pub struct Recording {
     pub source: Option<Source>,
 }
 
+/// One recording where several could be.
+impl AsRef<[Recording]> for Recording {
+    fn as_ref(&self) -> &[Recording] {
+        std::slice::from_ref(self)
+    }
+}
+
 impl Recording {
     /// A recording of two series of the same length.
     ///

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 
@@ -32,12 +32,12 @@ pub struct LeftOut {
 /// cross-validation of the remaining branches chooses from `candidates`.
 ///
 /// # Errors
-/// As [`super::fit_experiment`]; [`crate::Error::Fit`] for a single branch.
+/// As [`super::fit_weights`]; [`crate::Error::Fit`] for a single branch.
 pub fn left_out(
     recordings: &[Recording],
     options: &FitOptions,
     candidates: Option<&Candidates>,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<LeftOut> {
     let mut problem = Problem::new(recordings, options)?;
     let experiment = &problem.experiment;
@@ -52,18 +52,19 @@ pub fn left_out(
     let mut predicted = vec![0.0; measured.len()];
     let (mut training, mut chosen) = (0.0, Vec::new());
     for f in 0..count {
-        watch("left-out branches", f as f64 / count as f64)?;
+        progress.tell("left-out branches", f as f64 / count as f64)?;
         let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
         let mut options = options.clone();
         if let Some(candidates) = candidates {
-            options = choose(recordings, &options, candidates, Some(&kept), &|_, _| {
-                watch("left-out branches", f as f64 / count as f64)
-            })?
-            .0;
+            let told = |_: &'static str, _: f64| {
+                progress.tell("left-out branches", f as f64 / count as f64)
+            };
+            let progress = Progress::new(&told);
+            options = choose(recordings, &options, candidates, Some(&kept), progress)?.0;
             problem = Problem::new(recordings, &options)?;
         }
         chosen.push((options.levels, options.smooth));
-        let fitted = problem.solve(Some(&kept), &|_, _| Ok(()))?;
+        let fitted = problem.solve(Some(&kept), Progress::NONE)?;
         let h = problem.predict(&fitted.solution)?;
         let offset = options.offset.unwrap_or(0.0);
         for n in 0..measured.len() {

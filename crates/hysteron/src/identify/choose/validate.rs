@@ -8,7 +8,7 @@ use crate::identify::weights::solve::NormalEquations;
 use crate::model::Solver;
 use crate::model::{Score, Validation};
 use crate::parallel;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 
@@ -51,14 +51,14 @@ impl Candidates {
 /// patterns of starts are all off and all on only.
 ///
 /// # Errors
-/// As [`super::fit_experiment`].
+/// As [`super::fit_weights`].
 pub fn cross_validate(
     recordings: &[Recording],
     options: &FitOptions,
     candidates: &Candidates,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
-    choose(recordings, options, candidates, None, watch)
+    choose(recordings, options, candidates, None, progress)
 }
 
 pub(crate) fn choose(
@@ -66,7 +66,7 @@ pub(crate) fn choose(
     options: &FitOptions,
     candidates: &Candidates,
     kept: Option<&[f64]>,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
     let mut options = options.clone();
     let first = FitOptions {
@@ -75,7 +75,7 @@ pub(crate) fn choose(
     };
     let mut problem = Problem::new(recordings, &first)?;
     if options.sign.is_none() && options.solver == Solver::Nnls {
-        options.sign = Some(problem.solve(kept, &|_, _| Ok(()))?.sign);
+        options.sign = Some(problem.solve(kept, Progress::NONE)?.sign);
     }
     let (folds, whole_branches) = folds(&problem, kept);
     let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
@@ -87,7 +87,7 @@ pub(crate) fn choose(
     let mut best: Option<Score> = None;
     let mut no_better = 0;
     for (n, &levels) in candidates.levels.iter().enumerate() {
-        watch(
+        progress.tell(
             "cross-validation",
             n as f64 / candidates.levels.len() as f64,
         )?;
@@ -97,7 +97,7 @@ pub(crate) fn choose(
         };
         let problem = Problem::new(recordings, &at)?;
         let all: Vec<Vec<f64>> = parallel::map(count, |fold| {
-            squares_left_out(&problem, &folds, fold, &smooth, watch)
+            squares_left_out(&problem, &folds, fold, &smooth, progress)
         })?;
         let samples = folds.iter().flatten().count() as f64;
         let before = best.map_or(f64::INFINITY, |best| best.rmse);
@@ -175,7 +175,7 @@ fn squares_left_out(
     folds: &[Option<usize>],
     fold: usize,
     smooth: &[f64],
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Vec<f64>> {
     let rest = |f: &Option<usize>| {
         if f.is_some_and(|f| f != fold) {
@@ -187,7 +187,8 @@ fn squares_left_out(
     let kept: Vec<f64> = folds.iter().map(rest).collect();
     let target = problem.target(problem.options.sign.unwrap_or_default());
     let free = problem.free(Some(&kept))?;
-    let quiet: Watch<'_> = &|_, _| watch("cross-validation", f64::NAN);
+    let told = |_: &'static str, _: f64| progress.tell("cross-validation", f64::NAN);
+    let quiet = Progress::new(&told);
     let gram = problem
         .regressor
         .gram(&problem.experiment, Some(&kept), quiet)?;

@@ -7,7 +7,7 @@ use crate::identify::weights::solve::NormalEquations;
 use crate::model::LoadPart;
 use crate::model::Solver;
 use crate::parallel;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use faer::Mat;
 use faer::linalg::solvers::Llt;
 use rand_chacha::ChaCha8Rng;
@@ -34,7 +34,7 @@ pub(crate) fn replicates(
     fitted: &Fitted,
     equations: &NormalEquations<'_>,
     free: &FreeColumns,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Vec<LoadPart>> {
     let (options, experiment) = (&problem.options, &problem.experiment);
     let solution = &fitted.solution;
@@ -43,11 +43,11 @@ pub(crate) fn replicates(
         Solver::Nnls => None,
     };
     let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
-    let errors = left_out_errors(problem, fitted, &unit, units, watch)?;
+    let errors = left_out_errors(problem, fitted, &unit, units, progress)?;
     let done = AtomicUsize::new(0);
     parallel::map(options.bootstrap, |seed| {
         let count = done.fetch_add(1, Ordering::Relaxed);
-        watch("confidence", count as f64 / options.bootstrap as f64)?;
+        progress.tell("confidence", count as f64 / options.bootstrap as f64)?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
         let signs: Vec<f64> = (0..units)
             .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
@@ -76,12 +76,12 @@ fn left_out_errors(
     fitted: &Fitted,
     unit: &[Option<usize>],
     units: usize,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Vec<f64>> {
     let groups = units.min(GROUPS);
     let target = problem.target(fitted.sign);
     let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
-        watch("confidence", 0.0)?;
+        progress.tell("confidence", 0.0)?;
         let inside = |n: &usize| unit[*n].is_some_and(|unit| unit % groups == group);
         let kept: Vec<f64> = (0..unit.len()).map(|n| f64::from(!inside(&n))).collect();
         let free = problem.free(Some(&kept))?;
@@ -91,11 +91,11 @@ fn left_out_errors(
             &free,
             Some(&kept),
             problem.options.smooth,
-            &|_, _| Ok(()),
+            Progress::NONE,
         )?;
         let start = Some(&fitted.solution.x[..]);
         let solution =
-            equations.solve(&target, problem.options.solver, start, 1, &|_, _| Ok(()))?;
+            equations.solve(&target, problem.options.solver, start, 1, Progress::NONE)?;
         let predicted = problem.predict(&solution)?;
         let errors = (0..unit.len())
             .filter(inside)
@@ -122,7 +122,7 @@ fn replicate(
     let mut right = equations.times(x);
     // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
     right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
-    equations.minimum(&right, x, factor, &|_, _| Ok(()))
+    equations.minimum(&right, x, factor, Progress::NONE)
 }
 
 /// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).

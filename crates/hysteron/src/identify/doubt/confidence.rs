@@ -9,7 +9,7 @@ use crate::identify::weights::solve::{NormalEquations, not_definite};
 use crate::identify::weights::sparse::Initial;
 use crate::model::Confidence;
 use crate::model::Start;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -20,14 +20,14 @@ const ROUNDING: f64 = 1e-12;
 pub(crate) fn of(
     problem: &Problem,
     fitted: &Fitted,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Option<Confidence>> {
     let options = &problem.options;
     if options.bootstrap == 0 {
         return Ok(None);
     }
     let experiment = &problem.experiment;
-    watch("confidence", 0.0)?;
+    progress.tell("confidence", 0.0)?;
     let free = problem.free(None)?;
     let equations = NormalEquations::new(
         &problem.regressor,
@@ -35,7 +35,7 @@ pub(crate) fn of(
         &free,
         None,
         options.smooth,
-        watch,
+        progress,
     )?;
     // What the data say without the penalty.
     let plain = match options.smooth > 0.0 {
@@ -45,7 +45,7 @@ pub(crate) fn of(
             &free,
             None,
             0.0,
-            watch,
+            progress,
         )?),
         false => None,
     };
@@ -58,7 +58,7 @@ pub(crate) fn of(
     let left = (samples - used).max(1.0);
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
-    let replicates = bootstrap::replicates(problem, fitted, &equations, &free, watch)?;
+    let replicates = bootstrap::replicates(problem, fitted, &equations, &free, progress)?;
     let (standard, factors) = bootstrap::spread(
         &replicates,
         &problem.at_middle(&solution.x, &solution.free, fitted.sign),

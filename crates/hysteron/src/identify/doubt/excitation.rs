@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::identify::weights::sparse::{Initial, SparseForm};
 use crate::model::Excitation;
 use crate::model::Plane;
+use crate::progress::Progress;
 use crate::series::{NOISE, Turning, noise_band};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
@@ -148,7 +149,7 @@ fn centred_gram(
     let mut sums = vec![0.0; count];
     let form = SparseForm::new(plane, operator)?;
     for input in inputs {
-        form.add_outer(input, (start, start), |_| 1.0, &mut gram, &|_, _| Ok(()))?;
+        form.add_outer(input, (start, start), |_| 1.0, &mut gram, Progress::NONE)?;
         form.add_adjoint(input, start, |_| 1.0, &mut sums)?;
     }
     form.gram_of(&mut gram);

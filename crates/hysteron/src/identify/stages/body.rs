@@ -1,12 +1,12 @@
 //! Identification of a thermal body together with the weights behind it.
 
 use crate::error::{Error, Result};
-use crate::identify::fit_experiment;
+use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::nelder_mead::minimise;
 use crate::model::Model;
 use crate::model::{FirstOrder, needs_time};
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 use serde_json::json;
@@ -33,7 +33,7 @@ const STEPS: usize = 200;
 
 /// Identifies a thermal body and the weights behind it, from recordings of a drive (current, voltage, duty) with time.
 ///
-/// For given time constants the weights are a closed problem, that of [`fit_experiment`]; the search is over the time
+/// For given time constants the weights are a closed problem, that of [`fit_weights`]; the search is over the time
 /// constants only (separable least squares, Golub and Pereyra 1973), on a logarithmic grid and from its best
 /// point by the simplex of Nelder and Mead. They lie between the sampling step and a quarter of the longest recording: a faster body is
 /// always at rest, a slower one never comes near it. The plane is by default that of the temperature.
@@ -43,13 +43,13 @@ const STEPS: usize = 200;
 /// says which. Drives of different shape, a ramp and a step, tell them apart.
 ///
 /// # Errors
-/// As [`fit_experiment`]; [`Error::Thermal`] for recordings without time.
-pub fn fit_thermal(
+/// As [`fit_weights`]; [`Error::Thermal`] for recordings without time.
+pub fn fit_body(
     recordings: &[Recording],
     options: &FitOptions,
-    watch: Watch<'_>,
+    progress: Progress<'_>,
 ) -> Result<Model> {
-    let search = Search::new(recordings, options, watch)?;
+    let search = Search::new(recordings, options, progress)?;
     let (two, least) = search.best(|taus: &[f64; 2]| *taus)?;
     let told_apart = search.least_beside(&two)? > RESOLVED * least;
     let [tau_heating, tau_cooling] = match told_apart {
@@ -63,7 +63,7 @@ pub fn fit_thermal(
     };
     let heated = recordings.iter().map(|r| body.behind(r));
     let heated: Vec<Recording> = heated.collect::<Result<_>>()?;
-    let mut model = fit_experiment(&heated, options, watch)?;
+    let mut model = fit_weights(&heated, options, progress)?;
     model.thermal = Some(body);
     if let Some(fit) = &mut model.fit {
         let said = json!({"told_apart": told_apart});
@@ -75,7 +75,7 @@ pub fn fit_thermal(
 struct Search<'a> {
     recordings: &'a [Recording],
     options: FitOptions,
-    watch: Watch<'a>,
+    progress: Progress<'a>,
     /// Logarithms of the shortest and the longest time constant searched.
     bounds: (f64, f64),
     /// Of so many samples three at most are looked at.
@@ -83,7 +83,11 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(recordings: &'a [Recording], options: &FitOptions, watch: Watch<'a>) -> Result<Self> {
+    fn new(
+        recordings: &'a [Recording],
+        options: &FitOptions,
+        progress: Progress<'a>,
+    ) -> Result<Self> {
         if recordings.is_empty() {
             return Err(Error::Fit("there is no recording to fit".into()));
         }
@@ -107,7 +111,7 @@ impl<'a> Search<'a> {
                 bootstrap: 0,
                 ..options.clone()
             },
-            watch,
+            progress,
             bounds: (shortest.ln(), (longest / SETTLED).max(shortest).ln()),
             stride: samples.div_ceil(SEARCHED),
         })
@@ -115,7 +119,7 @@ impl<'a> Search<'a> {
 
     /// RMSE with the weights that are best behind a body with these logarithms of time constants.
     fn rmse(&self, logarithms: [f64; 2]) -> Result<f64> {
-        (self.watch)("time constants", f64::NAN)?;
+        self.progress.tell("time constants", f64::NAN)?;
         let [tau_heating, tau_cooling] = logarithms.map(f64::exp);
         let body = FirstOrder {
             gain: 1.0,
@@ -124,7 +128,7 @@ impl<'a> Search<'a> {
         };
         let thinned = |r: &Recording| Ok(thin(body.behind(r)?, self.stride));
         let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();
-        match fit_experiment(&heated?, &self.options, &|_, _| Ok(())) {
+        match fit_weights(&heated?, &self.options, Progress::NONE) {
             Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),
             // A body too slow to reach the plane, or options that the last fit refuses as well.
             Err(error) if matches!(error.parts().0, Error::Fit(_)) => Ok(f64::INFINITY),

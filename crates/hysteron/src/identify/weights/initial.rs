@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
 use crate::model::Model;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 
@@ -47,7 +48,7 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
         (Initial::Off, Initial::On, -1.0),
         (Initial::Off, Initial::Off, 1.0),
     ] {
-        form.add_outer(input, (left, right), |_| part, &mut gram, &|_, _| Ok(()))?;
+        form.add_outer(input, (left, right), |_| part, &mut gram, Progress::NONE)?;
     }
     form.gram_of(&mut gram);
     let mut right = vec![0.0; count];

@@ -2,6 +2,7 @@
 
 pub(super) mod cholesky;
 pub(super) mod experiment;
+pub(super) mod fit;
 pub(super) mod free;
 pub(super) mod initial;
 pub(super) mod nnls;

@@ -4,7 +4,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::weights::cholesky::Cholesky;
-use crate::progress::Watch;
+use crate::progress::Progress;
 
 /// Of the variables above zero, the part by which a step may increase them: more at once save
 /// gradients, but many of them leave again.
@@ -12,7 +12,7 @@ const STRIDE: usize = 8;
 
 /// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
 /// definite, `N × N`, row by row. The objective never rises; where rounding keeps it from falling, the number of steps ends it.
-pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], watch: Watch<'_>) -> Result<()> {
+pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
     // Rounding of sums of `count` products: below this a gradient is zero.
@@ -38,7 +38,7 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], watch: Watch<'_>) -> Re
     // Variables that did not help are left alone until others have.
     let mut tried = vec![false; count];
     for _ in 0..30 * count + 100 {
-        watch("weights", set.members.len() as f64 / count as f64)?;
+        progress.tell("weights", set.members.len() as f64 / count as f64)?;
         let mut gradient = b.to_vec();
         for &n in &set.members {
             for (g, a) in gradient.iter_mut().zip(row(n)) {
@@ -182,7 +182,7 @@ mod tests {
                 .map(|_| [0.0, 0.0, 1e-300, 1e-12, 1.0][rng.random_range(0..5)])
                 .collect();
             let mut x = start.clone();
-            solve(&a, &b, &mut x, &|_, _| Ok(())).unwrap();
+            solve(&a, &b, &mut x, Progress::NONE).unwrap();
             // Rounding of 80 products, amplified by factors of the free part.
             assert!(breach(&a, &b, &x) < 1e-6, "round {round}");
             let (other, exact) = pivoting::minimum(&a, &b, &start);

@@ -8,7 +8,7 @@ use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::{NormalEquations, STEPS, Solution};
 use crate::model::{LoadPart, Sign};
 use crate::model::{Solver, Start};
-use crate::progress::Watch;
+use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 
@@ -99,7 +99,7 @@ impl Problem {
     }
 
     /// The best weights over the samples kept (all where `None`).
-    pub(crate) fn solve(&mut self, kept: Option<&[f64]>, watch: Watch<'_>) -> Result<Fitted> {
+    pub(crate) fn solve(&mut self, kept: Option<&[f64]>, progress: Progress<'_>) -> Result<Fitted> {
         let free = self.free(kept)?;
         loop {
             check_gram(self.regressor.columns().len())?;
@@ -110,9 +110,9 @@ impl Problem {
                     &free,
                     kept,
                     self.options.smooth,
-                    watch,
+                    progress,
                 )?;
-                let fitted = self.best_sign(&equations, watch)?;
+                let fitted = self.best_sign(&equations, progress)?;
                 let slopes = equations.slopes(&fitted.solution.x);
                 (fitted, slopes)
             };
@@ -129,7 +129,7 @@ impl Problem {
         }
     }
 
-    fn best_sign(&self, equations: &NormalEquations<'_>, watch: Watch<'_>) -> Result<Fitted> {
+    fn best_sign(&self, equations: &NormalEquations<'_>, progress: Progress<'_>) -> Result<Fitted> {
         let signs = match self.options.sign {
             Some(sign) => vec![sign],
             // Without a constraint both signs give the same output.
@@ -138,8 +138,13 @@ impl Problem {
         };
         let mut best: Option<Fitted> = None;
         for sign in signs {
-            let solution =
-                equations.solve(&self.target(sign), self.options.solver, None, STEPS, watch)?;
+            let solution = equations.solve(
+                &self.target(sign),
+                self.options.solver,
+                None,
+                STEPS,
+                progress,
+            )?;
             if best
                 .as_ref()
                 .is_none_or(|best| solution.objective < best.solution.objective)

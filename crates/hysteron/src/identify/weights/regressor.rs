@@ -13,7 +13,7 @@ use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
 use crate::model::Plane;
 use crate::model::Start;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use hysteron_core::Operator;
 use std::ops::Range;
 
@@ -227,7 +227,7 @@ impl Regressor {
         &self,
         experiment: &Experiment,
         kept: Option<&[f64]>,
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
         let (operators, count) = (self.form.operators(), self.columns.len());
         let mut gram = Vec::new();
@@ -248,7 +248,7 @@ impl Regressor {
                         };
                         let input = &experiment.input[range.clone()];
                         self.form
-                            .add_outer(input, (from, other), scale, &mut block, watch)?;
+                            .add_outer(input, (from, other), scale, &mut block, progress)?;
                     }
                     self.form.gram_of(&mut block);
                     if groups.len() == 1 && !self.unknown_start() {

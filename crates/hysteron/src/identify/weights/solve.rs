@@ -12,7 +12,7 @@ use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
 use crate::identify::weights::{nnls, pivoting};
 use crate::model::Solver;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
@@ -66,9 +66,9 @@ impl<'a> NormalEquations<'a> {
         free: &'a FreeColumns,
         kept: Option<&'a [f64]>,
         smooth: f64,
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Self> {
-        let gram = regressor.gram(experiment, kept, watch)?;
+        let gram = regressor.gram(experiment, kept, progress)?;
         Self::of_gram(regressor, experiment, free, kept, smooth, gram)
     }
 
@@ -112,7 +112,7 @@ impl<'a> NormalEquations<'a> {
         solver: Solver,
         start: Option<&[f64]>,
         steps: usize,
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Solution> {
         let count = self.regressor.columns().len();
         let full = match solver {
@@ -123,17 +123,17 @@ impl<'a> NormalEquations<'a> {
         let mut best = self.solution(target, start)?;
         let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
         for _ in 0..steps {
-            watch("weights", 0.0)?;
+            progress.tell("weights", 0.0)?;
             let gradient = self.descent(&best)?;
             let x = match &full {
                 Some(_) => {
-                    let step = self.minimum(&gradient, &best.x, full.as_ref(), watch)?;
+                    let step = self.minimum(&gradient, &best.x, full.as_ref(), progress)?;
                     best.x.iter().zip(step).map(|(x, d)| x + d).collect()
                 }
                 None => {
                     let moved = self.times(&best.x);
                     let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    self.minimum(&right, &best.x, None, watch)?
+                    self.minimum(&right, &best.x, None, progress)?
                 }
             };
             let next = self.solution(target, x)?;
@@ -155,7 +155,7 @@ impl<'a> NormalEquations<'a> {
         right: &[f64],
         start: &[f64],
         factor: Option<&Llt<f64>>,
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
         if let Some(factor) = factor {
             let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
@@ -167,7 +167,7 @@ impl<'a> NormalEquations<'a> {
             false => (start.to_vec(), false),
         };
         if !exact {
-            nnls::solve(&self.matrix, right, &mut x, watch)?;
+            nnls::solve(&self.matrix, right, &mut x, progress)?;
         }
         Ok(x)
     }

@@ -7,7 +7,7 @@
 use crate::error::Result;
 use crate::identify::weights::rows::{Rows, Term};
 use crate::model::Plane;
-use crate::progress::Watch;
+use crate::progress::Progress;
 use hysteron_core::Operator;
 use hysteron_core::{Model, operator_index, table_index, table_len};
 
@@ -146,7 +146,7 @@ impl SparseForm {
         (left, right): (Initial, Initial),
         scale: impl Fn(usize) -> f64,
         gram: &mut [f64],
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<()> {
         let count = self.operators();
         let mut a = self.rows(left)?;
@@ -155,7 +155,7 @@ impl SparseForm {
         let mut sums = BranchSums::default();
         for (n, &x) in input.iter().enumerate() {
             if n % REPORT == 0 {
-                watch("samples", n as f64 / input.len() as f64)?;
+                progress.tell("samples", n as f64 / input.len() as f64)?;
             }
             let mut left_branch = a.leaves_branch(x)?;
             if let Some(b) = &mut other {
@@ -357,7 +357,7 @@ mod tests {
             .unwrap();
         form.operators_of(&mut adjoint);
         let mut gram = vec![0.0; count * count];
-        form.add_outer(&input, (left, right), |n| r[n], &mut gram, &|_, _| Ok(()))
+        form.add_outer(&input, (left, right), |n| r[n], &mut gram, Progress::NONE)
             .unwrap();
         form.gram_of(&mut gram);
         for a in 0..count {

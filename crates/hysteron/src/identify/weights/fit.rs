@@ -1,0 +1,64 @@
+//! Weights, offset and sign of a model, and the summary of its fit.
+
+use crate::error::{Error, Result};
+use crate::identify::doubt::confidence;
+use crate::identify::options::FitOptions;
+use crate::identify::weights::problem::Problem;
+use crate::model::{FitSummary, LoadDependence, LoadPart, Model};
+use crate::progress::Progress;
+use crate::recording::{Origin, Recording};
+use crate::series::Errors;
+
+/// Identifies a model from recordings, each of which starts from its own initial state; with a load
+/// in them, weights that depend on it.
+pub(crate) fn fit_weights(
+    recordings: &[Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<Model> {
+    let mut problem = Problem::new(recordings, options)?;
+    let fitted = problem.solve(None, progress)?;
+    let plane = *problem.regressor.plane();
+    let sign = fitted.sign;
+    let parts = problem.load_parts(&fitted.solution.x, &fitted.solution.free, sign);
+    let first = &recordings[0];
+    let load = problem.experiment.load_range.map(|(min, max)| {
+        LoadDependence::new(first.load_quantity.clone(), (min, max), parts.clone())
+    });
+    let whole = LoadPart::at_middle(&parts);
+    let mut model = Model::new(options.operator, plane, whole.weights, whole.offset, sign)?;
+    model.input = first.input_quantity.clone();
+    model.output = first.output_quantity.clone();
+    model.load = load;
+    let confidence = confidence::of(&problem, &fitted, progress)?;
+
+    let residual = &fitted.solution.residual;
+    let measured = &problem.experiment.output;
+    let modelled: Vec<f64> = measured
+        .iter()
+        .zip(residual)
+        .map(|(y, r)| y - sign.factor() * r)
+        .collect();
+    let errors = Errors::between(measured, &modelled, |_| true)
+        .ok_or_else(|| Error::Fit("no samples".into()))?;
+    let path = |r: &Recording| r.source.as_ref().map(|s| s.path.display().to_string());
+    model.fit = Some(FitSummary {
+        solver: options.solver,
+        smooth: options.smooth,
+        start: options.start,
+        open_at_start: problem.regressor.open_at_start,
+        samples: errors.samples,
+        rmse: errors.rmse,
+        max_abs: errors.max_abs,
+        nrmse_percent: errors.nrmse_percent.unwrap_or_default(),
+        weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        simulated: recordings.iter().any(|r| r.origin == Origin::Simulated),
+        file: path(first),
+        sha256: first.source.as_ref().map(|s| s.sha256.clone()),
+        other_files: recordings[1..].iter().filter_map(path).collect(),
+        validation: None,
+        confidence,
+        other: std::collections::BTreeMap::new(),
+    });
+    Ok(model)
+}
