@@ -64,7 +64,7 @@ class Fmu:
         start = {}
         if self.inverse:
             names, formats, columns = [*names, "heading"], [*formats, int], [*columns, run_["heading"]]
-            start = {"band": run_["tolerance"]}
+            start = {"tolerance": run_["tolerance"]}
         table = np.array(list(zip(*columns)), dtype=list(zip(names, formats)))
         result = fmpy.simulate_fmu(
             str(self.folder), model_description=self.description, input=table, start_values=start,

@@ -2,7 +2,7 @@
 
 use crate::given::{Input, Number, Owned, Setup};
 use arbitrary::Arbitrary;
-use hysteron_core::{Direction, Error, Operator, Policy, Status};
+use hysteron_core::{Direction, Error, Operator, Status};
 
 #[derive(Arbitrary, Debug)]
 pub struct Walk {
@@ -62,20 +62,18 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
         Target::Near(number) => now + number.get(),
         Target::Number(number) => number.get(),
     };
-    let policy = match heading {
-        None => Policy::Hold { tolerance },
-        Some(rising) => Policy::Anticipate {
-            heading: if rising {
-                Direction::Rising
-            } else {
-                Direction::Falling
-            },
-            tolerance,
-        },
+    let heading = heading.map(|rising| match rising {
+        true => Direction::Rising,
+        false => Direction::Falling,
+    });
+    let wanted = hysteron_core::Target {
+        output: target,
+        heading,
+        tolerance,
     };
     let inverse = model.inverse().expect("weights that are not negative");
     let before = state.clone();
-    let solution = match inverse.step(state, target, policy) {
+    let solution = match inverse.step(state, wanted) {
         Ok(solution) => solution,
         Err(error) => {
             assert_eq!(error, Error::InputNotFinite { index: 0 });

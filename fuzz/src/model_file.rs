@@ -30,8 +30,8 @@ fn runs(model: &Model) {
     }
     if let Ok(inverse) = model.inverse() {
         let (low, high) = model.output_range();
-        let policy = hysteron::Policy::HOLD;
-        let solution = inverse.step(&mut state, 0.5 * low + 0.5 * high, policy);
+        let target = hysteron::Target::new(0.5 * low + 0.5 * high);
+        let solution = inverse.step(&mut state, target);
         assert!(solution.expect("a finite target").input.is_finite());
     }
 }

@@ -4,7 +4,7 @@ use crate::fault::{Result, guard};
 use crate::handles::Table;
 use crate::model::MODELS;
 use crate::pointer::Arguments;
-use crate::types::{HysteronAdaptation, HysteronLearning, policy, status as status_constant};
+use crate::types::{self, HysteronAdaptation, HysteronLearning, status as status_constant};
 use hysteron::{Adaptation, Adaptive};
 use std::sync::{Mutex, PoisonError};
 
@@ -101,9 +101,9 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
                 arguments.out(status, "status")?,
             )
         };
-        let policy = policy(heading, tolerance)?;
+        let target = types::target(target, heading, tolerance)?;
         with(adaptive, |learner| {
-            let solution = learner.solve(target, policy)?;
+            let solution = learner.solve(target)?;
             input.set(solution.input);
             status.set(status_constant(solution.status));
             Ok(())

@@ -8,7 +8,7 @@
 use crate::fault::guard_plain;
 use crate::pointer::Arguments;
 use crate::room::{Kind, size};
-use crate::types::{clipped as clipped_constant, operator, policy, status as status_constant};
+use crate::types::{self, clipped as clipped_constant, operator, status as status_constant};
 use hysteron_core::{MAX_LEVELS, Model, Plane, State, Turn, table_len, turn_capacity};
 use std::ffi::c_void;
 
@@ -198,8 +198,8 @@ pub unsafe extern "C" fn hysteron_core_inverse_step(
                 arguments.out(status, "status")?,
             )
         };
-        let policy = policy(heading, tolerance)?;
-        let solution = model.inverse()?.step(state, target, policy)?;
+        let target = types::target(target, heading, tolerance)?;
+        let solution = model.inverse()?.step(state, target)?;
         input.set(solution.input);
         status.set(status_constant(solution.status));
         Ok(())

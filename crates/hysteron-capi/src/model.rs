@@ -121,7 +121,7 @@ pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronMode
             offset: model.offset(),
             output_off,
             output_on,
-            noise_band: model.noise_band(),
+            usual_tolerance: model.usual_tolerance(),
         });
         Ok(())
     })

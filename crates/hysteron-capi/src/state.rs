@@ -6,7 +6,7 @@ use crate::handles::Table;
 use crate::model::MODELS;
 use crate::pointer::Arguments;
 use crate::types::{
-    HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant, policy,
+    self, HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant,
     status as status_constant,
 };
 use hysteron::{Model, State, headings};
@@ -145,9 +145,9 @@ pub unsafe extern "C" fn hysteron_inverse_step(
             )
         };
         let running = STATES.get(state, "state")?;
-        let policy = policy(heading, tolerance)?;
+        let target = types::target(target, heading, tolerance)?;
         let inverse = running.model.inverse()?;
-        let solution = inverse.step(&mut running.state(), target, policy)?;
+        let solution = inverse.step(&mut running.state(), target)?;
         input.set(solution.input);
         status.set(status_constant(solution.status));
         Ok(())
@@ -183,14 +183,13 @@ pub unsafe extern "C" fn hysteron_inverse_run(
         let headings = heading
             .iter()
             .copied()
-            .map(Some)
-            .chain(std::iter::repeat(None));
-        let policies = headings
-            .take(count)
-            .map(|heading| policy(heading.unwrap_or(HYSTERON_HOLD), tolerance))
+            .chain(std::iter::repeat(HYSTERON_HOLD));
+        let targets = target.iter().zip(headings);
+        let targets = targets
+            .map(|(&target, heading)| types::target(target, heading, tolerance))
             .collect::<Result<Vec<_>>>()?;
         let inverse = running.model.inverse()?;
-        let solutions = inverse.through(&mut running.state(), target, policies)?;
+        let solutions = inverse.through(&mut running.state(), &targets)?;
         input.write(solutions.iter().map(|solution| solution.input));
         status.write(solutions.iter().map(|s| status_constant(s.status)));
         Ok(())
@@ -198,12 +197,12 @@ pub unsafe extern "C" fn hysteron_inverse_run(
 }
 
 /// Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
-/// the series never moves. Reversals of up to `band` are noise.
+/// the series never moves. Reversals of up to `tolerance` are noise.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_headings(
     target: *const f64,
     count: usize,
-    band: f64,
+    tolerance: f64,
     heading: *mut i32,
 ) -> i32 {
     guard(|| {
@@ -218,11 +217,11 @@ pub unsafe extern "C" fn hysteron_headings(
         if let Some(index) = target.iter().position(|target| !target.is_finite()) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }
-        if band.is_nan() || band < 0.0 {
-            return Err(Fault::Call(HYSTERON_VALUE, "band"));
+        if tolerance.is_nan() || tolerance < 0.0 {
+            return Err(Fault::Call(HYSTERON_VALUE, "tolerance"));
         }
         let constant = |heading: Option<_>| heading.map_or(HYSTERON_HOLD, heading_constant);
-        heading.write(headings(target, band).into_iter().map(constant));
+        heading.write(headings(target, tolerance).into_iter().map(constant));
         Ok(())
     })
 }

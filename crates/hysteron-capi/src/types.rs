@@ -3,7 +3,7 @@
 use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result};
 use hysteron::{
-    Adaptation, Clipped, Direction, Learning, Method, Operator, Outcome, Policy, Sign, Status,
+    Adaptation, Clipped, Direction, Learning, Method, Operator, Outcome, Sign, Status, Target,
 };
 
 /// Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.
@@ -75,7 +75,7 @@ pub struct HysteronModelInfo {
     /// Output with every operator on.
     pub output_on: f64,
     /// Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
-    pub noise_band: f64,
+    pub usual_tolerance: f64,
 }
 
 /// Options of adaptation; `hysteron_adaptation_default` fills in the usual ones.
@@ -236,14 +236,18 @@ pub(crate) fn sign(value: i32) -> Result<Sign> {
     }
 }
 
-pub(crate) fn policy(value: i32, tolerance: f64) -> Result<Policy<f64>> {
-    let heading = match value {
-        HYSTERON_HOLD => return Ok(Policy::Hold { tolerance }),
-        HYSTERON_RISING => Direction::Rising,
-        HYSTERON_FALLING => Direction::Falling,
-        _ => return Err(Fault::Call(HYSTERON_VALUE, "policy")),
+pub(crate) fn target(output: f64, heading: i32, tolerance: f64) -> Result<Target<f64>> {
+    let heading = match heading {
+        HYSTERON_HOLD => None,
+        HYSTERON_RISING => Some(Direction::Rising),
+        HYSTERON_FALLING => Some(Direction::Falling),
+        _ => return Err(Fault::Call(HYSTERON_VALUE, "heading")),
     };
-    Ok(Policy::Anticipate { heading, tolerance })
+    Ok(Target {
+        output,
+        heading,
+        tolerance,
+    })
 }
 
 pub(crate) fn heading(heading: Direction) -> i32 {

@@ -4,7 +4,7 @@
 
 use hysteron_capi::*;
 use hysteron_core::{
-    Adaptation, Error, Estimator, Inverse, Method, Model, Operator, Plane, Policy, State, Turn,
+    Adaptation, Error, Estimator, Inverse, Method, Model, Operator, Plane, State, Target, Turn,
     estimator_len, operator_count, table_len, turn_capacity,
 };
 use rand::rngs::StdRng;
@@ -267,7 +267,7 @@ impl World {
         let expected = if forward {
             model.step(&mut state, number).map(|step| step.output)
         } else {
-            let solve = |inverse: Inverse<'_, _, _>| inverse.step(&mut state, number, Policy::HOLD);
+            let solve = |inverse: Inverse<'_, _, _>| inverse.step(&mut state, Target::new(number));
             model
                 .inverse()
                 .and_then(solve)

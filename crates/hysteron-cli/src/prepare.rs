@@ -84,7 +84,7 @@ fn options(steps: &args::Steps, defaults: PrepareOptions) -> PrepareOptions {
         resample: steps.resample.unwrap_or(defaults.resample),
         low_pass: steps.low_pass.unwrap_or(defaults.low_pass),
         lag: steps.lag.unwrap_or(defaults.lag),
-        band: steps.band.unwrap_or(defaults.band),
+        dead_band: steps.dead_band.unwrap_or(defaults.dead_band),
     }
 }
 
@@ -139,7 +139,7 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
             .map(|filter| low_pass_line(filter, recording)),
     );
     lines.extend(report.lag.as_ref().map(|lag| lag_line(lag, recording)));
-    lines.extend(report.band.as_ref().map(|band| {
+    lines.extend(report.dead_band.as_ref().map(|band| {
         format!(
             "dead band: {}, {} false reversals gone, {} samples moved by up to {}",
             text::with_unit(band.size, input),

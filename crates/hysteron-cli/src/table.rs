@@ -2,7 +2,7 @@
 
 use crate::terminal::{Result, print, say};
 use crate::{args, progress, recording};
-use hysteron::{Counts, Model, TableReader, TableWriter};
+use hysteron::{Counts, Invert, Model, Policy, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
 
@@ -42,14 +42,15 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         )
         .into());
     }
-    let how = match args.policy {
-        args::Policy::Hold => hysteron::Invert::Hold {
-            band: args.band.unwrap_or(0.0),
-        },
-        args::Policy::Anticipate => hysteron::Invert::Anticipate {
-            band: args.band.unwrap_or(model.noise_band()),
-            rows: args.look_ahead,
-        },
+    let (policy, tolerance) = match args.policy {
+        args::Policy::Hold => (Policy::Hold, 0.0),
+        args::Policy::Anticipate => (Policy::Anticipate, model.usual_tolerance()),
+    };
+    let how = Invert {
+        target: &args.target,
+        policy,
+        tolerance: args.tolerance.unwrap_or(tolerance),
+        look_ahead: args.look_ahead,
     };
     let what = ["targets above the model's range", "targets below it"];
     through(
@@ -58,9 +59,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         &args.force,
         (args.json.json, args.memory.max_memory),
         what,
-        |table, out, progress| {
-            hysteron::invert_table(&model, table, &args.target, how, out, progress)
-        },
+        |table, out, progress| hysteron::invert_table(&model, table, how, out, progress),
     )
 }
 

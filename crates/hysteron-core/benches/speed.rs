@@ -7,7 +7,7 @@ mod common;
 mod measure;
 
 use common::{build, rng};
-use hysteron_core::{Operator, Policy};
+use hysteron_core::{Operator, Target};
 use measure::{definition, random_weights, ratio, seconds, smooth, title, unit_plane};
 use rand::RngExt;
 use std::hint::black_box;
@@ -64,11 +64,7 @@ fn inverse(levels: usize, targets: &[f64]) -> impl FnMut() -> f64 {
         let inverse = model.inverse().unwrap();
         seconds(targets.len(), || {
             for &y in targets {
-                black_box(
-                    inverse
-                        .step(&mut state, black_box(y), Policy::HOLD)
-                        .unwrap(),
-                );
+                black_box(inverse.step(&mut state, Target::new(black_box(y))).unwrap());
             }
         })
     }

@@ -6,7 +6,7 @@
 //! returned, at every tenth second. Memory is what was given at the start: the core has no allocator that it could ask for more.
 
 use hysteron_core::{
-    Adaptation, Error, Estimator, Method, Model, Operator, Outcome, Plane, Policy, Turn,
+    Adaptation, Error, Estimator, Method, Model, Operator, Outcome, Plane, Target, Turn,
     estimator_len, operator_count, table_len, turn_capacity,
 };
 use rand::rngs::StdRng;
@@ -103,7 +103,7 @@ fn day(name: &str, method: Method<f64>, levels: usize, learns: bool) -> Result<(
                 let (low, high) = model.output_range();
                 let target = low + (high - low) * rng.random::<f64>();
                 let mut apart = state.clone();
-                let solution = model.inverse()?.solve(&apart, target, Policy::HOLD)?;
+                let solution = model.inverse()?.solve(&apart, Target::new(target))?;
                 let reached = model.step(&mut apart, solution.input)?.output;
                 inverse = inverse.max((reached - target).abs() / (high - low));
             }

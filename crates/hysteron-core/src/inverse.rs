@@ -32,39 +32,59 @@ pub enum Direction {
     Falling,
 }
 
-/// What the input does while the target stands still.
+/// An output that is wanted.
 ///
-/// With a `tolerance` above zero, a target that goes back by up to as much stands still too: without
-/// one, the input crosses the whole dead band and back for each reversal that noise makes. A target
-/// out of reach by up to as much is taken as the nearest end. It is in the output's unit and never
-/// below zero.
+/// ```
+/// use hysteron_core::{Direction, Target};
+/// let held = Target::new(3.0).tolerance(0.1);
+/// let anticipated = held.heading(Some(Direction::Falling));
+/// assert_eq!(anticipated.output, 3.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Policy<T> {
-    /// It stands still as well (equation 14).
-    Hold {
-        /// How far the target may go back.
-        tolerance: T,
-    },
-    /// It crosses the dead band at once, to the edge where the output starts to move that way. This
-    /// holds for a target near the output at which the dead band began, as long as the output is
-    /// still there. Any other target is followed as with [`Policy::Hold`].
-    Anticipate {
-        /// Where the target goes next.
-        heading: Direction,
-        /// How far the target may go back, or away from the output at which the dead band began.
-        tolerance: T,
-    },
+pub struct Target<T> {
+    /// The output, in its unit.
+    pub output: T,
+    /// Where the target goes next, if the input is to anticipate it: it then crosses the dead band
+    /// at once, to the edge where the output starts to move that way. This holds for a target near
+    /// the output at which the dead band began, as long as the output is still there. Any other
+    /// target, and one with `None`, is held: the input stands still while the target does
+    /// (equation 14).
+    pub heading: Option<Direction>,
+    /// A target that goes back by up to as much stands still too: without a tolerance, the input
+    /// crosses the whole dead band and back for each reversal that noise makes. A target out of
+    /// reach by up to as much is taken as the nearest end. In the output's unit; below zero and NaN
+    /// count as zero.
+    pub tolerance: T,
 }
 
-impl<T: Real> Policy<T> {
+impl<T: Real> Target<T> {
     /// The chapter's policy: the input stands still for equal targets only.
-    pub const HOLD: Self = Policy::Hold { tolerance: T::ZERO };
+    #[must_use]
+    pub fn new(output: T) -> Self {
+        Self {
+            output,
+            heading: None,
+            tolerance: T::ZERO,
+        }
+    }
+
+    /// Where the target goes next; `None` where it is to be held.
+    #[must_use]
+    pub fn heading(self, heading: Option<Direction>) -> Self {
+        Self { heading, ..self }
+    }
+
+    /// How far the target may go back and still be held.
+    #[must_use]
+    pub fn tolerance(self, tolerance: T) -> Self {
+        Self { tolerance, ..self }
+    }
 }
 
 /// Whether a target can be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// The input gives the target, up to the policy's tolerance.
+    /// The input gives the target, up to its tolerance.
     Ok,
     /// The target lies below every output; the input is the lowest one, `T_min − ΔT`.
     Low,
@@ -99,7 +119,7 @@ impl Status {
         }
     }
 
-    /// Whether the target lies beyond the model's range of outputs, and the policy's tolerance.
+    /// Whether the target lies beyond the model's range of outputs, and its tolerance.
     #[must_use]
     pub fn is_out_of_reach(self) -> bool {
         matches!(self, Status::Low | Status::High)
@@ -167,26 +187,21 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// the state is then as it was.
     ///
     /// ```
-    /// use hysteron_core::{Model, Operator, Plane, Policy, Status, Turn, table_len, turn_capacity};
+    /// use hysteron_core::{Model, Operator, Plane, Target, Status, Turn, table_len, turn_capacity};
     /// let plane = Plane::new(0.0, 1.0, 2)?;
     /// let model = Model::new(plane, Operator::Mkp, &[1.0, 2.0, 4.0], [0.0; table_len(2)])?;
     /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
     /// let inverse = model.inverse()?;
-    /// let solution = inverse.step(&mut state, 4.0, Policy::HOLD)?;
+    /// let solution = inverse.step(&mut state, Target::new(4.0))?;
     /// assert_eq!((solution.input, solution.status), (0.5, Status::Ok));
-    /// assert_eq!(inverse.step(&mut state, 9.0, Policy::HOLD)?.status, Status::High);
+    /// assert_eq!(inverse.step(&mut state, Target::new(9.0))?.status, Status::High);
     /// # Ok::<(), hysteron_core::Error>(())
     /// ```
-    pub fn step<S>(
-        &self,
-        state: &mut State<T, S>,
-        target: T,
-        policy: Policy<T>,
-    ) -> Result<Solution<T>, Error>
+    pub fn step<S>(&self, state: &mut State<T, S>, target: Target<T>) -> Result<Solution<T>, Error>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        let solution = self.solve(state, target, policy)?;
+        let solution = self.solve(state, target)?;
         self.model.step(state, solution.input)?;
         Ok(solution)
     }
@@ -195,16 +210,16 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     ///
     /// # Errors
     /// As [`Inverse::step`].
-    pub fn solve<S>(
-        &self,
-        state: &State<T, S>,
-        target: T,
-        policy: Policy<T>,
-    ) -> Result<Solution<T>, Error>
+    pub fn solve<S>(&self, state: &State<T, S>, target: Target<T>) -> Result<Solution<T>, Error>
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
         self.model.check(state)?;
+        let Target {
+            output: target,
+            heading,
+            tolerance,
+        } = target;
         if !target.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
@@ -214,10 +229,6 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let (wanted, unit) = match self.model.operator() {
             Operator::Mkp => (target, T::ONE),
             Operator::Kp | Operator::Relay => (T::HALF * target + T::HALF * total, T::HALF),
-        };
-        let (heading, tolerance) = match policy {
-            Policy::Hold { tolerance } => (None, tolerance),
-            Policy::Anticipate { heading, tolerance } => (Some(heading), tolerance),
         };
         let tolerance = unit * tolerance.larger(T::ZERO); // NaN too
         let reach = tolerance.larger(self.slack);
@@ -236,9 +247,9 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         // Tolerances count from the target itself, not from the end of the range that is nearest to it.
         let nearest = wanted.limited(T::ZERO, total);
         let now = state.place().y;
-        if let Some(heading) = heading
-            && let Some(edge) = self.edge(state, heading, wanted, (tolerance, reach))
-        {
+        let edge =
+            heading.and_then(|heading| self.edge(state, heading, wanted, (tolerance, reach)));
+        if let Some(edge) = edge {
             return Ok(Solution {
                 input: edge,
                 status: Status::Ok,

@@ -38,7 +38,7 @@ pub use definition::Definition;
 pub use error::{Error, NegativeWeights};
 pub use everett::{table_index, table_len};
 pub use interface::Region;
-pub use inverse::{Direction, Inverse, Policy, Solution, Status};
+pub use inverse::{Direction, Inverse, Solution, Status, Target};
 pub use model::{ClippedCount, Model, Output};
 pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index};

@@ -8,7 +8,7 @@ use common::{
     weights,
 };
 use hysteron_core::{
-    Definition, Method, Operator, Outcome, Policy, Status, operator_count, operator_index,
+    Definition, Method, Operator, Outcome, Status, Target, operator_count, operator_index,
 };
 use rand::{Rng, RngExt};
 
@@ -109,7 +109,7 @@ fn round_trip(learner: &Learner, rng: &mut impl Rng) -> f64 {
         let target = rng.random_range(low..=high);
         let mut there = learner.state.clone();
         let inverse = model.inverse().unwrap();
-        let solution = inverse.step(&mut there, target, Policy::HOLD).unwrap();
+        let solution = inverse.step(&mut there, Target::new(target)).unwrap();
         assert_eq!(solution.status, Status::Ok);
         let mut apart = learner.state.clone();
         let reached = model.step(&mut apart, solution.input).unwrap().output;

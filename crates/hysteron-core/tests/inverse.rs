@@ -5,7 +5,7 @@ mod common;
 
 use common::{OPERATORS, build, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Definition, Direction, Error, Operator, Plane, Policy, Status, operator_count, operator_index,
+    Definition, Direction, Error, Operator, Plane, Status, Target, operator_count, operator_index,
 };
 use rand::{Rng, RngExt};
 
@@ -29,7 +29,7 @@ fn worst_return(plane: Plane<f64>, operator: Operator, weights: &[f64], rng: &mu
             3 => low,
             _ => (y + (high - low) * rng.random_range(-0.2..0.2)).clamp(low, high),
         };
-        let solution = inverse.step(&mut state, y, Policy::HOLD).unwrap();
+        let solution = inverse.step(&mut state, Target::new(y)).unwrap();
         assert_eq!(solution.status, Status::Ok);
         let reached = model.step(&mut forward, solution.input).unwrap().output;
         worst = worst.max((reached - y).abs() / (high - low));
@@ -148,7 +148,7 @@ fn equals_the_candidate_formulas_of_the_chapter() {
                 falls += 1;
                 falling_candidates(&plane, &mu, plain.states(), target)
             };
-            let found = inverse.solve(&state, target, Policy::HOLD).unwrap().input;
+            let found = inverse.solve(&state, Target::new(target)).unwrap().input;
             worst = worst.max((found - expected).abs() / plane.step());
         }
     }
@@ -171,18 +171,18 @@ fn out_of_reach_and_equal_targets() {
         let (model, mut state) = build(plane, operator, &weights);
         let inverse = model.inverse().unwrap();
         let (low, high) = model.output_range();
-        let above = inverse.step(&mut state, high + 1.0, Policy::HOLD).unwrap();
+        let above = inverse.step(&mut state, Target::new(high + 1.0)).unwrap();
         assert_eq!((above.input, above.status), (80.0, Status::High));
-        let below = inverse.step(&mut state, low - 1.0, Policy::HOLD).unwrap();
+        let below = inverse.step(&mut state, Target::new(low - 1.0)).unwrap();
         assert_eq!((below.input, below.status), (plane.bottom(), Status::Low));
         model.step(&mut state, 51.3).unwrap();
         let same = inverse
-            .solve(&state, model.output(&state), Policy::HOLD)
+            .solve(&state, Target::new(model.output(&state)))
             .unwrap();
         assert_eq!((same.input, same.status), (51.3, Status::Ok));
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let before = state.clone();
-            let refused = inverse.step(&mut state, bad, Policy::HOLD);
+            let refused = inverse.step(&mut state, Target::new(bad));
             assert_eq!(refused, Err(Error::InputNotFinite { index: 0 }));
             assert_eq!(state, before);
         }
@@ -201,17 +201,14 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     let (plane, weights) = dead_band();
     let (model, mut state) = build(plane, Operator::Mkp, &weights);
     let inverse = model.inverse().unwrap();
-    let up = inverse.step(&mut state, 2.0, Policy::HOLD).unwrap();
+    let up = inverse.step(&mut state, Target::new(2.0)).unwrap();
     let y = model.output(&state);
     assert_eq!(
-        inverse.solve(&state, y, Policy::HOLD).unwrap().input,
+        inverse.solve(&state, Target::new(y)).unwrap().input,
         up.input
     );
-    let falling = Policy::Anticipate {
-        heading: Direction::Falling,
-        tolerance: 0.0,
-    };
-    let edge = inverse.step(&mut state, y, falling).unwrap();
+    let falling = |y| Target::new(y).heading(Some(Direction::Falling));
+    let edge = inverse.step(&mut state, falling(y)).unwrap();
     // Operator (2, 6): the left ridge rises from α_1 = 20 to α_2 = 30; two thirds up it stands at 2.
     assert!(
         (edge.input - (20.0 + 10.0 * 2.0 / 3.0)).abs() < 1e-9,
@@ -219,21 +216,15 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     );
     assert!((model.output(&state) - y).abs() < 1e-12);
     // The edge again: nothing is left to cross. Then up: across the whole band.
-    assert!((inverse.solve(&state, y, falling).unwrap().input - edge.input).abs() < 1e-9);
-    let rising = Policy::Anticipate {
-        heading: Direction::Rising,
-        tolerance: 0.0,
-    };
-    let back = inverse.solve(&state, y, rising).unwrap();
+    assert!((inverse.solve(&state, falling(y)).unwrap().input - edge.input).abs() < 1e-9);
+    let rising = Target::new(y).heading(Some(Direction::Rising));
+    let back = inverse.solve(&state, rising).unwrap();
     assert!((back.input - up.input).abs() < 1e-9, "{back:?}");
     // A tolerance in output goes that much further; a target beyond it is followed, not anticipated.
-    let loose = Policy::Anticipate {
-        heading: Direction::Falling,
-        tolerance: 0.3,
-    };
-    assert!((inverse.solve(&state, y, loose).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
-    let moved = inverse.solve(&state, y + 0.5, loose).unwrap();
-    assert_eq!(moved, inverse.solve(&state, y + 0.5, Policy::HOLD).unwrap());
+    let loose = |y| falling(y).tolerance(0.3);
+    assert!((inverse.solve(&state, loose(y)).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
+    let moved = inverse.solve(&state, loose(y + 0.5)).unwrap();
+    assert_eq!(moved, inverse.solve(&state, Target::new(y + 0.5)).unwrap());
 }
 
 #[test]
@@ -243,10 +234,10 @@ fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
     for (operator, unit, offset) in [(Operator::Mkp, 1.0, 0.0), (Operator::Kp, 2.0, -3.0)] {
         let (model, mut state) = build(plane, operator, &weights);
         let inverse = model.inverse().unwrap();
-        let hold = Policy::Hold {
-            tolerance: 0.3 * unit,
+        let mut to = |sum: f64| {
+            let held = Target::new(unit * sum + offset).tolerance(0.3 * unit);
+            inverse.step(&mut state, held).unwrap()
         };
-        let mut to = |sum: f64| inverse.step(&mut state, unit * sum + offset, hold).unwrap();
         let up = to(2.0);
         // Back by less: the input stays. On by as little: it follows. Back by more, though not by twice: it crosses.
         assert_eq!(to(1.8).input, up.input);
@@ -264,10 +255,10 @@ fn on_a_flat_stretch_the_first_input_is_returned() {
     let (model, mut state) = build(plane, Operator::Mkp, &weights);
     let inverse = model.inverse().unwrap();
     // Full output is reached at β_6 = 70, although it lasts to 80.
-    assert!((inverse.step(&mut state, 3.0, Policy::HOLD).unwrap().input - 70.0).abs() < 1e-9);
+    assert!((inverse.step(&mut state, Target::new(3.0)).unwrap().input - 70.0).abs() < 1e-9);
     model.step(&mut state, 80.0).unwrap();
     // Zero is reached at α_1 = 20.
-    assert!((inverse.step(&mut state, 0.0, Policy::HOLD).unwrap().input - 20.0).abs() < 1e-9);
+    assert!((inverse.step(&mut state, Target::new(0.0)).unwrap().input - 20.0).abs() < 1e-9);
 }
 
 #[test]
@@ -284,10 +275,7 @@ fn relays_jump_to_or_past_the_target() {
         for _ in 0..100 {
             let before = state.clone();
             let target = rng.random_range(low..=high);
-            let input = inverse
-                .step(&mut state, target, Policy::HOLD)
-                .unwrap()
-                .input;
+            let input = inverse.step(&mut state, Target::new(target)).unwrap().input;
             let (start, reached) = (model.output(&before), model.output(&state));
             let rising = target > start;
             assert!(if rising {
@@ -320,7 +308,7 @@ fn a_relay_holds_beyond_the_plane_too() {
     let (model, mut state) = build(plane, Operator::Relay, &[1.0, 2.0, 4.0]);
     model.step(&mut state, 1.5).unwrap();
     let inverse = model.inverse().unwrap();
-    let held = inverse.step(&mut state, 7.0, Policy::HOLD).unwrap();
+    let held = inverse.step(&mut state, Target::new(7.0)).unwrap();
     assert_eq!((held.input, model.output(&state)), (1.5, 7.0));
 }
 

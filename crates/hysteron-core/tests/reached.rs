@@ -4,7 +4,7 @@
 mod common;
 
 use common::{OPERATORS, Owned, build, build_f32, inputs, levels, plane, rng, weights};
-use hysteron_core::{Direction, Operator, Policy, Real, Solution, Status, operator_count};
+use hysteron_core::{Direction, Operator, Real, Solution, Status, Target, operator_count};
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt};
 
@@ -90,23 +90,21 @@ impl<T: Real> Attack<T> {
         let given = (high - low) * widths[rng.random_range(0..widths.len())];
         let tolerance = (self.numbers.of)(given);
         let target = (self.numbers.of)(self.target(rng, given));
-        let heading = [None, Some(Direction::Rising), Some(Direction::Falling)];
-        let policy = match heading[rng.random_range(0..3)] {
-            None => Policy::Hold { tolerance },
-            Some(heading) => Policy::Anticipate { heading, tolerance },
-        };
+        let headings = [None, Some(Direction::Rising), Some(Direction::Falling)];
+        let heading = headings[rng.random_range(0..3)];
+        let wanted = Target::new(target).heading(heading).tolerance(tolerance);
         let before = (self.numbers.to)(self.apart.0.output(&self.apart.1));
         let inverse = self.model.0.inverse().unwrap();
-        let solution = inverse.step(&mut self.model.1, target, policy).unwrap();
+        let solution = inverse.step(&mut self.model.1, wanted).unwrap();
         let reached = self.apart.0.step(&mut self.apart.1, solution.input);
         let reached = (self.numbers.to)(reached.unwrap().output);
         self.outputs.push(reached);
         let allowed = (self.numbers.to)(tolerance).max(0.0) + self.rounding(); // NaN counts as 0
         let target = (self.numbers.to)(target);
-        let what = format!("{policy:?} from {before} to {target}: {solution:?}, output {reached}");
+        let what = format!("{wanted:?} from {before}: {solution:?}, output {reached}");
         self.judge(&solution, (before, target, reached), allowed, &what);
         match solution.status {
-            Status::Ok if policy == (Policy::Hold { tolerance }) => seen.reached += 1,
+            Status::Ok if heading.is_none() => seen.reached += 1,
             Status::Ok => seen.headed += 1,
             Status::Passed => seen.passed += 1,
             Status::Low | Status::High => seen.out_of_reach += 1,
@@ -200,11 +198,8 @@ fn a_target_that_jumps_back_to_where_the_branch_began_is_followed() {
         (0.0, Direction::Rising, -2.5),
     ];
     for (target, heading, input) in targets {
-        let policy = Policy::Anticipate {
-            heading,
-            tolerance: 0.0,
-        };
-        let solution = inverse.step(&mut state, target, policy).unwrap();
+        let wanted = Target::new(target).heading(Some(heading));
+        let solution = inverse.step(&mut state, wanted).unwrap();
         assert_eq!((solution.input, solution.status), (input, Status::Ok));
         assert_eq!(model.output(&state), target);
     }
@@ -235,11 +230,8 @@ fn a_target_that_turns_is_met_at_the_edge_of_the_dead_band() {
             } else {
                 Direction::Falling
             };
-            let policy = Policy::Anticipate {
-                heading,
-                tolerance: 0.0,
-            };
-            let edge = inverse.step(&mut state, target, policy).unwrap();
+            let wanted = Target::new(target).heading(Some(heading));
+            let edge = inverse.step(&mut state, wanted).unwrap();
             // Relays stand on a level: the next one is a step away, and a little for rounding.
             let further = plane.step()
                 * if operator == Operator::Relay {

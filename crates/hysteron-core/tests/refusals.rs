@@ -5,7 +5,7 @@ mod common;
 
 use common::build;
 use hysteron_core::{
-    Clipped, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Policy, Turn, table_len,
+    Clipped, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Target, Turn, table_len,
     turn_capacity,
 };
 
@@ -163,7 +163,7 @@ fn states_of_other_models_and_broken_saves() {
     assert_eq!(model.reset_on(&mut larger), Err(Error::StateMismatch));
     let inverse = model.inverse().unwrap();
     assert_eq!(
-        inverse.step(&mut larger, 0.5, Policy::HOLD),
+        inverse.step(&mut larger, Target::new(0.5)),
         Err(Error::StateMismatch)
     );
     let before = state.clone();

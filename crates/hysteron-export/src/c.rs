@@ -6,7 +6,7 @@ mod seal;
 mod text;
 
 use constants::{Constants, Number};
-use hysteron::{AtomicFile, AtomicFolder, Error, Model, Own, Remedy, Result, Setting, Target};
+use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
 use std::path::{Path, PathBuf};
 
 /// Names and texts of the algorithm's files, the first with the number type.
@@ -143,14 +143,14 @@ impl CWorstCase {
 /// model with negative weights has no inverse there either.
 ///
 /// Files that were exported before, and not edited since, are replaced, all together or not at all. A path alone as `target`
-/// replaces others of their names too; [`Target::keeping_foreign`] keeps them.
+/// replaces others of their names too; [`Destination::keeping_foreign`] keeps them.
 ///
 /// # Errors
 /// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number type; for a name that cannot
 /// be one in C; for files in the folder that are of the other number type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
-    target: impl Into<Target<'a>>,
+    target: impl Into<Destination<'a>>,
     options: &COptions<'_>,
 ) -> Result<CExport> {
     let target = target.into();
@@ -164,7 +164,7 @@ pub fn c<'a>(
 
 fn write<T: Number>(
     model: &Model,
-    target: Target<'_>,
+    target: Destination<'_>,
     options: &COptions<'_>,
     name: String,
 ) -> Result<CExport> {

@@ -9,7 +9,7 @@ mod package;
 mod units;
 mod variables;
 
-use hysteron::{AtomicFile, Error, Model, Own, Remedy, Result, Setting, Target};
+use hysteron::{AtomicFile, Destination, Error, Model, Own, Remedy, Result, Setting};
 use sha2::{Digest, Sha256};
 
 /// What an FMU is to be.
@@ -79,7 +79,11 @@ pub struct Fmu {
 /// # Errors
 /// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C identifier or a path
 /// that does not end with `.fmu`; [`Error::Core`] for the inverse of a model with weights below zero; [`Error::File`].
-pub fn fmu<'a>(model: &Model, options: &FmuOptions, target: impl Into<Target<'a>>) -> Result<Fmu> {
+pub fn fmu<'a>(
+    model: &Model,
+    options: &FmuOptions,
+    target: impl Into<Destination<'a>>,
+) -> Result<Fmu> {
     let target = target.into();
     let path = target.path();
     crate::refusal::check(model)?;

@@ -8,7 +8,7 @@ use common::reference::Number;
 use common::{Exported, REALS, answers, same, walks};
 use hysteron::{Model, Sign};
 use hysteron_core::{
-    Adaptation, Direction, Estimator, Method, Outcome, Plane, Policy, State, Turn, estimator_len,
+    Adaptation, Direction, Estimator, Method, Outcome, Plane, State, Target, Turn, estimator_len,
     table_len, turn_capacity,
 };
 use hysteron_export::CReal;
@@ -115,21 +115,19 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 6]) -> (Strin
             Call::Compensate(target, heading, tolerance) => {
                 let (target, tolerance) = (of(*target), of(*tolerance));
                 writeln!(commands, "i {} {heading} {}", target.hex(), tolerance.hex()).unwrap();
-                let policy = match heading * if falls { -1 } else { 1 } {
-                    0 => Policy::Hold { tolerance },
-                    way => Policy::Anticipate {
-                        heading: if way > 0 {
-                            Direction::Rising
-                        } else {
-                            Direction::Falling
-                        },
-                        tolerance,
-                    },
+                let heading = match heading * if falls { -1 } else { 1 } {
+                    0 => None,
+                    way if way > 0 => Some(Direction::Rising),
+                    _ => Some(Direction::Falling),
                 };
                 model.rebase(&mut compensator).unwrap();
-                let raw = sign * target - estimator.offset();
+                let raw = Target {
+                    output: sign * target - estimator.offset(),
+                    heading,
+                    tolerance,
+                };
                 let inverse = model.inverse().unwrap();
-                let solution = inverse.step(&mut compensator, raw, policy).unwrap();
+                let solution = inverse.step(&mut compensator, raw).unwrap();
                 let status = match falls {
                     true => solution.status.mirrored(),
                     false => solution.status,

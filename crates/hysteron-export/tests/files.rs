@@ -1,7 +1,7 @@
 //! What is written, and what is refused before anything is.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Model, Operator, Plane, Quantity, Sign, Target};
+use hysteron::{Destination, Model, Operator, Plane, Quantity, Sign};
 use hysteron_export::{COptions, CReal, c};
 use std::path::Path;
 
@@ -126,7 +126,7 @@ fn what_others_wrote_stays() {
     let model = model(20.0, 80.0, [1.0; 3], 0.0);
     let theirs = folder.path().join("some_spring.c");
     std::fs::write(&theirs, "int x;\n").unwrap();
-    let keeping = Target::keeping_foreign(folder.path(), false);
+    let keeping = Destination::keeping_foreign(folder.path(), false);
     let said = c(&model, keeping, &options(CReal::Float)).unwrap_err();
     assert!(said.to_string().contains("some_spring.c"), "{said}");
     assert_eq!(names(folder.path()), ["some_spring.c"]);

@@ -182,7 +182,7 @@ fn the_description_is_well_formed_and_says_what_the_model_says() {
             true => (
                 vec!["strain", "heading"],
                 vec![temperature, "status"],
-                vec!["band", "start_on"],
+                vec!["tolerance", "start_on"],
             ),
         };
         assert_eq!((having("input"), having("output")), (inputs, outputs));

@@ -4,7 +4,7 @@ use crate::error::Raise;
 use crate::model::Model;
 use crate::whole::Whole;
 use crate::word::choice;
-use hysteron::Target;
+use hysteron::Destination;
 use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -69,7 +69,7 @@ impl Model {
         };
         let export = hysteron_export::c(
             &self.inner,
-            Target::keeping_foreign(&folder, false),
+            Destination::keeping_foreign(&folder, false),
             &options,
         )
         .raise()?;

@@ -108,7 +108,7 @@ impl Inverse {
         let model = &self.model.inner;
         let anticipate = choice("policy", policy, &[("hold", false), ("anticipate", true)])?;
         let band = match band {
-            None if anticipate => model.noise_band(),
+            None if anticipate => model.usual_tolerance(),
             None => 0.0,
             Some(band) => width(band)?,
         };

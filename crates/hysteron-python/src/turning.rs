@@ -44,7 +44,7 @@ pub(crate) fn branches<'py>(
     finite("input", input)?;
     let band = match band {
         Some(band) => width(band)?,
-        None => hysteron::noise_band(input),
+        None => hysteron::usual_tolerance(input),
     };
     let found = hysteron::branches(input, band);
     Ok(PyArray1::from_iter(py, found.iter().map(|b| *b as i64)))

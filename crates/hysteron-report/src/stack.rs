@@ -4,7 +4,7 @@ use crate::draw::sheet::Sheet;
 use crate::error::ReportError;
 use crate::frame;
 use crate::png;
-use hysteron::{AtomicFile, AtomicFolder, Own, Target, printable};
+use hysteron::{AtomicFile, AtomicFolder, Destination, Own, printable};
 use maud::{Markup, html};
 use std::path::{Path, PathBuf};
 
@@ -89,7 +89,7 @@ pub(crate) trait Figures {
 
 /// Makes the folder `dir`, lets `write` fill it, and puts it into place whole.
 pub(crate) fn write_folder<'t>(
-    dir: impl Into<Target<'t>>,
+    dir: impl Into<Destination<'t>>,
     write: impl FnOnce(&mut AtomicFolder, &Path) -> Result<Vec<PathBuf>, ReportError>,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let mut folder = AtomicFolder::create(dir, None)?;

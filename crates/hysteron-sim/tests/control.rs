@@ -4,9 +4,9 @@
 mod loops;
 
 use hysteron::control::{
-    Action, Compensator, Controller, Device, Gains, InnerLoop, Reading, Rest, Scheme, Target,
+    Action, Compensator, Controller, Device, Gains, InnerLoop, Reading, Reference, Scheme,
 };
-use hysteron::{Error, Model, Operator, Plane, Sign};
+use hysteron::{Error, Model, Operator, Plane, Policy, Sign};
 use loops::Known;
 
 fn gains(gain: f64, integral_s: f64, derivative_s: f64) -> Gains {
@@ -21,7 +21,7 @@ fn plain() -> Scheme {
     Scheme {
         interval_s: 0.1,
         compensator: None,
-        rest: Rest::Hold,
+        policy: Policy::Hold,
         tolerance: 0.0,
         pid: Some(gains(1.0, 1.0, 0.0)),
         bias: 0.0,
@@ -47,8 +47,8 @@ fn heated() -> Scheme {
     }
 }
 
-fn at(output: f64) -> Target {
-    Target {
+fn at(output: f64) -> Reference {
+    Reference {
         output,
         heading: None,
     }

@@ -5,7 +5,7 @@
 mod loops;
 
 use hysteron::control::{
-    Action, Compensator, Controller, Disturbance, LoopStatus, Scheme, SimulatedPlant, Target,
+    Action, Compensator, Controller, Disturbance, LoopStatus, Reference, Scheme, SimulatedPlant,
 };
 use hysteron::{Adaptive, Model};
 use hysteron_sim::track::PlantOptions;
@@ -135,7 +135,7 @@ fn run(known: &Known, with: With, load_n: f64, course: &Course) -> Run {
             Some(Fault::BelowReach) => reference - far,
             _ => reference,
         };
-        let target = Target {
+        let target = Reference {
             output,
             heading: None,
         };
@@ -259,7 +259,7 @@ fn five_minutes(with: With, high: f64, limit_a: f64) -> (f64, f64, f64) {
     let mut plant = known.plant(5);
     let (mut lifted, mut saturated) = (0.0, 0.0);
     for n in 0..3000 {
-        let target = Target {
+        let target = Reference {
             output: if n < 1500 { high } else { 3.0 },
             heading: None,
         };

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::simulate_from_unknown;
-use crate::model::{BandEvaluation, Inverse, Invert, Model, Start, State};
+use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::Errors;
@@ -128,8 +128,8 @@ fn evaluate_inverse(
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
-    let run = |how: Invert| -> Result<InverseRun> {
-        let solutions = inverse.series(&mut begin.clone(), &recording.output, how)?;
+    let run = |policy: Policy| -> Result<InverseRun> {
+        let solutions = inverse.series(&mut begin.clone(), &recording.output, policy, tolerance)?;
         let missed = |solution: &&Solution<f64>| solution.status.is_out_of_reach();
         let out_of_reach = solutions.iter().filter(missed).count();
         let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();
@@ -141,10 +141,8 @@ fn evaluate_inverse(
             out_of_reach,
         })
     };
-    let band = tolerance;
-    let rows = recording.len();
-    let hold = run(Invert::Hold { band })?;
-    let anticipate = run(Invert::Anticipate { band, rows })?;
+    let hold = run(Policy::Hold)?;
+    let anticipate = run(Policy::Anticipate)?;
     Ok(InverseEvaluation {
         moving,
         hold,

@@ -32,10 +32,10 @@ pub use adapt::{
 };
 #[cfg(feature = "data")]
 pub use data::{
-    Added, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts, Note, NoteKind,
-    Others, Own, Places, ReadOptions, Remark, Repair, Row, STANDARD_OUTPUT, Simulate, TableReader,
-    TableSummary, TableWriter, Target, discard_unfinished, inspect_table, invert_table, printable,
-    refuse_one_file, simulate_table,
+    Added, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts, Destination,
+    Invert, Note, NoteKind, Others, Own, Places, ReadOptions, Remark, Repair, Row, STANDARD_OUTPUT,
+    Simulate, TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table,
+    invert_table, printable, refuse_one_file, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
@@ -43,7 +43,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Policy, Region, Solution, Status, operator_index,
+    Output, Region, Solution, Status, Target, operator_index,
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, advice,
@@ -55,7 +55,7 @@ pub use inspect::{
 };
 pub use model::{
     Band, BandEvaluation, Confidence, Excitation, FirstOrder, FitSummary, INTERVAL, Inverse,
-    Invert, LoadDependence, LoadPart, Model, Plane, Score, Sign, Solver, Start, State,
+    LoadDependence, LoadPart, Model, Plane, Policy, Score, Sign, Solver, Start, State,
     Surroundings, ThermalState, Validation,
 };
 pub use prepare::{
@@ -66,8 +66,8 @@ pub use progress::Progress;
 pub use recording::{Origin, Quantity, Recording, Source};
 pub use remedy::{Remedy, Setting, SettingValue};
 pub use series::{
-    Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, noise_band,
-    range, remembered,
+    Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,
+    remembered, usual_tolerance,
 };
 
 /// The README's code, run as a test.

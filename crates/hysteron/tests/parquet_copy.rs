@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use hysteron::{
-    Invert, Model, Operator, Plane, Sign, Simulate, TableReader, TableWriter, invert_table,
+    Invert, Model, Operator, Plane, Policy, Sign, Simulate, TableReader, TableWriter, invert_table,
     simulate_table,
 };
 use parquet::basic::Compression;
@@ -185,16 +185,18 @@ fn an_inverse_that_looks_ahead_adds_its_columns_too() {
     write(&source, &[30, 70], Compression::SNAPPY, true);
     let mut table = TableReader::open(&source).unwrap();
     let writer = TableWriter::create(Some((&out).into())).unwrap();
-    let how = Invert::Anticipate {
-        band: 0.0,
-        rows: 1000,
+    let how = Invert {
+        target: "x",
+        policy: Policy::Anticipate,
+        tolerance: 0.0,
+        look_ahead: 1000,
     };
-    let counts = invert_table(&model(), &mut table, "x", how, Some(writer), |_| {}).unwrap();
+    let counts = invert_table(&model(), &mut table, how, Some(writer), |_| {}).unwrap();
     assert_eq!(counts.samples, 100);
     let csv = folder.path().join("out.csv");
     let mut table = TableReader::open(&source).unwrap();
     let writer = TableWriter::create(Some((&csv).into())).unwrap();
-    invert_table(&model(), &mut table, "x", how, Some(writer), |_| {}).unwrap();
+    invert_table(&model(), &mut table, how, Some(writer), |_| {}).unwrap();
     let csv = fs::read_to_string(csv).unwrap();
     let (rows, expected) = (read(&out).1, read(&source).1);
     for ((row, before), line) in rows.iter().zip(&expected).zip(csv.lines().skip(1)) {

@@ -155,7 +155,7 @@ fn spikes_are_taken_from_the_two_that_have_them_and_nothing_gets_worse() {
             100.0 * report.input_noise / (input.1 - input.0),
             100.0 * report.output_noise / (output.1 - output.0),
             spikes.input.spikes,
-            report.band.unwrap().false_reversals,
+            report.dead_band.unwrap().false_reversals,
             changed[0],
             changed[1],
         );

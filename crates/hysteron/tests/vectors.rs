@@ -6,7 +6,7 @@ mod make;
 #[path = "../examples/vectors/plain.rs"]
 mod plain;
 
-use hysteron::{Direction, Model, Policy};
+use hysteron::{Direction, Model, Target};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -60,19 +60,15 @@ fn inverse(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
     let mut worst = 0.0_f64;
     let mut inputs = Vec::new();
     for (n, &target) in run.target.iter().enumerate() {
-        let slack = run.tolerance;
-        let policy = match run.heading[n] {
-            0 => Policy::Hold { tolerance: slack },
-            way => Policy::Anticipate {
-                heading: if way > 0 {
-                    Direction::Rising
-                } else {
-                    Direction::Falling
-                },
-                tolerance: slack,
-            },
+        let heading = match run.heading[n] {
+            0 => None,
+            way if way > 0 => Some(Direction::Rising),
+            _ => Some(Direction::Falling),
         };
-        let solution = inverse.step(&mut state, target, policy).unwrap();
+        let wanted = Target::new(target)
+            .heading(heading)
+            .tolerance(run.tolerance);
+        let solution = inverse.step(&mut state, wanted).unwrap();
         assert_eq!(
             solution.status.number(),
             run.status[n],

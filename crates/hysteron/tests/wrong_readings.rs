@@ -2,8 +2,8 @@
 //! over, some in a loop.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::control::{Compensator, Controller, Reading, Rest, Scheme, Target};
-use hysteron::{
+use hysteron::control::{Compensator, Controller, Reading, Reference, Scheme};
+use hysteron::{Policy, 
     AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Progress, Recording, Sign,
     adapt,
 };
@@ -145,7 +145,7 @@ fn a_controller_says_which_reading_was_rejected() {
     let mut controller = Controller::new(Scheme {
         interval_s: 1.0,
         compensator: Some(Compensator::adaptive(adaptive)),
-        rest: Rest::Hold,
+        policy: Policy::Hold,
         tolerance: 0.0,
         pid: None,
         bias: 0.0,
@@ -156,7 +156,7 @@ fn a_controller_says_which_reading_was_rejected() {
         stuck_s: None,
     })
     .unwrap();
-    let target = Target {
+    let target = Reference {
         output: 0.0,
         heading: None,
     };

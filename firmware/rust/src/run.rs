@@ -3,7 +3,7 @@
 use crate::port::{count, depth, note, say};
 use core::hint::black_box;
 use hysteron_core::{
-    Direction, Error, Inverse, Model, Operator, Plane, Policy, Real, State, Turn, table_len,
+    Direction, Error, Inverse, Model, Operator, Plane, Real, State, Target, Turn, table_len,
     turn_capacity,
 };
 
@@ -91,18 +91,17 @@ fn inverse<T: Number>(
     tolerance: T,
 ) -> Result<(T, i8), Error> {
     let negative = line.sign < T::ZERO;
-    let policy = match heading {
-        0 => Policy::Hold { tolerance },
-        way => Policy::Anticipate {
-            heading: if (way > 0) != negative {
-                Direction::Rising
-            } else {
-                Direction::Falling
-            },
-            tolerance,
-        },
+    let heading = match heading {
+        0 => None,
+        way if (way > 0) != negative => Some(Direction::Rising),
+        _ => Some(Direction::Falling),
     };
-    let solution = inverse.step(state, line.sign * (target - line.offset), policy)?;
+    let target = Target {
+        output: line.sign * (target - line.offset),
+        heading,
+        tolerance,
+    };
+    let solution = inverse.step(state, target)?;
     let status = match negative {
         true => solution.status.mirrored(),
         false => solution.status,

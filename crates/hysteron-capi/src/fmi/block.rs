@@ -1,7 +1,7 @@
 //! The two blocks: model and inverse, with offset and sign.
 
 use super::{Problem, Result};
-use hysteron_core::{Clipped, Direction, Model, Policy, Solution, Turn, turn_capacity};
+use hysteron_core::{Clipped, Direction, Model, Solution, Target, Turn, turn_capacity};
 
 pub(crate) type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
 
@@ -34,8 +34,8 @@ pub(crate) struct Inputs {
     pub(crate) signal: f64,
     /// Where the target goes next: 1, −1, or 0 for the policy *hold*.
     pub(crate) heading: i32,
-    /// The policy's tolerance, from 0 on.
-    pub(crate) band: f64,
+    /// How far the target may go back and still be held, from 0 on.
+    pub(crate) tolerance: f64,
     /// Whether all operators are on at the start.
     pub(crate) start_on: bool,
 }
@@ -58,7 +58,7 @@ impl Block {
         Inputs {
             signal,
             heading: 0,
-            band: 0.0,
+            tolerance: 0.0,
             start_on: false,
         }
     }
@@ -97,10 +97,8 @@ impl Block {
                 })
             }
             Kind::Inverse => {
-                let target = self.sign * (inputs.signal - self.offset);
-                let policy = self.policy(inputs);
-                let Solution { input, status } =
-                    self.model.inverse()?.step(state, target, policy)?;
+                let target = self.target(inputs);
+                let Solution { input, status } = self.model.inverse()?.step(state, target)?;
                 let status = match self.sign < 0.0 {
                     true => status.mirrored(),
                     false => status,
@@ -114,19 +112,16 @@ impl Block {
     }
 
     /// For the output without sign.
-    fn policy(&self, inputs: &Inputs) -> Policy<f64> {
-        let tolerance = inputs.band;
+    fn target(&self, inputs: &Inputs) -> Target<f64> {
         let rising = (inputs.heading > 0) == (self.sign > 0.0);
-        match (inputs.heading, rising) {
-            (0, _) => Policy::Hold { tolerance },
-            (_, true) => Policy::Anticipate {
-                heading: Direction::Rising,
-                tolerance,
+        Target {
+            output: self.sign * (inputs.signal - self.offset),
+            heading: match (inputs.heading, rising) {
+                (0, _) => None,
+                (_, true) => Some(Direction::Rising),
+                (_, false) => Some(Direction::Falling),
             },
-            (_, false) => Policy::Anticipate {
-                heading: Direction::Falling,
-                tolerance,
-            },
+            tolerance: inputs.tolerance,
         }
     }
 }

@@ -103,7 +103,7 @@ impl Run {
             self.stop.unwrap_or(f64::INFINITY).to_bits(),
             self.inputs.signal.to_bits(),
             i64::from(self.inputs.heading) as u64,
-            self.inputs.band.to_bits(),
+            self.inputs.tolerance.to_bits(),
             u64::from(self.inputs.start_on),
             self.outputs.signal.to_bits(),
             i64::from(self.outputs.flag) as u64,
@@ -175,7 +175,7 @@ impl Run {
             inputs: Inputs {
                 signal: number(signal),
                 heading: one(heading)?,
-                band: number(band),
+                tolerance: number(band),
                 start_on: *start_on == 1,
             },
             outputs: Outputs {
@@ -185,7 +185,8 @@ impl Run {
             state,
         };
         // Written so that NaN fails it.
-        match run.inputs.band >= 0.0 && run.time.is_finite() && run.outputs.signal.is_finite() {
+        match run.inputs.tolerance >= 0.0 && run.time.is_finite() && run.outputs.signal.is_finite()
+        {
             true => Ok(run),
             false => Err(broken()),
         }

@@ -12,7 +12,7 @@ const RESULT: u32 = 2;
 /// `clipped`, or `status`.
 const FLAG: u32 = 3;
 const HEADING: u32 = 4;
-const BAND: u32 = 5;
+const TOLERANCE: u32 = 5;
 const START_ON: u32 = 6;
 
 /// A type of value that an FMU has variables of.
@@ -28,7 +28,7 @@ impl Value for f64 {
             (TIME, _) => Ok(instance.time()),
             (SIGNAL, _) => Ok(inputs.signal),
             (RESULT, _) => Ok(instance.outputs()?.signal),
-            (BAND, Kind::Inverse) => Ok(inputs.band),
+            (TOLERANCE, Kind::Inverse) => Ok(inputs.tolerance),
             _ => unknown("floating-point", reference),
         }
     }
@@ -38,10 +38,12 @@ impl Value for f64 {
             // What is not finite is refused by the step, which can say so where it matters.
             (SIGNAL, _) => inputs.signal = self,
             // Written so that NaN fails it.
-            (BAND, Kind::Inverse) if self >= 0.0 && self.is_finite() => inputs.band = self,
-            (BAND, Kind::Inverse) => {
+            (TOLERANCE, Kind::Inverse) if self >= 0.0 && self.is_finite() => {
+                inputs.tolerance = self
+            }
+            (TOLERANCE, Kind::Inverse) => {
                 return Err(Problem(format!(
-                    "`band` is {self}: a finite number from 0 on is needed"
+                    "`tolerance` is {self}: a finite number from 0 on is needed"
                 )));
             }
             (TIME | RESULT, _) => return output(reference),

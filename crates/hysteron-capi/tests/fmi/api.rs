@@ -13,7 +13,7 @@ pub const SIGNAL: u32 = 1;
 pub const RESULT: u32 = 2;
 pub const FLAG: u32 = 3;
 pub const HEADING: u32 = 4;
-pub const BAND: u32 = 5;
+pub const TOLERANCE: u32 = 5;
 pub const START_ON: u32 = 6;
 
 /// An FMU in a folder.

@@ -6,7 +6,7 @@ mod misuse;
 mod states;
 
 use api::*;
-use hysteron::{Direction, Model, Policy};
+use hysteron::{Direction, Model, Target};
 use hysteron_export::Fmi;
 
 /// The library's own numbers, to be met bit for bit.
@@ -29,18 +29,13 @@ fn expected(model: &Model, kind: &str, run: &serde_json::Value) -> Vec<(u64, i32
         .into_iter()
         .zip(numbers(run, "heading"));
     let step = |(target, heading): (f64, f64)| {
-        let policy = match heading as i32 {
-            0 => Policy::Hold { tolerance },
-            1 => Policy::Anticipate {
-                heading: Direction::Rising,
-                tolerance,
-            },
-            _ => Policy::Anticipate {
-                heading: Direction::Falling,
-                tolerance,
-            },
+        let heading = match heading as i32 {
+            0 => None,
+            1 => Some(Direction::Rising),
+            _ => Some(Direction::Falling),
         };
-        let solution = inverse.step(&mut state, target, policy).unwrap();
+        let target = Target::new(target).heading(heading).tolerance(tolerance);
+        let solution = inverse.step(&mut state, target).unwrap();
         (
             solution.input.to_bits(),
             i32::from(solution.status.number()),
@@ -74,7 +69,10 @@ fn every_vector_through_both_standards() {
                 let expected = expected(&model, kind, run);
                 let instance = fmu.instance();
                 if kind == "inverse" {
-                    assert_eq!(instance.set(BAND, run["tolerance"].as_f64().unwrap()), 0);
+                    assert_eq!(
+                        instance.set(TOLERANCE, run["tolerance"].as_f64().unwrap()),
+                        0
+                    );
                 }
                 // The first sample is the start input, the others are steps.
                 for (n, wanted) in numbers(run, result).into_iter().enumerate() {
@@ -157,7 +155,7 @@ fn initialisation() {
             (inverse.get(RESULT), inverse.get_integer(FLAG)),
             (Ok(model.plane().bottom()), Ok(0))
         );
-        assert_eq!(inverse.set(BAND, 0.1), 0, "tunable");
+        assert_eq!(inverse.set(TOLERANCE, 0.1), 0, "tunable");
         inverse.free();
     }
 }

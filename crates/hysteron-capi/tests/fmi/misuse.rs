@@ -109,7 +109,7 @@ fn variables_that_are_not_there() {
                 "{reference}"
             );
         }
-        for reference in [TIME, SIGNAL, RESULT, BAND, START_ON, 7] {
+        for reference in [TIME, SIGNAL, RESULT, TOLERANCE, START_ON, 7] {
             assert_eq!(
                 (c.get_integer(reference), c.set_integer(reference, 0)),
                 (Err(3), 3)
@@ -124,13 +124,13 @@ fn variables_that_are_not_there() {
         assert_eq!(c.set_integer(FLAG, 0), 3);
         let allowed = if inverse { 0 } else { 3 };
         assert_eq!(
-            (c.set(BAND, 0.5), c.set_integer(HEADING, -1)),
+            (c.set(TOLERANCE, 0.5), c.set_integer(HEADING, -1)),
             (allowed, allowed)
         );
         assert_eq!(
             (
-                c.set(BAND, -0.5),
-                c.set(BAND, f64::NAN),
+                c.set(TOLERANCE, -0.5),
+                c.set(TOLERANCE, f64::NAN),
                 c.set_integer(HEADING, 2)
             ),
             (3, 3, 3)

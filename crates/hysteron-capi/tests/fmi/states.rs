@@ -22,7 +22,7 @@ fn saving_changes_nothing() {
                 let expected = expected(&model, kind, run);
                 let mut instance = fmu.instance();
                 if kind == "inverse" {
-                    instance.set(BAND, run["tolerance"].as_f64().unwrap());
+                    instance.set(TOLERANCE, run["tolerance"].as_f64().unwrap());
                 }
                 assert_eq!(instance.initialise(0.0), 0);
                 let mut state = null_mut();

@@ -130,5 +130,5 @@ pub(crate) struct Steps {
     pub(crate) lag: Option<Step>,
     /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches), `off`, or the band in its unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
-    pub(crate) band: Option<Step>,
+    pub(crate) dead_band: Option<Step>,
 }

@@ -1,7 +1,7 @@
 //! The command line: its forms, defaults and help.
 
 use clap::{Args, Parser, Subcommand};
-use hysteron::Target;
+use hysteron::Destination;
 use std::path::{Path, PathBuf};
 
 mod adapt;
@@ -103,8 +103,8 @@ pub(crate) struct Force {
 
 impl Force {
     /// A place for a result, which replaces none of the files that are read.
-    pub(crate) fn target<'a>(&self, path: &'a Path, inputs: &'a [&'a Path]) -> Target<'a> {
-        Target::keeping_foreign(path, self.force).made_from(inputs)
+    pub(crate) fn target<'a>(&self, path: &'a Path, inputs: &'a [&'a Path]) -> Destination<'a> {
+        Destination::keeping_foreign(path, self.force).made_from(inputs)
     }
 }
 
@@ -207,8 +207,8 @@ pub(crate) struct Invert {
     pub(crate) policy: Policy,
     /// Reversals of the target up to this size are noise and not followed, in its unit
     /// [default: 0 with `hold`, 1 % of the model's range with `anticipate`]
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_band)]
-    pub(crate) band: Option<f64>,
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_tolerance)]
+    pub(crate) tolerance: Option<f64>,
     /// With `anticipate`: rows to look ahead for the next reversal
     #[arg(long, value_name = "N", default_value_t = 65_536)]
     pub(crate) look_ahead: usize,

@@ -153,12 +153,12 @@ pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "a number of bytes is needed, such as 512M or 8G".into())
 }
 
-pub(super) fn parse_band(text: &str) -> Result<f64, String> {
-    let band = parse_finite(text)?;
-    if band < 0.0 {
+pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = parse_finite(text)?;
+    if tolerance < 0.0 {
         return Err("it must not be below zero".into());
     }
-    Ok(band)
+    Ok(tolerance)
 }
 
 pub(super) fn parse_levels(text: &str) -> Result<usize, String> {

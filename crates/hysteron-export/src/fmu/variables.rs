@@ -156,7 +156,7 @@ fn heading() -> Variable {
 
 fn band(output: &Quantity) -> Variable {
     Variable {
-        name: "band".into(),
+        name: "tolerance".into(),
         reference: 5,
         causality: "parameter",
         variability: "tunable",

@@ -1,7 +1,7 @@
 //! The core in the same number type: what every digit is compared with.
 
 use hysteron::{Model, Sign};
-use hysteron_core::{Direction, Plane, Policy, Real, State, Turn, table_len, turn_capacity};
+use hysteron_core::{Direction, Plane, Real, State, Target, Turn, table_len, turn_capacity};
 use std::fmt::Write;
 
 /// A number type with its bits as text.
@@ -109,21 +109,19 @@ impl<T: Number> Reference<T> {
 
     pub fn inverse(&mut self, target: T, heading: i32, tolerance: T) -> Result<(T, i32), i32> {
         let falls = self.sign == Sign::Negative;
-        let policy = match if falls { -heading } else { heading } {
-            0 => Policy::Hold { tolerance },
-            1 => Policy::Anticipate {
-                heading: Direction::Rising,
-                tolerance,
-            },
-            -1 => Policy::Anticipate {
-                heading: Direction::Falling,
-                tolerance,
-            },
+        let heading = match if falls { -heading } else { heading } {
+            0 => None,
+            1 => Some(Direction::Rising),
+            -1 => Some(Direction::Falling),
             _ => return Err(103),
         };
-        let raw = self.sign() * (target - self.offset);
+        let raw = Target {
+            output: self.sign() * (target - self.offset),
+            heading,
+            tolerance,
+        };
         let inverse = self.model.inverse().map_err(|e| e.code())?;
-        let solution = inverse.step(&mut self.state, raw, policy);
+        let solution = inverse.step(&mut self.state, raw);
         let solution = solution.map_err(|e| e.code())?;
         let status = match falls {
             true => solution.status.mirrored(),

@@ -118,7 +118,7 @@ fn split(folder: &Path) -> Result<(Plane, Vec<Recording>)> {
         resample: Step::Off,
         low_pass: Step::Off,
         lag: Step::Off,
-        band: Step::Off,
+        dead_band: Step::Off,
     };
     let (whole, _) = prepare(&raw, &steps, Progress::NONE)?;
     let ((low, high), _) = whole.ranges();

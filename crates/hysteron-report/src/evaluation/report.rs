@@ -7,7 +7,7 @@ use crate::stack::{self, Figures};
 use hysteron::Evaluation;
 use hysteron::Model;
 use hysteron::Recording;
-use hysteron::{AtomicFolder, Target};
+use hysteron::{AtomicFolder, Destination};
 use std::path::{Path, PathBuf};
 
 /// An evaluation of a model on a recording, to be shown.
@@ -37,7 +37,7 @@ impl Report<'_> {
     ///
     /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
-    pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
+    pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
         stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }
 

@@ -4,7 +4,7 @@ use super::view::View;
 use crate::error::ReportError;
 use crate::stack::{self, Figures};
 use hysteron::control::Trace;
-use hysteron::{AtomicFolder, Plane, Quantity, Target};
+use hysteron::{AtomicFolder, Destination, Plane, Quantity};
 use std::path::{Path, PathBuf};
 
 /// One controller's run.
@@ -104,7 +104,7 @@ impl TrackReport<'_> {
     /// [`ReportError::NoRun`], [`ReportError::EmptyRun`], [`ReportError::RunLength`], [`ReportError::Snapshot`] and
     /// [`ReportError::Row`] where the parts do not fit together, before anything is written;
     /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
-    pub fn write<'t>(&self, dir: impl Into<Target<'t>>) -> Result<Vec<PathBuf>, ReportError> {
+    pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
         stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }
 

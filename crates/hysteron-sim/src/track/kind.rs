@@ -1,6 +1,6 @@
 //! The controllers that can be compared.
 
-use hysteron::control::Rest;
+use hysteron::Policy;
 use serde::Deserialize;
 
 /// A controller of the comparison.
@@ -72,12 +72,12 @@ impl Kind {
         matches!(self, Self::AdaptivePid | Self::AdaptivePidAnticipate)
     }
 
-    pub(super) fn rest(self) -> Rest {
+    pub(super) fn policy(self) -> Policy {
         match self {
             Self::InverseAnticipate | Self::InversePidAnticipate | Self::AdaptivePidAnticipate => {
-                Rest::Anticipate
+                Policy::Anticipate
             }
-            _ => Rest::Hold,
+            _ => Policy::Hold,
         }
     }
 }

@@ -179,7 +179,7 @@ fn base(scenario: &Scenario) -> Result<Scheme> {
     Ok(Scheme {
         interval_s: scenario.interval_s,
         compensator: None,
-        rest: hysteron::control::Rest::Hold,
+        policy: hysteron::Policy::Hold,
         tolerance: scenario.shared.tolerance,
         pid: None,
         bias: truth
@@ -211,7 +211,7 @@ fn controller(
     };
     Controller::new(Scheme {
         compensator,
-        rest: kind.rest(),
+        policy: kind.policy(),
         pid: gains.filter(|_| kind.has_pid()),
         ..scheme.clone()
     })

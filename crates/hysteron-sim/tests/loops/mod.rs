@@ -1,8 +1,8 @@
 //! Loops on the simulated plants, for the tests of control, faults and comparisons.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use hysteron::control::{Gains, InnerLoop, Rest, Scheme, SimulatedPlant};
-use hysteron::{Model, Progress};
+use hysteron::control::{Gains, InnerLoop, Scheme, SimulatedPlant};
+use hysteron::{Model, Policy, Progress};
 use hysteron_sim::track::{Scenario, track};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -121,7 +121,7 @@ impl Known {
         Scheme {
             interval_s: self.scenario.interval_s,
             compensator: None,
-            rest: Rest::Hold,
+            policy: Policy::Hold,
             tolerance: self.scenario.shared.tolerance,
             pid: Some(self.gains),
             bias: plane.bottom(),

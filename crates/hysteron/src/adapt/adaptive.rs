@@ -7,7 +7,7 @@ use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
     Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
 };
-use hysteron_core::{Policy, Solution};
+use hysteron_core::{Solution, Target};
 
 /// A [`Model`] whose weights and offset follow the plant, with the state that it runs in.
 ///
@@ -151,17 +151,10 @@ impl Adaptive {
     ///
     /// # Errors
     /// [`Error::Core`] for a target that is not finite; nothing is changed then.
-    pub fn solve(&mut self, target: f64, policy: Policy<f64>) -> Result<Solution<f64>> {
+    pub fn solve(&mut self, target: Target<f64>) -> Result<Solution<f64>> {
         let offset = self.estimator.offset();
         let core = &self.core;
-        invert(
-            core,
-            self.offline.sign(),
-            offset,
-            &mut self.wanted,
-            target,
-            policy,
-        )
+        invert(core, self.offline.sign(), offset, &mut self.wanted, target)
     }
 
     /// Lets the inverse set out from where the measured input is. Turning points that were asked for by weights long changed
@@ -177,11 +170,10 @@ impl Adaptive {
     pub(crate) fn solve_from(
         &self,
         state: &mut State,
-        target: f64,
-        policy: Policy<f64>,
+        target: Target<f64>,
     ) -> Result<Solution<f64>> {
         let offset = self.estimator.offset();
-        invert(&self.core, self.sign(), offset, state, target, policy)
+        invert(&self.core, self.sign(), offset, state, target)
     }
 
     /// The weights as they are now, row by row.
@@ -282,12 +274,11 @@ fn invert(
     sign: Sign,
     offset: f64,
     state: &mut State,
-    target: f64,
-    policy: Policy<f64>,
+    target: Target<f64>,
 ) -> Result<Solution<f64>> {
-    let raw = sign.factor() * target - offset;
+    let raw = sign.factor() * target.output - offset;
     core.rebase(state)?;
-    let solution = core.inverse()?.step(state, raw, sign.inward(policy))?;
+    let solution = core.inverse()?.step(state, sign.inward(target, raw))?;
     Ok(sign.outward(solution))
 }
 

@@ -10,7 +10,7 @@ use crate::adapt::Adaptive;
 use crate::error::Result;
 use crate::model::{Model, Sign, State};
 use crate::series::Turning;
-use hysteron_core::{Direction, Outcome, Policy, Solution};
+use hysteron_core::{Direction, Outcome, Solution, Target};
 
 /// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
 /// inverse goes back across the dead band only for a difference of this many tolerances.
@@ -123,16 +123,14 @@ impl Compensator {
             Some((branch, _)) => rises != (branch == Direction::Rising),
             None => false,
         };
-        let policy = match heading {
-            Some(heading) => Policy::Anticipate { heading, tolerance },
-            None if turned => Policy::Hold { tolerance },
-            None => Policy::Hold {
-                tolerance: NOT_TURNED * tolerance,
-            },
+        let tolerance = match heading {
+            None if !turned => NOT_TURNED * tolerance,
+            _ => tolerance,
         };
+        let target = Target::new(target).heading(heading).tolerance(tolerance);
         match &self.kind {
-            Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target, policy),
-            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, target, policy),
+            Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target),
+            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, target),
         }
     }
 

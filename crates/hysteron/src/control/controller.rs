@@ -2,13 +2,14 @@
 
 use super::pid::limited;
 use super::watch::{Sight, Watch};
-use super::{LoopStatus, Pid, Reading, Rest, Scheme};
+use super::{LoopStatus, Pid, Reading, Scheme};
 use crate::error::Result;
+use crate::model::Policy;
 use hysteron_core::{Direction, Outcome};
 
 /// What the output should be, and where it goes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
+pub struct Reference {
     /// The output wanted now.
     pub output: f64,
     /// Where it goes next, where that is known; *anticipate* needs it.
@@ -36,7 +37,7 @@ pub struct Action {
 /// from the input's sensor the loop inside holds the drive for [`Scheme::stuck_s`] and then goes to the lowest one.
 ///
 /// ```
-/// use hysteron::control::{Controller, Device, Gains, Reading, Rest, Scheme, Target};
+/// use hysteron::control::{Controller, Device, Gains, Reading, Scheme, Reference};
 ///
 /// /// A motor on a spring, as its driver would show it: volts in, millimetres out.
 /// struct Stage { volts: f64, mm: f64 }
@@ -52,21 +53,12 @@ pub struct Action {
 /// }
 ///
 /// let mut controller = Controller::new(Scheme {
-///     interval_s: 0.01,
-///     compensator: None,
-///     rest: Rest::Hold,
-///     tolerance: 0.0,
 ///     pid: Some(Gains { gain: 2.0, integral_s: 0.1, derivative_s: 0.0 }),
-///     bias: 0.0,
-///     commands: (0.0, 10.0),
-///     drives: (0.0, 10.0),
-///     inner: None,
-///     filter_s: 0.0,
-///     stuck_s: None,
+///     ..Scheme::new(0.01, (0.0, 10.0))
 /// })?;
 /// let mut device = Stage { volts: 0.0, mm: 0.0 };
 /// for _ in 0..500 {
-///     let action = controller.step(Target { output: 3.0, heading: None }, device.read())?;
+///     let action = controller.step(Reference { output: 3.0, heading: None }, device.read())?;
 ///     device.write(action.drive);
 ///     // here a real loop waits for its next sample
 /// }
@@ -116,7 +108,7 @@ impl Controller {
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
-    pub fn step(&mut self, target: Target, reading: Reading) -> Result<Action> {
+    pub fn step(&mut self, target: Reference, reading: Reading) -> Result<Action> {
         refuse_not_finite(target.output)?;
         let (output, input) = self.read(reading);
         let mut status = LoopStatus::default();
@@ -209,14 +201,14 @@ impl Controller {
 
     fn command(
         &mut self,
-        target: Target,
+        target: Reference,
         measured: Option<f64>,
         status: &mut LoopStatus,
     ) -> Result<f64> {
         let scheme = &mut self.scheme;
-        let heading = match scheme.rest {
-            Rest::Anticipate => target.heading,
-            Rest::Hold => None,
+        let heading = match scheme.policy {
+            Policy::Anticipate => target.heading,
+            Policy::Hold => None,
         };
         let feedforward = match &mut scheme.compensator {
             Some(compensator) => {

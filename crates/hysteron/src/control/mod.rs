@@ -6,9 +6,9 @@
 //! An inverse in front of an actuator that it was identified from, and a PID that takes what is left:
 //!
 //! ```
-//! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Rest, Scheme, SimulatedPlant, run};
+//! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run};
 //! use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions};
-//! use hysteron::{FitOptions, Recording, fit};
+//! use hysteron::{Fit, Progress, Recording};
 //!
 //! let new = || PreisachPlant::new(&PreisachPlantOptions::default()); // volts in, µm out
 //! let (mut plant, mut input, mut output) = (new()?, Vec::new(), Vec::new());
@@ -20,20 +20,15 @@
 //!     input.extend(truth.input);
 //!     output.push(truth.output);
 //! }
-//! let model = Fit::from(FitOptions::default()).run(&Recording::new(input, output)?)?;
+//! let model = Fit::new().bootstrap(0).run(&Recording::new(input, output)?)?;
 //!
 //! let mut controller = Controller::new(Scheme {
-//!     interval_s: 0.01,
 //!     compensator: Some(Compensator::fixed(model)?),
-//!     rest: Rest::Hold,
 //!     tolerance: 0.5,
 //!     pid: Some(Gains { gain: 0.2, integral_s: 0.05, derivative_s: 0.0 }),
-//!     bias: 0.0,
-//!     commands: (0.0, 150.0),
-//!     drives: (0.0, 150.0),
-//!     inner: None,
 //!     filter_s: 0.01,
 //!     stuck_s: Some(0.15),
+//!     ..Scheme::new(0.01, (0.0, 150.0))
 //! })?;
 //! let reference: Vec<f64> = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos()).collect();
 //! let course = Course { reference: &reference, headings: &[], events: &[] };
@@ -55,10 +50,10 @@ mod tuning;
 mod watch;
 
 pub use compensator::Compensator;
-pub use controller::{Action, Controller, Target};
+pub use controller::{Action, Controller, Reference};
 pub use device::{Device, Disturbance, Reading, SimulatedPlant};
 pub use pid::{Gains, Pid};
 pub use run::{Course, run};
-pub use scheme::{InnerLoop, Rest, Scheme};
+pub use scheme::{InnerLoop, Scheme};
 pub use trace::{LoopStatus, Snapshot, Trace};
 pub use tuning::RelayTest;

@@ -1,6 +1,6 @@
 //! A controller on a simulated plant, sample by sample.
 
-use super::{Controller, Disturbance, SimulatedPlant, Target, Trace};
+use super::{Controller, Disturbance, Reference, SimulatedPlant, Trace};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
@@ -41,7 +41,7 @@ pub fn run(
         let truth = plant.truth();
         let reading = plant.read();
         let heading = course.headings.get(n).copied().flatten();
-        let action = controller.step(Target { output, heading }, reading)?;
+        let action = controller.step(Reference { output, heading }, reading)?;
         plant.write(action.drive);
         plant.advance(controller.interval_s());
         trace.record(count, output, (reading, truth), (controller, &action));

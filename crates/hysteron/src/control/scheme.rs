@@ -2,17 +2,7 @@
 
 use super::{Compensator, Gains};
 use crate::error::{Error, Result};
-
-/// What the inverse does where the target rests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rest {
-    /// The input rests too (equation 14).
-    #[default]
-    Hold,
-    /// The input crosses the dead band as soon as it is known that the target reverses.
-    Anticipate,
-}
+use crate::model::Policy;
 
 /// The loop inside, which brings the input (a temperature) to the one commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +21,7 @@ pub struct Scheme {
     /// The model, for feedforward through its inverse.
     pub compensator: Option<Compensator>,
     /// What the inverse does where the target rests.
-    pub rest: Rest,
+    pub policy: Policy,
     /// Reversals of the target up to this size are not followed by the inverse, in the output's unit.
     pub tolerance: f64,
     /// Feedback of the output, added to the feedforward.
@@ -53,6 +43,25 @@ pub struct Scheme {
 }
 
 impl Scheme {
+    /// A loop that samples every `interval_s` and commands inputs within `commands`, which are the
+    /// drive too. Without a model, feedback or filter: set the fields that differ.
+    #[must_use]
+    pub fn new(interval_s: f64, commands: (f64, f64)) -> Self {
+        Self {
+            interval_s,
+            compensator: None,
+            policy: Policy::Hold,
+            tolerance: 0.0,
+            pid: None,
+            bias: commands.0,
+            commands,
+            drives: commands,
+            inner: None,
+            filter_s: 0.0,
+            stuck_s: None,
+        }
+    }
+
     /// Refuses numbers that no loop can run with.
     ///
     /// # Errors

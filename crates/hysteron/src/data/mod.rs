@@ -14,10 +14,10 @@ mod trace;
 
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
 pub use output::{
-    Added, AtomicFile, AtomicFolder, Cell, Own, STANDARD_OUTPUT, TableWriter, Target,
+    Added, AtomicFile, AtomicFolder, Cell, Destination, Own, STANDARD_OUTPUT, TableWriter,
     discard_unfinished, refuse_one_file,
 };
 pub use printable::printable;
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
-pub use run::{Counts, Simulate, invert_table, simulate_table};
+pub use run::{Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, ReadOptions, Remark, Row, TableReader};

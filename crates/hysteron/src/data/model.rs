@@ -2,7 +2,7 @@
 
 use crate::data::output::AtomicFile;
 use crate::data::output::is_our_model;
-use crate::data::output::{Own, Target};
+use crate::data::output::{Destination, Own};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use std::path::Path;
@@ -32,7 +32,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn write<'a>(&self, target: impl Into<Target<'a>>) -> Result<()> {
+    pub fn write<'a>(&self, target: impl Into<Destination<'a>>) -> Result<()> {
         Self::file(target)?.commit_with(self.to_json().as_bytes())
     }
 
@@ -40,7 +40,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn file<'a>(target: impl Into<Target<'a>>) -> Result<AtomicFile> {
+    pub fn file<'a>(target: impl Into<Destination<'a>>) -> Result<AtomicFile> {
         AtomicFile::create(target, Own::Marked(is_our_model))
     }
 }

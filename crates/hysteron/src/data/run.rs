@@ -3,11 +3,11 @@
 use crate::data::output::{Added, Cell, TableWriter};
 use crate::data::table::TableReader;
 use crate::data::table::{Column, Row};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Band, FirstOrder, Inverse, LoadDependence, Model, State, ThermalState};
-use crate::model::{Invert, anticipate, needs_time};
+use crate::model::{Policy, needs_time};
 use crate::series::Headings;
-use hysteron_core::{Direction, Policy, Status};
+use hysteron_core::{Direction, Status, Target};
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -102,7 +102,7 @@ impl<'m> Loaded<'m> {
             };
         };
         let Some(load) = load else {
-            return Err(crate::error::Error::Fit(format!(
+            return Err(Error::Fit(format!(
                 "the model depends on the load `{}`: name its column, or take the model at one load",
                 dependence.quantity.name
             )));
@@ -164,48 +164,59 @@ impl Heating {
     }
 }
 
+/// What an inversion reads from a table, and how it is done.
+#[derive(Debug, Clone, Copy)]
+pub struct Invert<'a> {
+    /// Column of the output wanted.
+    pub target: &'a str,
+    /// What the input does where the target rests.
+    pub policy: Policy,
+    /// Reversals of the target up to this size are not followed, in its unit.
+    pub tolerance: f64,
+    /// Rows to look ahead at most for [`Policy::Anticipate`]; further on the input rests.
+    pub look_ahead: usize,
+}
+
 /// Copies `table` to `out`, which is ended, with the columns `input_model` and `status`, the input that gives the
-/// target in column `target`, from every operator off. `progress` is told the bytes read.
+/// wanted output, from every operator off. `progress` is told the bytes read.
 ///
 /// # Errors
 /// As [`simulate_table`], and [`crate::Error::Core`] for a model with weights below zero.
 pub fn invert_table(
     model: &Model,
     table: &mut TableReader,
-    target: &str,
-    how: Invert,
+    what: Invert<'_>,
     out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let column = table.column(target)?;
+    let column = table.column(what.target)?;
     let mut inverting = Inverting {
         inverse: model.inverse()?,
         state: model.start(),
+        tolerance: what.tolerance,
         sink: Sink::start(
             table,
             out,
             &[Added::Numbers("input_model"), Added::Words("status")],
         )?,
     };
-    match how {
-        Invert::Hold { band } => {
-            let policy = Policy::Hold { tolerance: band };
+    match what.policy {
+        Policy::Hold => {
             while table.advance()? {
                 let target = table.number(column)?;
-                inverting.row(table.row(), target, policy)?;
+                inverting.row(table.row(), target, None)?;
                 progress(table.bytes_read());
             }
         }
-        Invert::Anticipate { band, rows } => {
+        Policy::Anticipate => {
             let mut waiting: VecDeque<(Row, f64)> = VecDeque::new();
-            let mut headings = Headings::new(band, rows);
+            let mut headings = Headings::new(what.tolerance, what.look_ahead);
             let mut release =
                 |waiting: &mut VecDeque<(Row, f64)>, heading: Option<Direction>, count: usize| {
-                    let policy = anticipate(heading, band);
                     for (row, target) in waiting.drain(..count) {
-                        inverting.row(&row, target, policy)?;
+                        inverting.row(&row, target, heading)?;
                     }
-                    Ok::<(), crate::error::Error>(())
+                    Ok::<(), Error>(())
                 };
             while table.advance()? {
                 let target = table.number(column)?;
@@ -225,12 +236,16 @@ pub fn invert_table(
 struct Inverting<'m> {
     inverse: Inverse<'m>,
     state: State,
+    tolerance: f64,
     sink: Sink,
 }
 
 impl Inverting<'_> {
-    fn row(&mut self, row: &Row, target: f64, policy: Policy<f64>) -> Result<()> {
-        let solution = self.inverse.step(&mut self.state, target, policy)?;
+    fn row(&mut self, row: &Row, target: f64, heading: Option<Direction>) -> Result<()> {
+        let target = Target::new(target)
+            .heading(heading)
+            .tolerance(self.tolerance);
+        let solution = self.inverse.step(&mut self.state, target)?;
         let hysteron_core::Solution { input, status } = solution;
         match status {
             Status::Ok => {}

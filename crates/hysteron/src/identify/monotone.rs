@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::model::Sign;
 use crate::recording::Recording;
 use crate::series::headings;
-use crate::series::noise_band;
+use crate::series::usual_tolerance;
 use hysteron_core::Direction;
 
 /// From here on the output goes against the input on so much of its way that no monotone model can follow: an
@@ -30,8 +30,8 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// [`crate::Error::Recording`] for a recording that cannot be worked with.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    let band = noise_band(&recording.output);
-    let headings = headings(&recording.input, noise_band(&recording.input));
+    let band = usual_tolerance(&recording.output);
+    let headings = headings(&recording.input, usual_tolerance(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);
     let mut held = recording.output[0];
     for (&y, heading) in recording.output.iter().zip(headings) {

@@ -1,10 +1,11 @@
 //! The inverse of a model in its own units: of one target, and of a series of them.
 
 use crate::error::{Error, Result};
-use crate::model::policy::Invert;
+use crate::model::policy::Policy;
 use crate::model::{Model, Sign, State};
 use crate::remedy::{Remedy, Setting};
-use hysteron_core::{Direction, Policy, Solution};
+use crate::series::headings;
+use hysteron_core::{Direction, Solution, Target};
 
 impl Model {
     /// The inverse of this model.
@@ -32,17 +33,17 @@ impl Model {
 }
 
 impl Sign {
-    /// A policy for the output without sign.
-    pub(crate) fn inward(self, policy: Policy<f64>) -> Policy<f64> {
-        match policy {
-            Policy::Anticipate { heading, tolerance } if self == Sign::Negative => {
-                let heading = match heading {
-                    Direction::Rising => Direction::Falling,
-                    Direction::Falling => Direction::Rising,
-                };
-                Policy::Anticipate { heading, tolerance }
-            }
-            other => other,
+    /// The target for the output without sign, which is then `output`.
+    pub(crate) fn inward(self, target: Target<f64>, output: f64) -> Target<f64> {
+        let heading = match (self, target.heading) {
+            (Sign::Negative, Some(Direction::Rising)) => Some(Direction::Falling),
+            (Sign::Negative, Some(Direction::Falling)) => Some(Direction::Rising),
+            (_, heading) => heading,
+        };
+        Target {
+            output,
+            heading,
+            tolerance: target.tolerance,
         }
     }
 
@@ -71,29 +72,26 @@ impl Inverse<'_> {
     ///
     /// # Errors
     /// [`Error::Core`] for a target that is not finite or a state of another model; the state is then as it was.
-    pub fn step(
-        &self,
-        state: &mut State,
-        target: f64,
-        policy: Policy<f64>,
-    ) -> Result<Solution<f64>> {
+    pub fn step(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
         let sign = self.model.sign();
-        let raw = sign.factor() * (target - self.model.offset());
-        let solution = self.core.step(state, raw, sign.inward(policy))?;
+        let raw = sign.factor() * (target.output - self.model.offset());
+        let solution = self.core.step(state, sign.inward(target, raw))?;
         Ok(sign.outward(solution))
     }
 
-    /// Finds the inputs for a series of targets, one solution for each, and moves `state` through them.
+    /// Finds the inputs for a series of targets that is known as a whole, and moves `state` through
+    /// them. Reversals of the target up to `tolerance` are not followed.
     ///
     /// # Errors
-    /// [`Error::Core`] with the place of a target that is not finite, or for a state of another model; the state is then as it was.
+    /// [`Error::Core`] with the place of a target that is not finite, or for a state of another
+    /// model; the state is then as it was.
     ///
     /// ```
-    /// use hysteron::{Invert, Model, Operator, Plane, Sign};
+    /// use hysteron::{Model, Operator, Plane, Policy, Sign};
     /// let plane = Plane::new(20.0, 80.0, 3)?;
     /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
     /// let wanted = [0.0, 2.0, 5.0, 3.0];
-    /// let solutions = model.inverse()?.series(&mut model.start(), &wanted, Invert::Hold { band: 0.0 })?;
+    /// let solutions = model.inverse()?.series(&mut model.start(), &wanted, Policy::Hold, 0.0)?;
     /// let inputs: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();
     /// let reached = model.simulate(&inputs)?;
     /// assert!(wanted.iter().zip(&reached).all(|(y, found)| (y - found).abs() < 1e-12));
@@ -103,24 +101,29 @@ impl Inverse<'_> {
         &self,
         state: &mut State,
         targets: &[f64],
-        how: Invert,
+        policy: Policy,
+        tolerance: f64,
     ) -> Result<Vec<Solution<f64>>> {
-        self.through(state, targets, how.policies(targets))
+        let headings = match policy {
+            Policy::Hold => Vec::new(),
+            Policy::Anticipate => headings(targets, tolerance),
+        };
+        self.headed(state, targets, &headings, tolerance)
     }
 
-    /// As [`Inverse::series`], told at each target where it goes next; it rests where that is `None` or `headings` is shorter.
-    /// Reversals of the target up to `band` are not followed.
+    /// As [`Inverse::series`], told at each target where it goes next; a target is held where that
+    /// is `None` or `headings` is shorter.
     ///
     /// # Errors
     /// As [`Inverse::series`].
     ///
     /// ```
-    /// use hysteron::{Invert, Model, Operator, Plane, Sign, headings};
+    /// use hysteron::{Model, Operator, Plane, Policy, Sign, headings};
     /// let plane = Plane::new(20.0, 80.0, 3)?;
     /// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
     /// let (inverse, wanted) = (model.inverse()?, [0.0, 5.0, 5.0, 3.0]);
     /// let told = inverse.headed(&mut model.start(), &wanted, &headings(&wanted, 0.0), 0.0)?;
-    /// let found = inverse.series(&mut model.start(), &wanted, Invert::Anticipate { band: 0.0, rows: 4 })?;
+    /// let found = inverse.series(&mut model.start(), &wanted, Policy::Anticipate, 0.0)?;
     /// assert_eq!(told, found);
     /// # Ok::<(), hysteron::Error>(())
     /// ```
@@ -129,36 +132,36 @@ impl Inverse<'_> {
         state: &mut State,
         targets: &[f64],
         headings: &[Option<Direction>],
-        band: f64,
+        tolerance: f64,
     ) -> Result<Vec<Solution<f64>>> {
-        let told = headings.iter().copied().chain(std::iter::repeat(None));
-        let policies = told.map(|heading| match heading {
-            Some(heading) => Policy::Anticipate {
+        let headings = headings.iter().copied().chain(std::iter::repeat(None));
+        let wanted = targets
+            .iter()
+            .zip(headings)
+            .map(|(&output, heading)| Target {
+                output,
                 heading,
-                tolerance: band,
-            },
-            None => Policy::Hold { tolerance: band },
-        });
-        self.through(state, targets, policies)
+                tolerance,
+            });
+        self.through(state, &wanted.collect::<Vec<_>>())
     }
 
-    /// As [`Inverse::series`], with a policy for each target.
+    /// As [`Inverse::series`], with a heading and a tolerance for each target.
     ///
     /// # Errors
     /// As [`Inverse::series`].
     pub fn through(
         &self,
         state: &mut State,
-        targets: &[f64],
-        policies: impl IntoIterator<Item = Policy<f64>>,
+        targets: &[Target<f64>],
     ) -> Result<Vec<Solution<f64>>> {
-        let finite = |target: &f64| (target - self.model.offset()).is_finite();
+        let finite = |target: &Target<f64>| (target.output - self.model.offset()).is_finite();
         if let Some(index) = targets.iter().position(|target| !finite(target)) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }
-        let steps = targets.iter().zip(policies);
-        steps
-            .map(|(&target, policy)| self.step(state, target, policy))
+        targets
+            .iter()
+            .map(|&target| self.step(state, target))
             .collect()
     }
 }

@@ -20,8 +20,7 @@ pub use excitation::Excitation;
 pub use inverse::Inverse;
 pub use load::{LoadDependence, LoadPart};
 pub(crate) use load::{bernstein, no_load};
-pub use policy::Invert;
-pub(crate) use policy::anticipate;
+pub use policy::Policy;
 pub use summary::{FitSummary, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Score, Validation};
@@ -61,7 +60,7 @@ impl Sign {
 /// A model of an actuator: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation (2).
 ///
 /// ```
-/// use hysteron::{Model, Operator, Plane, Policy, Sign};
+/// use hysteron::{Model, Operator, Plane, Target, Sign};
 /// let plane = Plane::new(20.0, 80.0, 3)?;
 /// let weights = vec![1.0, 0.5, 1.0, 0.0, 0.5, 1.0]; // row by row: j = 1…K, i = 1…j
 /// let model = Model::new(Operator::Mkp, plane, weights, 10.0, Sign::Positive)?;
@@ -70,7 +69,7 @@ impl Sign {
 ///
 /// let inverse = model.inverse()?;
 /// let mut state = model.start();
-/// let solution = inverse.step(&mut state, 12.5, Policy::HOLD)?;
+/// let solution = inverse.step(&mut state, Target::new(12.5))?;
 /// assert!((model.simulate(&[solution.input])?[0] - 12.5).abs() < 1e-12);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
@@ -181,7 +180,7 @@ impl Model {
 
     /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of the output's range.
     #[must_use]
-    pub fn noise_band(&self) -> f64 {
+    pub fn usual_tolerance(&self) -> f64 {
         let (off, on) = self.output_range();
         crate::series::NOISE * (on - off).abs()
     }

@@ -1,43 +1,14 @@
-//! What the inverse does where the target rests, over a series.
+//! What the inverse does where the target rests.
 
-use crate::series::Headings;
-use hysteron_core::{Direction, Policy};
+use serde::{Deserialize, Serialize};
 
-/// How a table of targets is inverted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Invert {
-    /// The input rests while the target rests.
-    Hold {
-        /// Reversals of the target up to this size are not followed, in its unit.
-        band: f64,
-    },
-    /// The dead band is crossed as soon as the target is known to reverse.
-    Anticipate {
-        /// Reversals of the target up to this size are not followed, in its unit.
-        band: f64,
-        /// How many rows to look ahead at most; further on the input rests.
-        rows: usize,
-    },
-}
-
-impl Invert {
-    /// The policy for each target of a series.
-    #[must_use]
-    pub fn policies(self, targets: &[f64]) -> Vec<Policy<f64>> {
-        match self {
-            Invert::Hold { band } => vec![Policy::Hold { tolerance: band }; targets.len()],
-            Invert::Anticipate { band, rows } => {
-                let headings = Headings::new(band, rows).all(targets).into_iter();
-                headings.map(|heading| anticipate(heading, band)).collect()
-            }
-        }
-    }
-}
-
-/// The policy towards a reversal, or at rest where none is in sight.
-pub(crate) fn anticipate(heading: Option<Direction>, tolerance: f64) -> Policy<f64> {
-    match heading {
-        Some(heading) => Policy::Anticipate { heading, tolerance },
-        None => Policy::Hold { tolerance },
-    }
+/// What the inverse does where the target rests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Policy {
+    /// The input rests too (equation 14).
+    #[default]
+    Hold,
+    /// The input crosses the dead band as soon as it is known that the target reverses.
+    Anticipate,
 }

@@ -8,7 +8,7 @@ use super::noise::resolution;
 use crate::series::Turning;
 use hysteron_core::Direction;
 
-/// Makes `values` monotone between reversals of more than `band`, in place. No value moves by more than half the band.
+/// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by more than half the band.
 pub(super) fn settle(values: &mut [f64], band: f64) {
     let mut turning = Turning::new(band);
     let turns: Vec<(usize, Direction)> = values.iter().filter_map(|&v| turning.push(v)).collect();

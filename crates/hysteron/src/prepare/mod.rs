@@ -47,7 +47,7 @@ pub enum Step {
 /// | `resample` | auto | time between samples, s, above 0 | the median step, only where time is irregular and a filter needs it |
 /// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | for each series, that at which what is taken away is as large as the noise; none where that is below 0.05 % of the range |
 /// | `lag` | off | time constant of the input's sensor, s, above 0 | `Auto`: that with which a static model fits best, if it fits 10 % better; right only where the material does not depend on rate |
-/// | `band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
+/// | `dead_band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrepareOptions {
     /// Lost signs and isolated spikes.
@@ -59,7 +59,7 @@ pub struct PrepareOptions {
     /// Lag of the input's sensor.
     pub lag: Step,
     /// Dead band for reversals of the input.
-    pub band: Step,
+    pub dead_band: Step,
 }
 
 impl Default for PrepareOptions {
@@ -80,7 +80,7 @@ impl PrepareOptions {
             resample: step,
             low_pass: step,
             lag: step,
-            band: step,
+            dead_band: step,
         }
     }
 
@@ -101,7 +101,7 @@ impl PrepareOptions {
                 _ => {}
             }
         }
-        match self.band {
+        match self.dead_band {
             Step::Value(band) if !(band.is_finite() && band >= 0.0) => Err(Error::Preparation(
                 format!("the dead band must be a number from zero on, not {band}"),
             )),
@@ -170,7 +170,7 @@ pub fn prepare(
         left *= lag::growth(step, tau, input_cutoff.unwrap_or(0.5));
     }
     let as_read = input_cutoff.is_none() && undone.is_none();
-    let band = settle(&mut work, options.band, left, as_read)?;
+    let band = settle(&mut work, options.dead_band, left, as_read)?;
     work.check()?;
     let report = Preparation {
         samples_before: recording.len(),
@@ -181,7 +181,7 @@ pub fn prepare(
         resampled,
         low_pass,
         lag,
-        band,
+        dead_band: band,
     };
     Ok((work, report))
 }

@@ -25,7 +25,7 @@ pub struct Preparation {
     /// The sensor's lag.
     pub lag: Option<SensorLag>,
     /// The dead band.
-    pub band: Option<DeadBand>,
+    pub dead_band: Option<DeadBand>,
 }
 
 /// Lost signs and isolated spikes.

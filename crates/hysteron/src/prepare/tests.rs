@@ -26,7 +26,7 @@ fn a_clean_recording_comes_through_unchanged() {
     assert_eq!(prepared, clean);
     let low_pass = report.low_pass.unwrap();
     assert_eq!((low_pass.input, low_pass.output), (None, None));
-    assert_eq!(report.band.unwrap().samples_changed, 0);
+    assert_eq!(report.dead_band.unwrap().samples_changed, 0);
     assert_eq!(report.resampled, None);
 }
 
@@ -37,7 +37,7 @@ fn switched_off_nothing_is_done() {
         prepare(&noisy, &PrepareOptions::all(Step::Off), Progress::NONE).unwrap();
     assert_eq!(prepared, noisy);
     assert_eq!(
-        (report.spikes, report.low_pass, report.lag, report.band),
+        (report.spikes, report.low_pass, report.lag, report.dead_band),
         (None, None, None, None)
     );
 }
@@ -110,7 +110,7 @@ fn values_that_cannot_be_are_refused() {
             ..default
         },
         PrepareOptions {
-            band: Step::Value(-1.0),
+            dead_band: Step::Value(-1.0),
             ..default
         },
         PrepareOptions {

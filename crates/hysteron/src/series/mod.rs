@@ -7,4 +7,4 @@ mod turning;
 
 pub use errors::Errors;
 pub use spread::{mean_and_deviation, range};
-pub use turning::{Headings, NOISE, Turning, branches, headings, noise_band, remembered};
+pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};

@@ -5,15 +5,16 @@ use hysteron_core::Direction;
 /// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
 pub const NOISE: f64 = 0.01;
 
-/// Reversals of a series that count as noise where nobody says otherwise: [`NOISE`] of its range; 0 of none.
+/// Reversals of a series that count as noise if nothing else is said: [`NOISE`] of its range; 0 of
+/// an empty one.
 #[must_use]
-pub fn noise_band(series: &[f64]) -> f64 {
+pub fn usual_tolerance(series: &[f64]) -> f64 {
     let (low, high) = crate::series::spread::range(series);
     NOISE * (high - low).max(0.0)
 }
 
 /// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
-/// from it by more than `band`.
+/// from it by more than `tolerance`.
 ///
 /// ```
 /// use hysteron::{Direction, Turning};
@@ -24,7 +25,7 @@ pub fn noise_band(series: &[f64]) -> f64 {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Turning {
-    band: f64,
+    tolerance: f64,
     count: usize,
     low: (usize, f64),
     high: (usize, f64),
@@ -32,11 +33,11 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// A search that ignores reversals of up to `band`.
+    /// A search that ignores reversals of up to `tolerance`.
     #[must_use]
-    pub fn new(band: f64) -> Self {
+    pub fn new(tolerance: f64) -> Self {
         Self {
-            band,
+            tolerance,
             count: 0,
             low: (0, f64::INFINITY),
             high: (0, f64::NEG_INFINITY),
@@ -56,9 +57,9 @@ impl Turning {
             self.high = (n, y);
         }
         use Direction::{Falling, Rising};
-        let (turn, heading) = if self.heading != Some(Falling) && self.high.1 - y > self.band {
+        let (turn, heading) = if self.heading != Some(Falling) && self.high.1 - y > self.tolerance {
             (self.high.0, Falling)
-        } else if self.heading != Some(Rising) && y - self.low.1 > self.band {
+        } else if self.heading != Some(Rising) && y - self.low.1 > self.tolerance {
             (self.low.0, Rising)
         } else {
             return None;
@@ -80,15 +81,15 @@ impl Turning {
     }
 }
 
-/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `band`; the
+/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `tolerance`; the
 /// turning point belongs to the branch before it.
 ///
 /// ```
 /// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
 /// ```
 #[must_use]
-pub fn branches(series: &[f64], band: f64) -> Vec<usize> {
-    let mut turning = Turning::new(band);
+pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
+    let mut turning = Turning::new(tolerance);
     let turns = series.iter().filter_map(|&x| turning.push(x));
     // The start counts as a turn, and ends no branch.
     let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
@@ -144,11 +145,11 @@ pub struct Headings {
 }
 
 impl Headings {
-    /// A look ahead of at most `capacity` samples that ignores reversals of up to `band`.
+    /// A look ahead of at most `capacity` samples that ignores reversals of up to `tolerance`.
     #[must_use]
-    pub fn new(band: f64, capacity: usize) -> Self {
+    pub fn new(tolerance: f64, capacity: usize) -> Self {
         Self {
-            turning: Turning::new(band),
+            turning: Turning::new(tolerance),
             capacity,
             released: 0,
         }
@@ -206,8 +207,8 @@ impl Headings {
 
 /// [`Headings`] of a whole series.
 #[must_use]
-pub fn headings(series: &[f64], band: f64) -> Vec<Option<Direction>> {
-    Headings::new(band, series.len()).all(series)
+pub fn headings(series: &[f64], tolerance: f64) -> Vec<Option<Direction>> {
+    Headings::new(tolerance, series.len()).all(series)
 }
 
 #[cfg(test)]

@@ -37,19 +37,20 @@ mod image {
             black_box(model.step(&mut state, black_box(0.0))?.output);
             #[cfg(feature = "inverse")]
             {
-                use hysteron_core::{Direction, Policy};
-                let tolerance = black_box(0.0);
-                let policy = if black_box(true) {
-                    Policy::Hold { tolerance }
+                use hysteron_core::{Direction, Target};
+                let heading = if black_box(true) {
+                    None
                 } else {
                     let rising = black_box(true);
                     let way = [Direction::Falling, Direction::Rising];
-                    Policy::Anticipate {
-                        heading: way[usize::from(rising)],
-                        tolerance,
-                    }
+                    Some(way[usize::from(rising)])
                 };
-                black_box(inverse.step(&mut state, black_box(0.0), policy)?);
+                let target = Target {
+                    output: black_box(0.0),
+                    heading,
+                    tolerance: black_box(0.0),
+                };
+                black_box(inverse.step(&mut state, target)?);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Files written whole or not at all.
 
-use super::target::{Claim, Own, Target, folder_of};
+use super::destination::{Claim, Destination, Own, folder_of};
 use super::unfinished::{file_in, finished};
 use crate::error::{Error, Result};
 use std::fs::File;
@@ -37,7 +37,7 @@ impl AtomicFile {
     ///
     /// # Errors [`Error::File`]; its source is of the kind [`io::ErrorKind::AlreadyExists`] where a
     /// file is kept that is not ours.
-    pub fn create<'a>(target: impl Into<Target<'a>>, own: Own) -> Result<Self> {
+    pub fn create<'a>(target: impl Into<Destination<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
         let claim = target.claim(own)?;
         let path = target.path().to_owned();

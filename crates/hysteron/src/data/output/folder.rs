@@ -1,11 +1,11 @@
 //! Folders written whole or not at all.
 
 use super::atomic::sync_folder;
+use super::destination::{Destination, Own, folder_of, foreign};
 use super::manifest::{self, Manifest};
 use super::moves::Moves;
-use super::target::{Own, Target, folder_of, foreign};
 use super::unfinished::{Workshop, unfinished};
-use super::{AtomicFile, target};
+use super::{AtomicFile, destination};
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 use std::fs;
@@ -42,7 +42,7 @@ impl AtomicFolder {
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn create<'a>(target: impl Into<Target<'a>>, own: Option<Own>) -> Result<Self> {
+    pub fn create<'a>(target: impl Into<Destination<'a>>, own: Option<Own>) -> Result<Self> {
         let target = target.into();
         let path = target.path();
         Self::start(&target, own).map_err(|source| Error::File {
@@ -51,7 +51,7 @@ impl AtomicFolder {
         })
     }
 
-    fn start(target: &Target<'_>, own: Option<Own>) -> io::Result<Self> {
+    fn start(target: &Destination<'_>, own: Option<Own>) -> io::Result<Self> {
         let path = target.path();
         let (place, below) = match fs::metadata(path) {
             Ok(there) if there.is_dir() => (path.canonicalize()?, PathBuf::new()),
@@ -191,12 +191,12 @@ impl AtomicFolder {
             )));
         }
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
-        Target::from(&path)
+        Destination::from(&path)
             .made_from(&inputs)
             .claim(Own::SAME_BYTES)?;
         match !self.keep_foreign || self.is_ours(&path).map_err(refused)? {
             true => Ok(()),
-            false => Err(refused(foreign(target::FOREIGN))),
+            false => Err(refused(foreign(destination::FOREIGN))),
         }
     }
 

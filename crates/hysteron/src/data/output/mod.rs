@@ -18,6 +18,7 @@
 //! columns of its own, such as a prepared recording, is replaced by the same bytes only.
 
 mod atomic;
+mod destination;
 mod folder;
 mod manifest;
 mod moves;
@@ -26,12 +27,11 @@ mod sign;
 mod splice;
 mod spool;
 mod table;
-mod target;
 mod unfinished;
 
 pub use atomic::AtomicFile;
+pub use destination::{Destination, Own, refuse_one_file};
 pub use folder::AtomicFolder;
 pub(crate) use sign::is_our_model;
 pub use table::{Added, Cell, STANDARD_OUTPUT, TableWriter};
-pub use target::{Own, Target, refuse_one_file};
 pub use unfinished::discard_unfinished;

@@ -1,10 +1,10 @@
 //! Tables written row by row, as CSV or Parquet.
 
+use super::destination::folder_of;
 use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
-use super::target::folder_of;
-use super::{AtomicFile, Own, Target};
+use super::{AtomicFile, Destination, Own};
 use crate::data::table::{Row, TableReader};
 use crate::error::{Error, Result};
 use std::io::{self, BufWriter, Write};
@@ -115,7 +115,7 @@ impl TableWriter {
     ///
     /// # Errors
     /// [`Error::File`], also for a name whose end is of a format that cannot be written.
-    pub fn create(target: Option<Target<'_>>) -> Result<Self> {
+    pub fn create(target: Option<Destination<'_>>) -> Result<Self> {
         Self::start(target, Own::Marked(is_our_table))
     }
 
@@ -124,11 +124,11 @@ impl TableWriter {
     ///
     /// # Errors
     /// As [`TableWriter::create`].
-    pub fn plain(target: Option<Target<'_>>) -> Result<Self> {
+    pub fn plain(target: Option<Destination<'_>>) -> Result<Self> {
         Self::start(target, Own::Unmarked(is_our_table))
     }
 
-    fn start(target: Option<Target<'_>>, own: Own) -> Result<Self> {
+    fn start(target: Option<Destination<'_>>, own: Own) -> Result<Self> {
         let Some(target) = target.filter(|target| target.path() != Path::new("-")) else {
             return Ok(Self {
                 path: STANDARD_OUTPUT.into(),

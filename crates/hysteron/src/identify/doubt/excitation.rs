@@ -10,7 +10,7 @@ use crate::identify::weights::sparse::{Initial, SparseForm};
 use crate::model::Excitation;
 use crate::model::Plane;
 use crate::progress::Progress;
-use crate::series::{NOISE, Turning, noise_band};
+use crate::series::{NOISE, Turning, usual_tolerance};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 use hysteron_core::Operator;
@@ -197,7 +197,7 @@ fn branches_moved(
 
 /// The input at the end of each branch.
 fn branch_ends(input: &[f64]) -> Vec<f64> {
-    let mut turning = Turning::new(noise_band(input));
+    let mut turning = Turning::new(usual_tolerance(input));
     let turns = input.iter().filter_map(|&t| turning.push(t));
     // The start counts as a turn, and begins the first branch.
     let mut ends: Vec<f64> = turns.skip(1).map(|(n, _)| input[n]).collect();

@@ -9,7 +9,7 @@ use crate::model::bernstein;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::range;
-use crate::series::{branches, noise_band};
+use crate::series::{branches, usual_tolerance};
 use std::ops::Range;
 
 pub(crate) struct Experiment {
@@ -99,7 +99,7 @@ impl Experiment {
 
     /// A branch ends where the input turns by more than noise.
     fn find_branches(&mut self) {
-        let band = noise_band(&self.input);
+        let band = usual_tolerance(&self.input);
         for range in &self.recordings {
             let before = self.branches();
             let own = branches(&self.input[range.clone()], band);

@@ -2,7 +2,7 @@
 
 use crate::check::operator;
 use crate::data::{FORWARD, LEVELS, Model, Run};
-use hysteron_core::{Direction, Plane, Policy, Turn, operator_count, table_len, turn_capacity};
+use hysteron_core::{Direction, Plane, Target, Turn, operator_count, table_len, turn_capacity};
 
 type Data = (Vec<Model>, Vec<Run>);
 
@@ -247,16 +247,11 @@ fn step((models, runs): &Data, worst: &Worst<'_>) -> Result<String, String> {
                 FORWARD => core.step(&mut state, value).map(|_| ())?,
                 0 => core
                     .inverse()?
-                    .step(&mut state, value, Policy::HOLD)
+                    .step(&mut state, Target::new(value))
                     .map(|_| ())?,
                 _ => {
-                    let policy = Policy::Anticipate {
-                        heading,
-                        tolerance: 0.0,
-                    };
-                    core.inverse()?
-                        .step(&mut state, value, policy)
-                        .map(|_| ())?;
+                    let target = Target::new(value).heading(Some(heading));
+                    core.inverse()?.step(&mut state, target).map(|_| ())?;
                 }
             }
         }

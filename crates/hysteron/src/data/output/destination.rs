@@ -24,16 +24,16 @@ impl Own {
 
 /// A place for a result, with what it may replace.
 ///
-/// A path alone, as in `Target::from(path)`, replaces whatever file is there, as a call of a
+/// A path alone, as in `Destination::from(path)`, replaces whatever file is there, as a call of a
 /// library that names a file does.
 #[derive(Debug, Clone, Copy)]
-pub struct Target<'a> {
+pub struct Destination<'a> {
     path: &'a Path,
     inputs: &'a [&'a Path],
     keep_foreign: bool,
 }
 
-impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Target<'a> {
+impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
     fn from(path: &'a P) -> Self {
         Self {
             path: path.as_ref(),
@@ -43,7 +43,7 @@ impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Target<'a> {
     }
 }
 
-impl<'a> Target<'a> {
+impl<'a> Destination<'a> {
     /// A place whose file is replaced only where it is a result of ours, or with `force` whatever
     /// it is.
     #[must_use]
