@@ -35,7 +35,7 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
         // SAFETY: the contract of the crate.
         let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
-        model.runs_by_itself()?;
+        model.plain()?;
         let state = Mutex::new(model.start());
         out.set(STATES.insert(Running { model, state })?);
         Ok(())

@@ -322,5 +322,5 @@ fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {
             "`model` is {model}: a Model or an Adaptive is needed"
         ))
     })?;
-    Compensator::fixed(hysteron::Model::clone(&model.get().inner)).raise()
+    Compensator::fixed(&model.get().inner).raise()
 }

@@ -182,7 +182,7 @@ fn a_model_without_an_inverse_is_refused() {
         Sign::Positive,
     );
     assert!(matches!(
-        Compensator::fixed(model.unwrap()),
+        Compensator::fixed(&model.unwrap()),
         Err(Error::Core(_))
     ));
 }
@@ -284,7 +284,7 @@ fn drive(device: &mut impl Device, controller: &mut Controller, targets: &[f64])
 fn a_replayed_device_gets_the_same_drives() {
     let known = Known::spring();
     let scheme = || Scheme {
-        compensator: Some(Compensator::fixed(known.model.clone()).unwrap()),
+        compensator: Some(Compensator::fixed(&known.model).unwrap()),
         ..known.scheme()
     };
     let targets = &known.scenario.references()[..600];
@@ -336,7 +336,7 @@ fn out_of_reach_it_stays_at_the_end_and_comes_back_on_the_model() {
         let factor = if sign == Sign::Positive { 1.0 } else { -1.0 };
         let mut controller = Controller::new(Scheme {
             pid: None,
-            compensator: Some(Compensator::fixed(model.clone()).unwrap()),
+            compensator: Some(Compensator::fixed(&model).unwrap()),
             // From the lowest level on: the input of every operator off is below the plane's range.
             commands: (plane.bottom(), plane.max()),
             drives: (plane.bottom(), plane.max()),

@@ -74,7 +74,7 @@ fn controller(known: &Known, with: With) -> Controller {
     };
     let compensator = match with {
         With::Pid => None,
-        With::Fixed => Some(Compensator::fixed(known.model.clone()).unwrap()),
+        With::Fixed => Some(Compensator::fixed(&known.model).unwrap()),
         With::Adaptive => Some(adapting(&known.model)),
     };
     Controller::new(Scheme {

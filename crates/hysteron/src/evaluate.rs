@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::simulate_from_unknown;
-use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State};
+use crate::model::{BandEvaluation, Inverse, Model, OperatorState, Policy, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::Errors;
@@ -74,8 +74,9 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     recording.check()?;
     let seen = model.behind_body(recording)?;
     let mut output_model = vec![0.0; recording.len()];
-    let run = |mut state, output: &mut Vec<f64>| model.run(&mut state, &seen.input, output);
-    let mut begin = model.start();
+    let operators = model.operators();
+    let run = |mut state, output: &mut Vec<f64>| operators.run(&mut state, &seen.input, output);
+    let mut begin = operators.start();
     let clipped = run(begin.clone(), &mut output_model)?;
     if start != Start::Off {
         if model.load.is_some() {
@@ -84,10 +85,10 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
             return Err(crate::error::Error::Fit(what.into()).remedied(remedy));
         }
         let mut from_on = vec![0.0; recording.len()];
-        run(model.saturated(), &mut from_on)?;
+        run(operators.saturated(), &mut from_on)?;
         let rmse = |output: &[f64]| compare(&recording.output, output).rmse;
         if start == Start::On || rmse(&from_on) < rmse(&output_model) {
-            begin = model.saturated();
+            begin = operators.saturated();
         }
         output_model = match start {
             Start::On => from_on,
@@ -122,14 +123,19 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
 
 fn evaluate_inverse(
     inverse: &Inverse<'_>,
-    begin: &State,
+    begin: &OperatorState,
     recording: &Recording,
 ) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
     let run = |policy: Policy| -> Result<InverseRun> {
-        let solutions = inverse.series(&mut begin.clone(), &recording.output, policy, tolerance)?;
+        let solutions = inverse.series(
+            &mut begin.clone().into(),
+            &recording.output,
+            policy,
+            tolerance,
+        )?;
         let missed = |solution: &&Solution<f64>| solution.status.is_out_of_reach();
         let out_of_reach = solutions.iter().filter(missed).count();
         let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();

@@ -55,8 +55,8 @@ pub use inspect::{
 };
 pub use model::{
     Band, BandEvaluation, Confidence, Excitation, FirstOrder, FitSummary, INTERVAL, Inverse,
-    LoadDependence, LoadPart, Model, Plane, Policy, Score, Sign, Solver, Start, State,
-    Surroundings, ThermalState, Validation,
+    LoadDependence, LoadPart, Model, OperatorState, Operators, Plane, Policy, Sample, Score, Sign,
+    Solver, Start, State, Surroundings, ThermalState, Validation,
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::control::{Compensator, Controller, Reading, Reference, Scheme};
-use hysteron::{Policy, 
-    AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Progress, Recording, Sign,
-    adapt,
+use hysteron::{
+    AdaptOptions, Adapted, Learner, Model, Operator, Outcome, Plane, Policy, Progress, Recording,
+    Sign, adapt,
 };
 
 /// What a converter of twelve bits says when its wire is off.

@@ -1,7 +1,7 @@
 //! A model that learns while it runs.
 
 use crate::error::{Error, Result};
-use crate::model::{Model, Sign, State};
+use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
@@ -30,9 +30,9 @@ pub struct Adaptive {
     offline: Model,
     core: hysteron_core::Model<f64, Vec<f64>>,
     /// Where the measured input is.
-    state: State,
+    state: OperatorState,
     /// Where the inverse stands: at the inputs that it asked for.
-    wanted: State,
+    wanted: OperatorState,
     estimator: Estimator<f64, Vec<f64>>,
     /// What the parameters are shares of; none where they are the weights.
     parts: Vec<Vec<f64>>,
@@ -42,8 +42,8 @@ impl Adaptive {
     /// Adapts all weights of `model`, and its offset, from all operators off.
     ///
     /// # Errors
-    /// [`Error::Core`] for options out of range and for negative weights; [`Error::Fit`] for a model that depends on a load or
-    /// has a thermal body, and for one with so many levels that the method takes more than 4 GiB.
+    /// As [`Model::plain`]; [`Error::Core`] for options out of range and for negative weights;
+    /// [`Error::Fit`] for a model with so many levels that the method takes more than 4 GiB.
     pub fn new(model: &Model, options: Adaptation<f64>) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
@@ -78,7 +78,7 @@ impl Adaptive {
         estimator: Estimator<f64, Vec<f64>>,
         parts: Vec<Vec<f64>>,
     ) -> Result<Self> {
-        let mut state = model.start();
+        let mut state = model.plain()?.start();
         core.rebase(&mut state)?;
         Ok(Self {
             offline: model.clone(),
@@ -169,7 +169,7 @@ impl Adaptive {
     /// As [`Adaptive::solve`].
     pub(crate) fn solve_from(
         &self,
-        state: &mut State,
+        state: &mut OperatorState,
         target: Target<f64>,
     ) -> Result<Solution<f64>> {
         let offset = self.estimator.offset();
@@ -218,7 +218,7 @@ impl Adaptive {
 
     /// The state that the model is in.
     #[must_use]
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &OperatorState {
         &self.state
     }
 
@@ -273,7 +273,7 @@ fn invert(
     core: &hysteron_core::Model<f64, Vec<f64>>,
     sign: Sign,
     offset: f64,
-    state: &mut State,
+    state: &mut OperatorState,
     target: Target<f64>,
 ) -> Result<Solution<f64>> {
     let raw = sign.factor() * target.output - offset;
@@ -300,11 +300,7 @@ fn reserved(numbers: usize) -> Result<Vec<f64>> {
 
 /// A core model with the memory that the method asks for.
 fn renewable(model: &Model, method: Method<f64>) -> Result<hysteron_core::Model<f64, Vec<f64>>> {
-    if model.load.is_some() || model.thermal.is_some() {
-        return Err(Error::Fit(
-            "a model that depends on a load or has a thermal body cannot be adapted as a whole: take it at one load, without its body".into(),
-        ));
-    }
+    let model = model.plain()?;
     let tables = match method {
         Method::Increments { .. } => 2,
         _ => 1,

@@ -8,7 +8,7 @@
 
 use crate::adapt::Adaptive;
 use crate::error::Result;
-use crate::model::{Model, Sign, State};
+use crate::model::{Model, OperatorState, Operators, Sign};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
@@ -24,7 +24,7 @@ const JUMP: u32 = 10;
 pub struct Compensator {
     kind: Kind,
     /// Where the inverse stands; none before the first sample.
-    wanted: Option<State>,
+    wanted: Option<OperatorState>,
     /// The branch that the target is on.
     target: Option<Turning>,
     /// The last input followed.
@@ -35,7 +35,10 @@ pub struct Compensator {
 
 #[derive(Debug, Clone)]
 enum Kind {
-    Fixed { model: Box<Model>, state: State },
+    Fixed {
+        operators: Box<Operators>,
+        state: OperatorState,
+    },
     Adaptive(Box<Adaptive>),
 }
 
@@ -44,12 +47,12 @@ impl Compensator {
     ///
     /// # Errors
     /// As [`Model::inverse`], for a model that has none.
-    pub fn fixed(model: Model) -> Result<Self> {
-        model.inverse()?;
-        let state = model.start();
+    pub fn fixed(model: &Model) -> Result<Self> {
+        let operators = model.plain()?;
+        operators.inverse()?;
         Ok(Self::new(Kind::Fixed {
-            model: Box::new(model),
-            state,
+            operators: Box::new(operators.clone()),
+            state: operators.start(),
         }))
     }
 
@@ -81,7 +84,9 @@ impl Compensator {
     ) -> Result<(f64, Option<Outcome>)> {
         let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
-            (Kind::Fixed { model, state }, _) => Ok((model.step(state, input)?.output, None)),
+            (Kind::Fixed { operators, state }, _) => {
+                Ok((operators.step(state, input)?.output, None))
+            }
             (Kind::Adaptive(adaptive), measured) => {
                 self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
                     true => JUMP,
@@ -114,7 +119,7 @@ impl Compensator {
             self.set_out_again();
         }
         let (state, sign) = match &self.kind {
-            Kind::Fixed { model, state } => (state, model.sign()),
+            Kind::Fixed { operators, state } => (state, operators.sign()),
             Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),
         };
         let wanted = self.wanted.get_or_insert_with(|| state.clone());
@@ -129,7 +134,7 @@ impl Compensator {
         };
         let target = Target::new(target).heading(heading).tolerance(tolerance);
         match &self.kind {
-            Kind::Fixed { model, .. } => model.inverse()?.step(wanted, target),
+            Kind::Fixed { operators, .. } => operators.inverse()?.step_operators(wanted, target),
             Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, target),
         }
     }

@@ -23,7 +23,7 @@
 //! let model = Fit::new().bootstrap(0).run(&Recording::new(input, output)?)?;
 //!
 //! let mut controller = Controller::new(Scheme {
-//!     compensator: Some(Compensator::fixed(model)?),
+//!     compensator: Some(Compensator::fixed(&model)?),
 //!     tolerance: 0.5,
 //!     pid: Some(Gains { gain: 0.2, integral_s: 0.05, derivative_s: 0.0 }),
 //!     filter_s: 0.01,

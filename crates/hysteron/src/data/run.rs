@@ -1,11 +1,11 @@
 //! Simulation and inversion of tables row by row: memory does not grow with the file.
 
 use crate::data::output::{Added, Cell, TableWriter};
+use crate::data::table::Row;
 use crate::data::table::TableReader;
-use crate::data::table::{Column, Row};
 use crate::error::{Error, Result};
-use crate::model::{Band, FirstOrder, Inverse, LoadDependence, Model, State, ThermalState};
-use crate::model::{Policy, needs_time};
+use crate::model::{Band, Inverse, Model, State};
+use crate::model::{Policy, Sample, needs_time, no_load};
 use crate::series::Headings;
 use hysteron_core::{Direction, Status, Target};
 use serde::Serialize;
@@ -51,22 +51,36 @@ pub fn simulate_table(
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let column = table.column(what.input)?;
-    let mut heating = Heating::new(model, table, what.time)?;
-    let mut loaded = Loaded::new(model, table, what.load)?;
+    let time = match (model.thermal, what.time) {
+        (None, _) => None,
+        (Some(_), name) => Some(table.time_column(name.ok_or_else(needs_time)?)?),
+    };
+    if let (Some(dependence), None) = (&model.load, what.load) {
+        return Err(dependence.one_is_needed());
+    }
+    if let (None, Some(_)) = (&model.load, what.load) {
+        return Err(no_load());
+    }
+    let load = what.load.map(|name| table.column(name)).transpose()?;
     let names = ["output_model", "output_low", "output_high"].map(Added::Numbers);
     let added = if what.band.is_some() { 3 } else { 1 };
     let mut sink = Sink::start(table, out, &names[..added])?;
-    let mut state = model.start();
+    let (mut state, mut before) = (model.start(), None);
     let mut band = what.band.map(|band| (band, band.start()));
     while table.advance()? {
-        let mut input = table.number(column)?;
-        if let Some(heating) = &mut heating {
-            input = heating.step(table, input)?;
-        }
-        let mut step = model.step(&mut state, input)?;
-        if let Some(loaded) = &mut loaded {
-            step.output = loaded.step(table, input)?;
-        }
+        let now = time.map(|at| table.number(at)).transpose()?;
+        let sample = Sample {
+            input: table.number(column)?,
+            dt: now.map(|now| now - before.replace(now).unwrap_or(now)),
+            load: load.map(|at| table.number(at)).transpose()?,
+        };
+        let step = model.step(&mut state, sample).map_err(|error| {
+            let at = match error {
+                Error::Thermal(_) => time,
+                _ => load,
+            };
+            table.fault(at, error.to_string())
+        })?;
         match step.clipped {
             None => {}
             Some(hysteron_core::Clipped::Low) => sink.counts.low += 1,
@@ -76,7 +90,7 @@ pub fn simulate_table(
         match &mut band {
             None => sink.write(table.row(), &[Cell::Number(output)])?,
             Some((band, states)) => {
-                let half = band.step(states, input)?;
+                let half = band.step(states, state.input())?;
                 let cells = [output, output - half, output + half].map(Cell::Number);
                 sink.write(table.row(), &cells)?;
             }
@@ -84,84 +98,6 @@ pub fn simulate_table(
         progress(table.bytes_read());
     }
     sink.finish()
-}
-
-/// A model under a load that changes from row to row: each part of its load dependence runs beside the others.
-struct Loaded<'m> {
-    dependence: &'m LoadDependence,
-    load: Column,
-    parts: Vec<(Model, State)>,
-}
-
-impl<'m> Loaded<'m> {
-    fn new(model: &'m Model, table: &mut TableReader, load: Option<&str>) -> Result<Option<Self>> {
-        let Some(dependence) = &model.load else {
-            return match load {
-                None => Ok(None),
-                Some(_) => Err(crate::model::no_load()),
-            };
-        };
-        let Some(load) = load else {
-            return Err(Error::Fit(format!(
-                "the model depends on the load `{}`: name its column, or take the model at one load",
-                dependence.quantity.name
-            )));
-        };
-        let parts = model.load_parts()?.into_iter();
-        Ok(Some(Self {
-            dependence,
-            load: table.column(load)?,
-            parts: parts
-                .map(|part| {
-                    let start = part.start();
-                    (part, start)
-                })
-                .collect(),
-        }))
-    }
-
-    fn step(&mut self, table: &TableReader, input: f64) -> Result<f64> {
-        let factors = self
-            .dependence
-            .factors(table.number(self.load)?)
-            .map_err(|error| table.fault(Some(self.load), error.to_string()))?;
-        let mut output = 0.0;
-        for ((part, state), factor) in self.parts.iter_mut().zip(factors) {
-            output += factor * part.step(state, input)?.output;
-        }
-        Ok(output)
-    }
-}
-
-/// A model's thermal body on its way through a table.
-struct Heating {
-    body: FirstOrder,
-    time: Column,
-    state: Option<ThermalState>,
-}
-
-impl Heating {
-    fn new(model: &Model, table: &mut TableReader, time: Option<&str>) -> Result<Option<Self>> {
-        let Some(body) = model.thermal else {
-            return Ok(None);
-        };
-        let time = table.time_column(time.ok_or_else(needs_time)?)?;
-        Ok(Some(Self {
-            body,
-            time,
-            state: None,
-        }))
-    }
-
-    /// The temperature at the current row of the table.
-    fn step(&mut self, table: &TableReader, drive: f64) -> Result<f64> {
-        let time = table.number(self.time)?;
-        let rest = || self.body.at_rest(time, drive);
-        let state = self.state.get_or_insert_with(rest);
-        self.body
-            .step(state, time, drive)
-            .map_err(|error| table.fault(Some(self.time), error.to_string()))
-    }
 }
 
 /// What an inversion reads from a table, and how it is done.

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::confidence::{Confidence, INTERVAL};
-use crate::model::{Model, State};
+use crate::model::{Model, OperatorState, Operators};
 use crate::recording::Recording;
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ use serde::Serialize;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Band {
-    factors: Vec<Model>,
+    factors: Vec<Operators>,
     noise: f64,
 }
 
@@ -49,7 +49,7 @@ impl Band {
     fn new(model: &Model, confidence: &Confidence) -> Result<Self> {
         let factor = |(n, part): (usize, &crate::model::load::LoadPart)| {
             let weights = part.weights.clone();
-            Model::new(
+            Operators::new(
                 model.operator(),
                 *model.plane(),
                 weights,
@@ -71,15 +71,15 @@ impl Band {
 
     /// States of the factors with every operator off.
     #[must_use]
-    pub fn start(&self) -> Vec<State> {
-        self.factors.iter().map(Model::start).collect()
+    pub fn start(&self) -> Vec<OperatorState> {
+        self.factors.iter().map(Operators::start).collect()
     }
 
     /// Moves `states` to `input` and returns half the width of the band there, in the output's unit.
     ///
     /// # Errors
     /// As [`Model::step`].
-    pub fn step(&self, states: &mut [State], input: f64) -> Result<f64> {
+    pub fn step(&self, states: &mut [OperatorState], input: f64) -> Result<f64> {
         let mut variance = self.noise * self.noise;
         for (factor, state) in self.factors.iter().zip(states) {
             variance += factor.step(state, input)?.output.powi(2);

@@ -30,44 +30,48 @@ pub struct FirstOrder {
     pub tau_cooling: f64,
 }
 
-/// Where a body stands: the last time and drive, and the temperature then.
+/// Where a body stands: the last drive, and the temperature then.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThermalState {
-    time: f64,
     drive: f64,
     temperature: f64,
 }
 
-impl FirstOrder {
-    /// A body at rest with the drive at `time`.
+impl ThermalState {
+    /// The temperature above the surroundings.
     #[must_use]
-    pub fn at_rest(&self, time: f64, drive: f64) -> ThermalState {
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+}
+
+impl FirstOrder {
+    /// A body at rest with the drive.
+    #[must_use]
+    pub fn at_rest(&self, drive: f64) -> ThermalState {
         ThermalState {
-            time,
             drive,
             temperature: self.gain * drive,
         }
     }
 
-    /// The temperature at `time`, at which the drive changes from what it was to `drive`.
+    /// The temperature `dt` seconds after the last sample, when the drive changes to `drive`.
     ///
     /// Exact for a drive that is held between samples, however far apart they are: the temperature
     /// goes towards the drive and never past it, so that one time constant holds for the whole step.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for numbers that are not finite, a time that goes back, or a body whose numbers are not above zero; the
-    /// state is then as it was.
-    pub fn step(&self, state: &mut ThermalState, time: f64, drive: f64) -> Result<f64> {
+    /// [`Error::Thermal`] for numbers that are not finite, a `dt` below zero, or a body whose numbers
+    /// are not above zero; the state is then as it was.
+    pub fn step(&self, state: &mut ThermalState, dt: f64, drive: f64) -> Result<f64> {
         if let Some((name, value)) = self.fault() {
             return Err(Error::Thermal(format!(
                 "the body's {name} is {value}, where a finite number above zero is needed"
             )));
         }
-        let elapsed = time - state.time;
-        if !(elapsed >= 0.0 && elapsed.is_finite() && drive.is_finite()) {
+        if !(dt >= 0.0 && dt.is_finite() && drive.is_finite()) {
             return Err(Error::Thermal(format!(
-                "time {time} with drive {drive} after time {}: times must not go back and both must be finite numbers",
-                state.time
+                "drive {drive} after {dt} s: times must not go back and both must be finite numbers"
             )));
         }
         let rest = self.gain * state.drive;
@@ -75,12 +79,8 @@ impl FirstOrder {
             true => self.tau_heating,
             false => self.tau_cooling,
         };
-        let temperature = rest + (state.temperature - rest) * (-elapsed / tau).exp();
-        *state = ThermalState {
-            time,
-            drive,
-            temperature,
-        };
+        let temperature = rest + (state.temperature - rest) * (-dt / tau).exp();
+        *state = ThermalState { drive, temperature };
         Ok(temperature)
     }
 
@@ -96,13 +96,14 @@ impl FirstOrder {
                 drive.len()
             )));
         }
-        let (Some(&t), Some(&u)) = (time.first(), drive.first()) else {
+        let (Some(&first), Some(&u)) = (time.first(), drive.first()) else {
             return Ok(Vec::new());
         };
-        let mut state = self.at_rest(t, u);
+        let mut state = self.at_rest(u);
+        let mut last = first;
         let samples = time.iter().zip(drive);
         samples
-            .map(|(&t, &u)| self.step(&mut state, t, u))
+            .map(|(&t, &u)| self.step(&mut state, t - std::mem::replace(&mut last, t), u))
             .collect()
     }
 
@@ -149,12 +150,6 @@ pub(crate) fn needs_time() -> Error {
     Error::Thermal(what.into()).remedied(remedy)
 }
 
-pub(crate) fn no_inverse() -> Error {
-    Error::Thermal(
-        "an inverse would give the temperature the body needs, not the drive that takes it there: such a model only runs forward".into(),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -199,15 +194,15 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_and_leaves_the_state() {
-        let mut state = BODY.at_rest(1.0, 0.5);
+        let mut state = BODY.at_rest(0.5);
         let before = state;
-        for (time, drive) in [
-            (0.9, 1.0),
+        for (dt, drive) in [
+            (-0.1, 1.0),
             (f64::NAN, 1.0),
             (f64::INFINITY, 1.0),
             (2.0, f64::NAN),
         ] {
-            assert!(BODY.step(&mut state, time, drive).is_err());
+            assert!(BODY.step(&mut state, dt, drive).is_err());
             assert_eq!(state, before);
         }
         assert!(BODY.respond(&[0.0], &[]).is_err());

@@ -262,24 +262,13 @@ impl LoadEntry {
         if self.parts.is_empty() {
             return Err(fault("load.parts", "there are none".into()));
         }
-        for (n, part) in self.parts.iter().enumerate() {
-            // What holds for the model's own weights holds for each part's.
-            let (operator, plane) = (model.operator(), *model.plane());
-            Model::new(
-                operator,
-                plane,
-                part.weights.clone(),
-                part.offset,
-                model.sign(),
-            )
-            .map_err(|error| fault(&format!("load.parts[{n}]"), error.to_string()))?;
-        }
         let name = self.name.unwrap_or_else(|| "load".into());
         let quantity = Quantity {
             name,
             unit: self.unit,
         };
-        Ok(LoadDependence::new(quantity, (min, max), self.parts))
+        let load = LoadDependence::new(quantity, (min, max), self.parts, model.operators());
+        load.map_err(|(n, error)| fault(&format!("load.parts[{n}]"), error.to_string()))
     }
 }
 

@@ -1,32 +1,30 @@
 //! The inverse of a model in its own units: of one target, and of a series of them.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::policy::Policy;
-use crate::model::{Model, Sign, State};
-use crate::remedy::{Remedy, Setting};
+use crate::model::{Model, OperatorState, Operators, Sign, State};
 use crate::series::headings;
 use hysteron_core::{Direction, Solution, Target};
 
 impl Model {
-    /// The inverse of this model.
+    /// The inverse of a plain model.
     ///
     /// # Errors
-    /// [`Error::Core`] naming the first weights below zero, if there are any; [`Error::Thermal`] for a model with a thermal body.
+    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) naming the first weights below zero,
+    /// if there are any.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
-        if self.thermal.is_some() {
-            return Err(crate::model::body::no_inverse());
-        }
-        if let Some(load) = &self.load {
-            let (low, high) = load.range();
-            let what = format!(
-                "the model depends on the load `{}`, from {low} to {high}, and an inverse is that of one load",
-                load.quantity.name
-            );
-            let remedy = Remedy::new("take it at one load ({})", [Setting::any("load")]);
-            return Err(Error::Fit(what).remedied(remedy));
-        }
+        self.plain()?.inverse()
+    }
+}
+
+impl Operators {
+    /// The inverse of these operators.
+    ///
+    /// # Errors
+    /// [`Error::Core`](crate::Error::Core)(crate::Error::Core) naming the first weights below zero, if there are any.
+    pub fn inverse(&self) -> Result<Inverse<'_>> {
         Ok(Inverse {
-            model: self,
+            operators: self,
             core: self.core.inverse()?,
         })
     }
@@ -60,7 +58,7 @@ impl Sign {
 /// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model.
 #[derive(Debug, Clone)]
 pub struct Inverse<'m> {
-    model: &'m Model,
+    operators: &'m Operators,
     core: hysteron_core::Inverse<'m, f64, Vec<f64>>,
 }
 
@@ -71,10 +69,22 @@ impl Inverse<'_> {
     /// input above the plane.
     ///
     /// # Errors
-    /// [`Error::Core`] for a target that is not finite or a state of another model; the state is then as it was.
+    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another model; the state is then as it was.
     pub fn step(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
-        let sign = self.model.sign();
-        let raw = sign.factor() * (target.output - self.model.offset());
+        self.step_operators(&mut state.operators, target)
+    }
+
+    /// As [`Inverse::step`], of operators alone.
+    ///
+    /// # Errors
+    /// As [`Inverse::step`].
+    pub fn step_operators(
+        &self,
+        state: &mut OperatorState,
+        target: Target<f64>,
+    ) -> Result<Solution<f64>> {
+        let sign = self.operators.sign();
+        let raw = sign.factor() * (target.output - self.operators.offset());
         let solution = self.core.step(state, sign.inward(target, raw))?;
         Ok(sign.outward(solution))
     }
@@ -83,7 +93,7 @@ impl Inverse<'_> {
     /// them. Reversals of the target up to `tolerance` are not followed.
     ///
     /// # Errors
-    /// [`Error::Core`] with the place of a target that is not finite, or for a state of another
+    /// [`Error::Core`](crate::Error::Core) with the place of a target that is not finite, or for a state of another
     /// model; the state is then as it was.
     ///
     /// ```
@@ -155,7 +165,7 @@ impl Inverse<'_> {
         state: &mut State,
         targets: &[Target<f64>],
     ) -> Result<Vec<Solution<f64>>> {
-        let finite = |target: &Target<f64>| (target.output - self.model.offset()).is_finite();
+        let finite = |target: &Target<f64>| (target.output - self.operators.offset()).is_finite();
         if let Some(index) = targets.iter().position(|target| !finite(target)) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }

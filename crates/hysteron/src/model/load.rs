@@ -1,8 +1,9 @@
 //! Weights that depend on a load: one model for several loads or stresses.
 
 use crate::error::{Error, Result};
-use crate::model::Model;
+use crate::model::{Model, Operators};
 use crate::recording::Quantity;
+use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
 
 /// Offset and weights that one Bernstein polynomial of the load is multiplied with.
@@ -44,17 +45,58 @@ pub struct LoadDependence {
     pub quantity: Quantity,
     range: (f64, f64),
     parts: Vec<LoadPart>,
+    /// Those of each part.
+    operators: Vec<Operators>,
 }
 
 impl LoadDependence {
-    /// Of the parts, one at least and all with as many weights, over the `range` of loads.
-    #[must_use]
-    pub(crate) fn new(quantity: Quantity, range: (f64, f64), parts: Vec<LoadPart>) -> Self {
-        Self {
+    /// Of the parts, one at least, over the `range` of loads, for operators such as `like`.
+    ///
+    /// # Errors
+    /// As [`Operators::new`], with the place of the part.
+    pub(crate) fn new(
+        quantity: Quantity,
+        range: (f64, f64),
+        parts: Vec<LoadPart>,
+        like: &Operators,
+    ) -> std::result::Result<Self, (usize, Error)> {
+        let operators = parts.iter().enumerate().map(|(n, part)| {
+            let (operator, plane) = (like.operator(), *like.plane());
+            Operators::new(
+                operator,
+                plane,
+                part.weights.clone(),
+                part.offset,
+                like.sign(),
+            )
+            .map_err(|error| (n, error))
+        });
+        let operators = operators.collect::<std::result::Result<_, _>>()?;
+        Ok(Self {
             quantity,
             range,
             parts,
-        }
+            operators,
+        })
+    }
+
+    /// The operators of each part.
+    pub(crate) fn operators(&self) -> impl Iterator<Item = &Operators> {
+        self.operators.iter()
+    }
+
+    /// Why a model that depends on a load does not run without one.
+    pub(crate) fn one_is_needed(&self) -> Error {
+        let (low, high) = self.range;
+        let what = format!(
+            "the model depends on the load `{}`, from {low} to {high}",
+            self.quantity.name
+        );
+        let remedy = Remedy::new(
+            "give it, or take the model at one load ({})",
+            [Setting::any("load")],
+        );
+        Error::Fit(what).remedied(remedy)
     }
 
     /// Smallest and largest load that the model was identified at.
@@ -115,23 +157,6 @@ impl Model {
         Ok(model)
     }
 
-    /// The models that the functions of the load are multiplied with; none without a load.
-    pub(crate) fn load_parts(&self) -> Result<Vec<Self>> {
-        let parts = self.load.iter().flat_map(|load| load.parts());
-        let (operator, plane) = (self.operator(), *self.plane());
-        parts
-            .map(|part| {
-                Self::new(
-                    operator,
-                    plane,
-                    part.weights.clone(),
-                    part.offset,
-                    self.sign(),
-                )
-            })
-            .collect()
-    }
-
     /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
     ///
     /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
@@ -151,7 +176,7 @@ impl Model {
             .map(|f| dependence.factors(*f))
             .collect::<Result<_>>()?;
         let mut output = vec![0.0; input.len()];
-        for (k, part) in self.load_parts()?.iter().enumerate() {
+        for (k, part) in dependence.operators().enumerate() {
             let run = part.simulate(input)?;
             for ((y, h), factors) in output.iter_mut().zip(run).zip(&factors) {
                 *y += factors[k] * h;

@@ -1,4 +1,4 @@
-//! The identified model: a core model with its weights, names, offset and sign.
+//! The model of an actuator: operators, the stages in front of them, and how they were identified.
 
 mod band;
 mod body;
@@ -7,7 +7,10 @@ mod excitation;
 mod file;
 mod inverse;
 mod load;
+mod operators;
 mod policy;
+mod sign;
+mod state;
 mod summary;
 mod surroundings;
 mod validation;
@@ -20,47 +23,25 @@ pub use excitation::Excitation;
 pub use inverse::Inverse;
 pub use load::{LoadDependence, LoadPart};
 pub(crate) use load::{bernstein, no_load};
+pub use operators::{OperatorState, Operators};
 pub use policy::Policy;
+pub use sign::Sign;
+pub use state::{Sample, State};
 pub use summary::{FitSummary, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Score, Validation};
 
 use crate::error::{Error, Result};
 use crate::recording::Quantity;
-use hysteron_core::Operator;
-use hysteron_core::{Turn, table_len, turn_capacity};
+use hysteron_core::{ClippedCount, Operator, Output};
 
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;
 
-/// The state of a model: its turning points.
-pub type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
-
-/// Direction in which the output moves when the operators switch on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sign {
-    /// The output rises with the input.
-    #[default]
-    Positive,
-    /// The output falls as the input rises, as a strain does that is recovered on heating.
-    Negative,
-}
-
-impl Sign {
-    /// +1 or −1.
-    #[must_use]
-    pub fn factor(self) -> f64 {
-        match self {
-            Sign::Positive => 1.0,
-            Sign::Negative => -1.0,
-        }
-    }
-}
-
-/// A model of an actuator: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation (2).
+/// A model of an actuator: weighted operators, and what stands in front of them.
 ///
 /// ```
-/// use hysteron::{Model, Operator, Plane, Target, Sign};
+/// use hysteron::{Model, Operator, Plane, Sign, Target};
 /// let plane = Plane::new(20.0, 80.0, 3)?;
 /// let weights = vec![1.0, 0.5, 1.0, 0.0, 0.5, 1.0]; // row by row: j = 1…K, i = 1…j
 /// let model = Model::new(Operator::Mkp, plane, weights, 10.0, Sign::Positive)?;
@@ -75,30 +56,40 @@ impl Sign {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    pub(crate) core: hysteron_core::Model<f64, Vec<f64>>,
-    weights: Vec<f64>,
-    offset: f64,
-    sign: Sign,
+    operators: Operators,
     /// What the input is.
     pub input: Quantity,
     /// What the output is.
     pub output: Quantity,
-    /// How offset and weights depend on a load, where they do; the model itself is then that of the middle of its range.
-    pub load: Option<crate::model::load::LoadDependence>,
-    /// The thermal body in front of the operators, where there is one. Input is then what drives the body, and the
-    /// operators follow its temperature: that is what plane, [`Model::step`] and [`Model::run`] speak of. See [`Model::behind_body`].
-    pub thermal: Option<crate::model::body::FirstOrder>,
+    /// How offset and weights depend on a load, where they do; the operators are then those of the
+    /// middle of its range.
+    pub load: Option<LoadDependence>,
+    /// The thermal body in front of the operators, where there is one. The input is then what drives
+    /// the body, and the operators follow its temperature, of which the plane speaks.
+    pub thermal: Option<FirstOrder>,
     /// How the model was obtained, where it was identified.
     pub fit: Option<FitSummary>,
 }
 
+impl From<Operators> for Model {
+    /// A model of these operators alone.
+    fn from(operators: Operators) -> Self {
+        Self {
+            operators,
+            input: Quantity::named("input"),
+            output: Quantity::named("output"),
+            load: None,
+            thermal: None,
+            fit: None,
+        }
+    }
+}
+
 impl Model {
-    /// A model of `operator`s on `plane`; `weights` holds `N = K(K + 1)/2` numbers row by row,
-    /// `j = 1…K` and within a row `i = 1…j`, in the unit of the output.
+    /// A plain model of `operator`s on `plane`; arguments and errors as [`Operators::new`].
     ///
     /// # Errors
-    /// [`Error::Core`] for a wrong number of weights or one that is not finite; [`Error::ModelFile`]
-    /// for an offset that is not finite.
+    /// As [`Operators::new`].
     pub fn new(
         operator: Operator,
         plane: Plane,
@@ -106,108 +97,92 @@ impl Model {
         offset: f64,
         sign: Sign,
     ) -> Result<Self> {
-        if !offset.is_finite() {
-            return Err(Error::ModelFile {
-                path: None,
-                field: "output.offset".into(),
-                problem: format!("{offset} is not a finite number"),
-            });
+        Ok(Operators::new(operator, plane, weights, offset, sign)?.into())
+    }
+
+    /// The operators alone, without the thermal body and the load that may stand in front of them.
+    #[must_use]
+    pub fn operators(&self) -> &Operators {
+        &self.operators
+    }
+
+    /// The operators of a model that is no more than these.
+    ///
+    /// # Errors
+    /// [`Error::Thermal`] for a model with a thermal body, [`Error::Fit`] for one that depends on a
+    /// load.
+    pub fn plain(&self) -> Result<&Operators> {
+        if self.thermal.is_some() {
+            let what = "the model has a thermal body: it runs forward only, and needs the time of each sample";
+            return Err(Error::Thermal(what.into()));
         }
-        // Counted before the table is made, which for a wrong number of levels can be huge.
-        let (expected, found) = (plane.operators(), weights.len());
-        if expected != found {
-            return Err(hysteron_core::Error::WeightCount { expected, found }.into());
+        match &self.load {
+            Some(load) => Err(load.one_is_needed()),
+            None => Ok(&self.operators),
         }
-        let largest = offset.abs() + 2.0 * weights.iter().map(|mu| mu.abs()).sum::<f64>();
-        if weights.iter().all(|mu| mu.is_finite()) && !largest.is_finite() {
-            return Err(Error::ModelFile {
-                path: None,
-                field: "weights".into(),
-                problem: "their sum with the offset is too large for a number".into(),
-            });
-        }
-        let table = vec![0.0; table_len(plane.levels())];
-        let core = hysteron_core::Model::new(plane, operator, &weights, table)?;
-        Ok(Self {
-            core,
-            weights,
-            offset,
-            sign,
-            input: Quantity::named("input"),
-            output: Quantity::named("output"),
-            load: None,
-            thermal: None,
-            fit: None,
-        })
     }
 
     /// The plane.
     #[must_use]
     pub fn plane(&self) -> &Plane {
-        self.core.plane()
+        self.operators.plane()
     }
 
     /// The elementary operator.
     #[must_use]
     pub fn operator(&self) -> Operator {
-        self.core.operator()
+        self.operators.operator()
     }
 
     /// The weights `μ_ij`, row by row: `j = 1…K`, within a row `i = 1…j`.
     #[must_use]
     pub fn weights(&self) -> &[f64] {
-        &self.weights
+        self.operators.weights()
     }
 
     /// Output with `Σ μ γ = 0`.
     #[must_use]
     pub fn offset(&self) -> f64 {
-        self.offset
+        self.operators.offset()
     }
 
     /// Direction of the output.
     #[must_use]
     pub fn sign(&self) -> Sign {
-        self.sign
+        self.operators.sign()
     }
 
     /// The outputs with every operator off and with every operator on, in the output's unit.
     #[must_use]
     pub fn output_range(&self) -> (f64, f64) {
-        let (off, on) = self.core.output_range();
-        (self.outward(off), self.outward(on))
+        self.operators.output_range()
     }
 
-    /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of the output's range.
+    /// Reversals of a target that count as noise if nothing else is said: [`crate::NOISE`] of the
+    /// output's range.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
-        let (off, on) = self.output_range();
-        crate::series::NOISE * (on - off).abs()
+        self.operators.usual_tolerance()
     }
 
-    /// A state with every operator off.
+    /// A state with every operator off; a thermal body is at rest with the first input.
     #[must_use]
     pub fn start(&self) -> State {
-        let memory = vec![Turn::default(); turn_capacity(self.plane().levels())];
-        match self.core.state(memory) {
-            Ok(state) => state,
-            Err(_) => unreachable!("the memory has the capacity asked for"),
-        }
+        State::new(self, Operators::start)
     }
 
     /// A state with every operator on, at the top of the plane.
     #[must_use]
     pub fn saturated(&self) -> State {
-        let mut state = self.start();
-        let reset = self.core.reset_on(&mut state);
-        debug_assert!(reset.is_ok(), "the state is this model's own");
-        state
+        State::new(self, Operators::saturated)
     }
 
-    /// The state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]), bit for bit.
+    /// The state of a plain model that gave `turning_points` ([`State::turning_points`]) and `input`
+    /// ([`State::input`]), bit for bit.
     ///
     /// # Errors
-    /// [`Error::Core`] for turning points that do not nest and for an input that is not finite.
+    /// As [`Model::plain`]; [`Error::Core`] for turning points that do not nest and for an input that
+    /// is not finite.
     ///
     /// ```
     /// # use hysteron::{Model, Operator, Plane, Sign};
@@ -220,70 +195,63 @@ impl Model {
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     pub fn restore(&self, turning_points: &[f64], input: f64) -> Result<State> {
-        let mut state = self.start();
-        self.core.restore(&mut state, turning_points, input)?;
-        Ok(state)
+        Ok(self.plain()?.restore(turning_points, input)?.into())
     }
 
-    /// Moves `state` to `input` and returns the output, and whether the input was outside the plane.
+    /// Moves `state` by a sample and returns the output, and whether the operators' input was outside
+    /// the plane. A plain model takes a number; one with a thermal body or a load needs the time step
+    /// or the load too.
+    ///
+    /// ```
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// assert_eq!(model.step(&mut model.start(), 2.0)?.output, 3.0);
+    ///
+    /// model.thermal = Some(FirstOrder { gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 });
+    /// let mut state = model.start();
+    /// model.step(&mut state, 1.0)?; // at rest at twice the drive
+    /// assert!(model.step(&mut state, 1.0).is_err()); // from here on time counts
+    /// let held = model.step(&mut state, Sample { dt: Some(50.0), ..1.0.into() })?;
+    /// assert_eq!(held.output, 3.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite or a state of another model; the state is then as it was.
-    pub fn step(&self, state: &mut State, input: f64) -> Result<hysteron_core::Output<f64>> {
-        let step = self.core.step(state, input)?;
-        Ok(hysteron_core::Output {
-            output: self.outward(step.output),
-            ..step
-        })
+    /// [`Error::Core`] for an input that is not finite or a state of another model;
+    /// [`Error::Thermal`] for a thermal body without `dt`, or a `dt` that goes back; [`Error::Fit`]
+    /// for a load that is missing, out of range, or of no use. The state is then as it was.
+    pub fn step(&self, state: &mut State, sample: impl Into<Sample>) -> Result<Output<f64>> {
+        state.step(self, sample.into())
     }
 
-    /// Moves `state` through `input` and writes the outputs, and returns how many inputs were clipped.
+    /// Moves the `state` of a plain model through `input` and writes the outputs, and returns how
+    /// many inputs were clipped.
     ///
     /// # Errors
-    /// As [`Model::step`], with the index of the sample.
+    /// As [`Model::plain`] and [`Operators::run`].
     pub fn run(
         &self,
         state: &mut State,
         input: &[f64],
         output: &mut [f64],
-    ) -> Result<hysteron_core::ClippedCount> {
-        let clipped = self.core.run(state, input, output)?;
-        for value in &mut output[..input.len()] {
-            *value = self.outward(*value);
-        }
-        Ok(clipped)
+    ) -> Result<ClippedCount> {
+        self.plain()?.run(&mut state.operators, input, output)
     }
 
-    /// The outputs for `input`, from every operator off.
+    /// The outputs of a plain model for `input`, from every operator off.
     ///
     /// # Errors
-    /// As [`Model::run`].
+    /// As [`Model::run`]. For any model see [`Model::simulate_in`].
     pub fn simulate(&self, input: &[f64]) -> Result<Vec<f64>> {
-        let mut output = vec![0.0; input.len()];
-        self.run(&mut self.start(), input, &mut output)?;
-        Ok(output)
+        self.plain()?.simulate(input)
     }
 
     /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.
     ///
     /// # Errors
-    /// [`Error::Core`] for a state of a model with fewer levels.
-    ///
-    /// ```
-    /// # use hysteron::{Model, Operator, Plane, Sign};
-    /// # let plane = Plane::new(0.0, 1.0, 2)?;
-    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0, 2.0, 4.0], 0.0, Sign::Positive)?;
-    /// let mut state = model.start();
-    /// model.run(&mut state, &[0.5, 1.0, 0.5], &mut [0.0; 3])?;
-    /// assert_eq!(model.operator_states(&state)?, [1.0, 1.0, 0.5]); // γ_11, γ_12, γ_22
-    /// # Ok::<(), hysteron::Error>(())
-    /// ```
+    /// As [`Operators::operator_states`].
     pub fn operator_states(&self, state: &State) -> Result<Vec<f64>> {
-        let rows = (1..=self.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        rows.map(|(i, j)| Ok(state.gamma(i, j)?)).collect()
-    }
-
-    fn outward(&self, sum: f64) -> f64 {
-        self.offset + self.sign.factor() * sum
+        self.operators.operator_states(&state.operators)
     }
 }

@@ -17,26 +17,6 @@ pub struct Surroundings<'a> {
 }
 
 impl Model {
-    /// Refuses a model that does not run sample by sample on its input alone.
-    ///
-    /// # Errors
-    /// [`Error::Thermal`] for one with a thermal body, [`Error::Fit`] for one that depends on a load.
-    pub fn runs_by_itself(&self) -> Result<()> {
-        if self.thermal.is_some() {
-            return Err(Error::Thermal(
-                "the model has a thermal body, which needs the time of each sample: it runs over whole series only".into(),
-            ));
-        }
-        if let Some(load) = &self.load {
-            let (low, high) = load.range();
-            return Err(Error::Fit(format!(
-                "the model depends on the load `{}`: take it at one load first, from {low} to {high}",
-                load.quantity.name
-            )));
-        }
-        Ok(())
-    }
-
     /// The outputs for `input`, from every operator off, whatever the model is made of: an input that drives a thermal
     /// body goes through it, and a load is followed. For a plain model the same as [`Model::simulate`].
     ///
@@ -46,7 +26,7 @@ impl Model {
     /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
     /// model.thermal = Some(FirstOrder { gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 });
     /// let surroundings = Surroundings { time: Some(&[0.0, 1.0, 50.0]), load: None };
-    /// let output = model.predict(&[0.0, 1.0, 1.0], surroundings)?;
+    /// let output = model.simulate_in(&[0.0, 1.0, 1.0], surroundings)?;
     /// assert_eq!(output, [0.0, 0.0, 3.0]); // a held drive heats for as long as it is held
     /// # Ok::<(), hysteron::Error>(())
     /// ```
@@ -54,15 +34,15 @@ impl Model {
     /// # Errors
     /// As [`Model::run`]; [`Error::Thermal`] for a model with a thermal body without time, and for times that go back;
     /// [`Error::Fit`] for a model that depends on a load without it, and the other way round.
-    pub fn predict(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
+    pub fn simulate_in(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
         self.at(&self.seen(input, surroundings)?, surroundings)
     }
 
-    /// The lower and the upper end of the 95 % band around [`Model::predict`].
+    /// The lower and the upper end of the 95 % band around [`Model::simulate_in`].
     ///
     /// # Errors
-    /// As [`Model::predict`]; [`Error::Fit`] for a model that does not say how certain it is.
-    pub fn predict_band(
+    /// As [`Model::simulate_in`]; [`Error::Fit`] for a model that does not say how certain it is.
+    pub fn band_in(
         &self,
         input: &[f64],
         surroundings: Surroundings<'_>,
@@ -90,12 +70,9 @@ impl Model {
 
     fn at(&self, seen: &[f64], around: Surroundings<'_>) -> Result<Vec<f64>> {
         match (&self.load, around.load) {
-            (None, None) => self.simulate(seen),
+            (None, None) => self.operators().simulate(seen),
             (_, Some(load)) => self.simulate_under_load(seen, load),
-            (Some(dependence), None) => Err(Error::Fit(format!(
-                "the model depends on the load `{}`: give it, or take the model at one load",
-                dependence.quantity.name
-            ))),
+            (Some(dependence), None) => Err(dependence.one_is_needed()),
         }
     }
 }
@@ -130,17 +107,19 @@ mod tests {
             time: None,
             load: Some(&load),
         };
-        let found = model.predict(&input, around).unwrap();
+        let found = model.simulate_in(&input, around).unwrap();
         assert_eq!(found, model.simulate_under_load(&input, &load).unwrap());
-        let (low, high) = model.predict_band(&input, around).unwrap();
+        let (low, high) = model.band_in(&input, around).unwrap();
         let inside = |n: usize| low[n] < found[n] && found[n] < high[n];
         assert!((0..400).all(inside));
-        let refused = model.predict(&input, Surroundings::default()).unwrap_err();
+        let refused = model
+            .simulate_in(&input, Surroundings::default())
+            .unwrap_err();
         assert!(refused.to_string().contains("`load`"), "{refused}");
         let plain = model.at_load(3.0).unwrap();
-        assert!(plain.predict(&input, around).is_err());
+        assert!(plain.simulate_in(&input, around).is_err());
         assert_eq!(
-            plain.predict(&input, Surroundings::default()).unwrap(),
+            plain.simulate_in(&input, Surroundings::default()).unwrap(),
             plain.simulate(&input).unwrap()
         );
     }

@@ -254,7 +254,7 @@ mod tests {
     fn what_is_remembered_leaves_every_operator_where_it_was() -> crate::error::Result<()> {
         let plane = crate::model::Plane::new(1.0, 9.0, 9)?;
         let (operator, sign) = (hysteron_core::Operator::Mkp, crate::model::Sign::Positive);
-        let model = crate::model::Model::new(operator, plane, vec![1.0; 45], 0.0, sign)?;
+        let model = crate::model::Operators::new(operator, plane, vec![1.0; 45], 0.0, sign)?;
         let mut n = 1_u64;
         for length in 1..200 {
             let mut series = Vec::new();

@@ -22,14 +22,15 @@ pub(crate) fn fit_weights(
     let sign = fitted.sign;
     let parts = problem.load_parts(&fitted.solution.x, &fitted.solution.free, sign);
     let first = &recordings[0];
-    let load = problem.experiment.load_range.map(|(min, max)| {
-        LoadDependence::new(first.load_quantity.clone(), (min, max), parts.clone())
-    });
     let whole = LoadPart::at_middle(&parts);
     let mut model = Model::new(options.operator, plane, whole.weights, whole.offset, sign)?;
     model.input = first.input_quantity.clone();
     model.output = first.output_quantity.clone();
-    model.load = load;
+    if let Some(range) = problem.experiment.load_range {
+        let quantity = first.load_quantity.clone();
+        let load = LoadDependence::new(quantity, range, parts, model.operators());
+        model.load = Some(load.map_err(|(_, error)| error)?);
+    }
     let confidence = confidence::of(&problem, &fitted, progress)?;
 
     let residual = &fitted.solution.residual;

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::identify::weights::sparse::Initial;
-use crate::model::State;
+use crate::model::OperatorState;
 use hysteron_core::{Model, Turn, turn_capacity};
 
 /// A non-zero element of `W`: its column and its value.
@@ -22,7 +22,7 @@ impl Term {
 pub(crate) struct Rows<'a> {
     blank: &'a Model<f64, Vec<f64>>,
     place: &'a [u32],
-    state: State,
+    state: OperatorState,
     /// Turning points that `memory` was made of.
     held: usize,
     memory: Vec<Term>,
@@ -66,7 +66,7 @@ impl<'a> Rows<'a> {
         });
     }
 
-    pub(crate) fn state(&self) -> &State {
+    pub(crate) fn state(&self) -> &OperatorState {
         &self.state
     }
 
@@ -99,7 +99,7 @@ impl<'a> Rows<'a> {
 }
 
 /// The state of a model before the first sample.
-pub(crate) fn state_of(model: &Model<f64, Vec<f64>>, from: Initial) -> Result<State> {
+pub(crate) fn state_of(model: &Model<f64, Vec<f64>>, from: Initial) -> Result<OperatorState> {
     let memory = vec![Turn::default(); turn_capacity(model.plane().levels())];
     let mut state = model.state(memory)?;
     if from == Initial::On {
