@@ -1,16 +1,16 @@
 //! `design` and `Design`.
 
 use crate::error::Raise;
-use crate::given::inputs_of;
-use crate::judge::classes;
+use crate::evaluate::classes;
+use crate::inputs::inputs_of;
+use crate::integer::Integer;
 use crate::pool::detached;
-use crate::whole::Whole;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// A profile of the input, and what is known once it has been recorded. Made by `design`.
+/// An input profile, and what its recording will determine. Made by `design`.
 #[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Design {
     inner: hysteron::Design,
@@ -103,7 +103,9 @@ impl Design {
     }
 }
 
-/// The shortest input profile that determines every operator of a plane, or what recordings lack of that.
+/// The shortest input profile that determines every operator of a plane.
+///
+/// With `recorded`, only what these recordings do not determine.
 ///
 /// Parameters
 /// ----------
@@ -146,7 +148,7 @@ impl Design {
 pub(crate) fn design(
     py: Python<'_>,
     range: (f64, f64),
-    levels: Whole,
+    levels: Integer,
     heating_rate: f64,
     cooling_rate: f64,
     budget: Option<f64>,
@@ -160,7 +162,7 @@ pub(crate) fn design(
     };
     let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
     let options = DesignOptions {
-        operator: crate::word::operator(operator)?,
+        operator: crate::choices::operator(operator)?,
         budget_s: budget,
         step_s: step,
         ..DesignOptions::new(plane, rates)

@@ -1,6 +1,6 @@
 //! `Learning`, and outcomes of learning as arrays.
 
-use crate::word::choice;
+use crate::choices::choice;
 use hysteron::{Clipped, Outcome};
 use numpy::PyArray1;
 use pyo3::prelude::*;

@@ -2,8 +2,8 @@
 
 use crate::array::samples;
 use crate::error::{Raise, number};
+use crate::integer::Integer;
 use crate::shared::Shared;
-use crate::whole::Whole;
 use hysteron::control::{self, Gains};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -136,7 +136,7 @@ impl Pid {
     #[staticmethod]
     fn from_step(
         output: &Bound<'_, PyAny>,
-        begin: Whole,
+        begin: Integer,
         step: f64,
         interval_s: f64,
     ) -> PyResult<Self> {

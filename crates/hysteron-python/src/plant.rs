@@ -1,7 +1,7 @@
 //! Simulated plants.
 
+use crate::convert::{arguments, options};
 use crate::error::{Raise, number};
-use crate::said::{arguments, options};
 use crate::shared::Shared;
 use hysteron::plant::{self, PreisachPlantOptions, SpringPlantOptions};
 use hysteron::track::{Event, PlantOptions};
@@ -164,9 +164,9 @@ impl SimulatedPlant {
     /// nan
     #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
     fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        let given = arguments(py, what, &[])?;
-        given.set_item("at_s", 0.0)?;
-        let event: Event = options("a disturbance", given.as_any())?;
+        let event = arguments(py, what, &[])?;
+        event.set_item("at_s", 0.0)?;
+        let event: Event = options("disturb", event.as_any())?;
         let what = event.disturbances();
         let disturb = |plant: &mut Boxed| what.into_iter().try_for_each(|what| plant.disturb(what));
         self.inner.with(py, disturb).raise()

@@ -1,8 +1,8 @@
 //! `read`.
 
+use crate::convert::warn;
 use crate::error::Raise;
 use crate::recording::Recording;
-use crate::said::warn;
 use hysteron::{Columns, Quantity, ReadOptions, Repair};
 use pyo3::prelude::*;
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use crate::error::Raise;
 use crate::pid::{Pid, interval};
 use crate::shared::Shared;
-use hysteron::control;
+use hysteron::{Error, control};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -18,8 +18,9 @@ use pyo3::prelude::*;
 ///     The relay's two commands, the lower one first.
 /// middle : float
 ///     Output at which it switches.
-/// band : float
-///     How far beyond, from 0 on: larger than the noise.
+/// hysteresis : float
+///     How far beyond `middle` the output has to go before it switches, from 0 on: more than the
+///     noise.
 ///
 /// Raises
 /// ------
@@ -28,7 +29,7 @@ use pyo3::prelude::*;
 /// Examples
 /// --------
 /// >>> plant = pyhysteron.PreisachPlant()
-/// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+/// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
 /// >>> while not test.done:
 /// ...     plant.write(test.command)
 /// ...     plant.advance(0.01)
@@ -44,9 +45,15 @@ pub(crate) struct RelayTest {
 #[pymethods]
 impl RelayTest {
     #[new]
-    #[pyo3(signature = (commands, middle, *, band=0.0))]
-    fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
-        let inner = Shared::new(control::RelayTest::new(commands, middle, band).raise()?);
+    #[pyo3(signature = (commands, middle, *, hysteresis=0.0))]
+    fn new(commands: (f64, f64), middle: f64, hysteresis: f64) -> PyResult<Self> {
+        let test = control::RelayTest::new(commands, middle, hysteresis);
+        // The façade says `band`, which is another thing in Python.
+        let test = test.map_err(|error| match error {
+            Error::Control(text) => Error::Control(text.replace("band", "hysteresis")),
+            other => other,
+        });
+        let inner = Shared::new(test.raise()?);
         Ok(Self { inner })
     }
 
@@ -77,9 +84,9 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
     /// >>> before = test.command
-    /// >>> test.push(40.0)  # beyond the middle and the band
+    /// >>> test.push(40.0)  # beyond middle and hysteresis
     /// >>> before, test.command
     /// (110.0, 40.0)
     fn push(&self, py: Python<'_>, output: f64) {
@@ -130,7 +137,7 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> plant, test = pyhysteron.PreisachPlant(), pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> plant, test = pyhysteron.PreisachPlant(), pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
     /// >>> while not test.done:
     /// ...     plant.write(test.command)
     /// ...     plant.advance(0.01)

@@ -1,5 +1,6 @@
 //! `control.Trace`.
 
+use crate::convert::result;
 use crate::error::Raise;
 use crate::plane::on_plane;
 use hysteron::control::{self, LoopStatus};
@@ -116,7 +117,7 @@ impl Trace {
 
     /// The weights over time, of a controller that adapts.
     ///
-    /// Dictionaries with 'time' (s), 'offset' and 'weights' (shape (K, K), NaN below the diagonal).
+    /// A list of `results.Snapshot`.
     #[getter]
     fn snapshots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
@@ -125,7 +126,7 @@ impl Trace {
             entry.set_item("time", snapshot.time)?;
             entry.set_item("offset", snapshot.offset)?;
             entry.set_item("weights", on_plane(py, &snapshot.weights)?)?;
-            list.append(entry)?;
+            list.append(result(py, "Snapshot", entry)?)?;
         }
         Ok(list)
     }

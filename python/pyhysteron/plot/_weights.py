@@ -1,14 +1,18 @@
 """The weights over the plane."""
 
+from typing import Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
+from .._hysteron import Model
 from ._plane import colour_map, marker_size, plane_axes
 from ._style import figure, one_of, single, unit
 
 
 @figure
-def weights(model, *, kind="marks", ax=None):
+def weights(model: Model, *, kind: Literal["marks", "map", "bars"] = "marks", ax: Axes | None = None) -> Axes:
     """The weights on the plane: where they are not zero (Fig. 8a), or how large they are (Fig. 8b).
 
     Parameters

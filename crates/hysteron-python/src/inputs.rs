@@ -1,6 +1,6 @@
 //! Recordings and inputs as calls take them: as such, or as arrays.
 
-use crate::array::samples;
+use crate::array::series;
 use crate::error::finite;
 use crate::recording::Recording;
 use pyo3::exceptions::PyTypeError;
@@ -70,15 +70,4 @@ pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Ve
         }
         _ => Ok(vec![input_of(value, argument)?]),
     }
-}
-
-pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
-    Ok(samples(value, argument)?.as_slice()?.to_vec())
-}
-
-pub(crate) fn optional(
-    value: Option<&Bound<'_, PyAny>>,
-    argument: &str,
-) -> PyResult<Option<Vec<f64>>> {
-    value.map(|value| series(value, argument)).transpose()
 }
