@@ -1,14 +1,16 @@
 """Hysteresis models of actuators: identify, simulate, invert, adapt.
 
-From a recording of input and output (temperature and displacement, say) to an MKP model
-(modified Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
+From a recording of input and output (temperature and displacement, say) to an MKP model (modified
+Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
 
-Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse` and `Model.start`.
-`design` plans a recording. `adapt` and `Adaptive` let a model follow an actuator that changes.
+Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse`
+and `Model.start`. `design` plans a recording. `adapt` and `Adaptive` let a model follow an actuator
+that changes.
 
-Submodules: `pyhysteron.control` and `track` for control loops, `pyhysteron.plot` for figures, `pyhysteron.sklearn` for a
-regressor, `pyhysteron.blocks` for blocks of python-control, `pyhysteron.results` for what functions return,
-`pyhysteron.errors` for exceptions. Those with an extra package are imported when they are first used.
+Submodules: `pyhysteron.control` and `track` for control loops, `pyhysteron.plot` for figures,
+`pyhysteron.sklearn` for a regressor, `pyhysteron.blocks` for blocks of python-control,
+`pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
+extra package are imported when they are first used.
 """
 
 import importlib as _importlib

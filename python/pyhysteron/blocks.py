@@ -1,10 +1,12 @@
 """Discrete blocks for python-control (``pip install pyhysteron[control]``).
 
-A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and simulated there.
+A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and
+simulated there.
 
-python-control calls the functions of a block several times for a sample, with inputs that are not final yet. So the state
-vector of model and inverse holds the whole memory: ``[count, input, turning points…]``, all zero with every operator off.
-The output of a model follows its input without delay. A closed loop needs a delay elsewhere, as any loop of python-control.
+python-control calls the functions of a block several times for a sample, with inputs that are not
+final yet. So the state vector of model and inverse holds the whole memory: ``[count, input, turning
+points…]``, all zero with every operator off. The output of a model follows its input without delay.
+A closed loop needs a delay elsewhere, as any loop of python-control.
 """
 
 from __future__ import annotations
@@ -148,7 +150,8 @@ def inverse_block(
     dt : float
         Time between samples, s; True for discrete time without a length, as in python-control.
     policy : {'hold', 'anticipate'}
-        With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling, 0 not known.
+        With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling,
+        0 not known.
     tolerance : float
         Reversals of the target up to this size are noise and not followed, in the output's unit.
     **kwargs
@@ -200,9 +203,10 @@ def adaptive_block(
 ) -> control.NonlinearIOSystem:
     """An adaptive compensator as a block: its inverse gives the input for a target, and it learns from what is measured.
 
-    The input for a target comes from the weights learned up to the sample before, so that a reading does not act on it at
-    once. The memory of an estimator is no vector: the block's state is the number of an estimator. The block keeps the first
-    estimator (number 0) and the last ones, and refuses an older number.
+    The input for a target comes from the weights learned up to the sample before, so that a reading
+    does not act on it at once. The memory of an estimator is no vector: the block's state is the
+    number of an estimator. The block keeps the first estimator (number 0) and the last ones, and
+    refuses an older number.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Results as frozen dataclasses: what `fit`, `evaluate`, `prepare` and others return.
 
-Nobody makes these objects by hand. ``to_dict()`` gives plain dictionaries, as `dataclasses.asdict` does.
-Two results are equal if all their fields are; NaN equals NaN.
+Nobody makes these objects by hand. ``to_dict()`` gives plain dictionaries, as `dataclasses.asdict`
+does. Two results are equal if all their fields are; NaN equals NaN.
 
 >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
 >>> errors = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]).forward

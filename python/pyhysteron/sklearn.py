@@ -1,9 +1,10 @@
 """pyhysteron for scikit-learn: a regressor with memory, and a splitter that respects the memory.
 
-A column of `X` is the input. The rows are samples in the order of time, and the output depends on that order: shuffled rows
-are another experiment. `predict` starts at the first row with every operator off (or on, with ``start='on'``). A plain `KFold`
-scores the wrong experiment, since it passes the middle of a recording without its past. `BranchSplit` also passes what the
-operators remember.
+A column of `X` is the input. The rows are samples in the order of time, and the output depends on
+that order: shuffled rows are another experiment. `predict` starts at the first row with every
+operator off (or on, with ``start='on'``). A plain `KFold` scores the wrong experiment, since it
+passes the middle of a recording without its past. `BranchSplit` also passes what the operators
+remember.
 """
 
 from __future__ import annotations
@@ -48,8 +49,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     smooth : float or 'auto'
         Strength of the smoothness across the plane.
     start : {'off', 'on', 'unknown'}
-        State of the operators before the first sample. `fit` estimates 'unknown'. `predict` then starts with every
-        operator off, since it has no output to estimate from.
+        State of the operators before the first sample. `fit` estimates 'unknown'. `predict` then
+        starts with every operator off, since it has no output to estimate from.
     sign : {None, 1, -1}
     offset : float, optional
     bootstrap : int
@@ -174,13 +175,15 @@ def _column(X, column):
 class BranchSplit:
     """Leaves out runs of whole branches in turn, with what the operators remember before each run.
 
-    The samples of one branch are alike. Leaving out some of them tests nothing, so a fold is a run of whole branches, with about
-    as many samples in each fold. An operator depends on the past only through the turning points that no larger swing has
-    wiped out (`pyhysteron.remembered`): two to a few dozen samples. They go before the fold in the test set, and before what
-    follows the fold in the training set. So each operator has the same state after a fold as in the whole recording.
+    The samples of one branch are alike. Leaving out some of them tests nothing, so a fold is a run
+    of whole branches, with about as many samples in each fold. An operator depends on the past only
+    through the turning points that no larger swing has wiped out (`pyhysteron.remembered`): two to
+    a few dozen samples. They go before the fold in the test set, and before what follows the fold
+    in the training set. So each operator has the same state after a fold as in the whole recording.
 
-    These few samples are in both sets, and the folds are no partition. `cross_val_score`, `cross_validate` and `GridSearchCV`
-    accept that, `cross_val_predict` does not. `pyhysteron.left_out` needs no such samples.
+    These few samples are in both sets, and the folds are no partition. `cross_val_score`,
+    `cross_validate` and `GridSearchCV` accept that, `cross_val_predict` does not.
+    `pyhysteron.left_out` needs no such samples.
 
     Parameters
     ----------

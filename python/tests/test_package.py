@@ -63,6 +63,8 @@ def test_there_is_no_such_attribute():
         (lambda: MODEL.inverse().run(INPUT, tolerence=1), TypeError, "`tolerance`"),
         (lambda: MODEL.inverse().run(INPUT, policy="anticipat"), ValueError, "'anticipate'"),
         (lambda: MODEL.inverse().step(MODEL.start(), 1.0, heading="raising"), ValueError, "'rising'"),
+        (lambda: pyhysteron.read("a.csv", input="T", output="y", repiar=True), TypeError, "`repair`"),
+        (lambda: pyhysteron.design((0, 1), 5, heating_rate=1, cooling_rate=1, budgt=1), TypeError, "`budget`"),
         (lambda: Controller(0.1, (0, 1), polcy="hold"), TypeError, "`policy`"),
     ],
 )

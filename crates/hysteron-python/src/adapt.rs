@@ -21,8 +21,8 @@ pub(crate) struct Adapted {
     model: Model,
     /// A table, as pandas takes it: arrays of shape (n,).
     ///
-    /// 'input', 'output', 'output_model' (before the sample was learned from), 'error' (measured less
-    /// modelled) and 'outcome' (as in `Learning`).
+    /// 'input', 'output', 'output_model' (before the sample was learned from), 'error' (measured
+    /// less modelled) and 'outcome' (as in `Learning`).
     table: Py<PyDict>,
     /// Errors of the model that learned beside those of the fixed model: a
     /// `results.AdaptedComparison`.

@@ -143,7 +143,8 @@ impl Controller {
     /// output : float
     ///     The output as measured; NaN where the sensor gave nothing.
     /// input : float, optional
-    ///     The input of the hysteresis as measured; NaN where the sensor gave nothing, None where the drive itself is the input.
+    ///     The input of the hysteresis as measured; NaN where the sensor gave nothing, None where
+    ///     the drive itself is the input.
     /// heading : {None, 'rising', 'falling'}
     ///     Where the target goes next, for 'anticipate'; see `headings`.
     ///
@@ -184,7 +185,8 @@ impl Controller {
         Ok(action.raise()?.into())
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings, relay and step tests.
+    /// One sample that brings the input to `command`, whatever the output is: for recordings, relay
+    /// and step tests.
     ///
     /// Parameters
     /// ----------
@@ -239,15 +241,16 @@ impl Controller {
 
     /// Follow a reference on a device, one sample for each of its values.
     ///
-    /// A simulated plant is advanced by `interval_s` for each sample. For any other device this is the
-    /// loop `read`, `step`, `write`, and its `read` has to wait for the next sample. What the device
-    /// raises is raised here; the drive stays as last written.
+    /// A simulated plant is advanced by `interval_s` for each sample. For any other device this is
+    /// the loop `read`, `step`, `write`, and its `read` has to wait for the next sample. What the
+    /// device raises is raised here; the drive stays as last written.
     ///
     /// Parameters
     /// ----------
     /// device : SpringPlant, PreisachPlant or object
-    ///     An object has ``read()``, which returns the output or a pair of output and input (NaN or None for a lost reading
-    ///     of the output), and ``write(drive)``; a simulation may have ``advance(dt_s)`` too.
+    ///     An object has ``read()``, which returns the output or a pair of output and input (NaN or
+    ///     None for a lost reading of the output), and ``write(drive)``; a simulation may have
+    ///     ``advance(dt_s)`` too.
     /// reference : array_like, shape (n,)
     ///     In the output's unit. Where it goes next is taken from it, for 'anticipate'.
     /// events : sequence of dict
@@ -264,7 +267,8 @@ impl Controller {
     /// RigError
     ///     For an event that the plant does not know.
     /// ValueError, TypeError
-    ///     For events of a device that is no simulated plant, and for a device that cannot be read or written.
+    ///     For events of a device that is no simulated plant, and for a device that cannot be read
+    ///     or written.
     ///
     /// Examples
     /// --------

@@ -8,6 +8,7 @@ use crate::pool::detached;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// An input profile, and what its recording will determine. Made by `design`.
@@ -24,13 +25,15 @@ impl Design {
         PyArray1::from_slice(py, &self.inner.time)
     }
 
-    /// Input at each sample, shape (n,); it starts at the bottom of the plane, with every operator off.
+    /// Input at each sample, shape (n,); it starts at the bottom of the plane, with every operator
+    /// off.
     #[getter]
     fn input<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.inner.input)
     }
 
-    /// The branches in order: input at the start, input at the end, and how many corners of the plane none before it shows.
+    /// The branches in order: input at the start, input at the end, and how many corners of the
+    /// plane none before it shows.
     #[getter]
     fn legs(&self) -> Vec<(f64, f64, usize)> {
         let legs = self.inner.legs.iter();
@@ -51,7 +54,8 @@ impl Design {
         recorded.map(|found| classes(py, found)).transpose()
     }
 
-    /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is determined.
+    /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is
+    /// determined.
     #[getter]
     fn corners(&self) -> usize {
         self.inner.corners
@@ -110,7 +114,8 @@ impl Design {
 /// Parameters
 /// ----------
 /// range : tuple of float
-///     Lowest and highest level of the plane, in the input's unit; the profile starts one level below the lowest.
+///     Lowest and highest level of the plane, in the input's unit; the profile starts one level
+///     below the lowest.
 /// levels : int
 /// heating_rate, cooling_rate : float
 ///     How fast the input can rise and fall, in its unit per second.
@@ -143,7 +148,8 @@ impl Design {
 /// >>> len(pyhysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
 /// 0
 #[pyfunction]
-#[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp"))]
+#[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp", **unknown),
+    text_signature = "(range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator='mkp')")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn design(
     py: Python<'_>,
@@ -155,7 +161,17 @@ pub(crate) fn design(
     recorded: Option<&Bound<'_, PyAny>>,
     step: Option<f64>,
     operator: &str,
+    unknown: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Design> {
+    let names = [
+        "heating_rate",
+        "cooling_rate",
+        "budget",
+        "recorded",
+        "step",
+        "operator",
+    ];
+    crate::choices::none_left("design", unknown, &names)?;
     let rates = Rates {
         heating: heating_rate,
         cooling: cooling_rate,

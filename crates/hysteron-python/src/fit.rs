@@ -27,7 +27,8 @@ use pyo3::types::{PyDict, PyString};
 ///     Number of levels ``K`` of the plane, from 2 on; it has ``K (K + 1) / 2`` operators. 'auto'
 ///     chooses it by cross-validation.
 /// range : tuple of float, optional
-///     Lowest and highest level, in the input's unit. By default the active range is that of the input.
+///     Lowest and highest level, in the input's unit. By default the active range is that of the
+///     input.
 /// operator : {'mkp', 'kp', 'relay'}
 ///     With an identified offset, 'kp' fits as 'mkp' does: they differ by an offset.
 /// solver : {'nnls', 'ols'}
@@ -45,7 +46,8 @@ use pyo3::types::{PyDict, PyString};
 /// load_degree : int
 ///     Order of the weights as a function of the load, 0 to 5, where the recordings have a load.
 /// bootstrap : int, optional
-///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45 levels on 0.
+///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45
+///     levels on 0.
 /// thermal : {None, 'first-order'}
 ///     Identify a thermal body in front of the operators, for an input that heats. The input has
 ///     to be proportional to the power, as a duty cycle is: give the square of a current or a
@@ -114,7 +116,8 @@ pub(crate) fn fit(
     Ok(model.into())
 }
 
-/// Cross-validate: leave out groups of branches in turn, fit the rest, and predict what was left out.
+/// Cross-validate: leave out groups of branches in turn, fit the rest, and predict what was left
+/// out.
 ///
 /// Parameters
 /// ----------

@@ -62,9 +62,9 @@ impl Inverse {
     ///     What the input does while the target rests. 'hold': it rests too. 'anticipate': it
     ///     crosses the dead band, to where the output starts to move with the target.
     /// tolerance : float, optional
-    ///     Reversals of the target up to this size are noise and not followed, in the output's unit.
-    ///     A noisy target may be missed by up to twice as much. By default 0 with 'hold', and 1 % of
-    ///     the model's range with 'anticipate'.
+    ///     Reversals of the target up to this size are noise and not followed, in the output's
+    ///     unit. A noisy target may be missed by up to twice as much. By default 0 with 'hold', and
+    ///     1 % of the model's range with 'anticipate'.
     /// state : State, optional
     ///     The state to start from; it is moved. By default every operator off.
     /// heading : sequence of {None, 'rising', 'falling'}, shape (n,), optional
@@ -75,8 +75,8 @@ impl Inverse {
     /// input : ndarray or pandas.Series, shape (n,)
     ///     In the input's unit. A Series gives a Series with the same index.
     /// status : ndarray of int8 or pandas.Series, shape (n,)
-    ///     0 where the input gives the target, up to the tolerance, -1 and 1 where it lies below or above every
-    ///     output, 2 where a relay model jumps past it.
+    ///     0 where the input gives the target, up to the tolerance, -1 and 1 where it lies below or
+    ///     above every output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
@@ -178,7 +178,8 @@ impl Inverse {
     /// Raises
     /// ------
     /// CoreError
-    ///     For a target that is NaN or infinite, or a state of another model. The state is unchanged then.
+    ///     For a target that is NaN or infinite, or a state of another model. The state is
+    ///     unchanged then.
     ///
     /// Examples
     /// --------

@@ -30,8 +30,8 @@ fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
 
 /// A PID controller for samples, ``u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)``.
 ///
-/// It stays within limits: while the output stands at one, the integral does not grow in that direction. The derivative
-/// is filtered with an eighth of its time.
+/// It stays within limits: while the output stands at one, the integral does not grow in that
+/// direction. The derivative is filtered with an eighth of its time.
 ///
 /// Parameters
 /// ----------
@@ -125,7 +125,8 @@ impl Pid {
     /// Raises
     /// ------
     /// ValueError
-    ///     Where the output does not answer by more than its noise, and for a `begin` or an `interval_s` that cannot be.
+    ///     Where the output does not answer by more than its noise, and for a `begin` or an
+    ///     `interval_s` that cannot be.
     ///
     /// Examples
     /// --------
@@ -191,7 +192,8 @@ impl Pid {
     /// Raises
     /// ------
     /// CoreError
-    ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a reading there is `hold`.
+    ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a
+    ///     reading there is `hold`.
     /// ValueError
     ///     For a `dt` of zero and less, and limits of which the upper one comes first.
     ///

@@ -15,8 +15,8 @@ use std::time::Duration;
 /// How often signals are checked and progress is reported.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Does `work` without the interpreter's lock. What a signal or the callback raises ends the work and
-/// is raised here.
+/// Does `work` without the interpreter's lock. What a signal or the callback raises ends the work
+/// and is raised here.
 ///
 /// `progress` is `None`, `True` for tqdm, or called with the stage and the share done, `None` where
 /// unknown.

@@ -31,7 +31,8 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// RecordingError
-///     For series of different lengths, no samples, one that is NaN or infinite, or time that goes back.
+///     For series of different lengths, no samples, one that is NaN or infinite, or time that goes
+///     back.
 ///
 /// Examples
 /// --------

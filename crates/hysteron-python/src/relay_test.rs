@@ -7,10 +7,11 @@ use hysteron::{Error, control};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop
+/// oscillate.
 ///
-/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the hysteresis,
-/// which a step test on one branch does not see.
+/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the
+/// hysteresis, which a step test on one branch does not see.
 ///
 /// Parameters
 /// ----------

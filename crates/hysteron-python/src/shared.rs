@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError, TryLockError};
 
-/// A value that one thread has at a time. No Python runs while it is had, nor is an exception made: either could run anything
-/// (the collector, a callback of its), and with that come back here.
+/// A value that one thread has at a time. No Python runs while it is had, nor is an exception made:
+/// either could run anything (the collector, a callback of its), and with that come back here.
 pub(crate) struct Shared<T>(Mutex<T>);
 
 impl<T: Send> Shared<T> {

@@ -145,14 +145,16 @@ impl State {
         Ok(saved)
     }
 
-    /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position last.
+    /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position
+    /// last.
     #[getter]
     fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let points = |state: &mut hysteron::State| state.turning_points().collect();
         PyArray1::from_vec(py, self.inner.with(py, points))
     }
 
-    /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the diagonal.
+    /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the
+    /// diagonal.
     #[getter]
     fn operators<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let model = &self.model.inner;

@@ -79,7 +79,8 @@ impl Trace {
         PyArray1::from_slice(py, &self.inner.drive)
     }
 
-    /// The output that the controller's model expected before it learned from the reading; NaN without a model.
+    /// The output that the controller's model expected before it learned from the reading; NaN
+    /// without a model.
     #[getter]
     fn prediction<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.prediction)

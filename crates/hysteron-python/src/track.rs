@@ -162,13 +162,15 @@ impl Comparison {
 
 /// Compare controllers on a simulated plant, as ``hysteron track`` does.
 ///
-/// For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with
-/// the same disturbances. The gains of all PIDs come from one test on the same plant. Ctrl-C ends it.
+/// For each seed a model is identified from an experiment of its own, and every controller runs
+/// over the same reference with the same disturbances. The gains of all PIDs come from one test on
+/// the same plant. Ctrl-C ends it.
 ///
 /// Parameters
 /// ----------
 /// scenario : str or path-like
-///     Name of a built-in scenario (`scenarios`), a TOML file, or the text of one (which has more than one line).
+///     Name of a built-in scenario (`scenarios`), a TOML file, or the text of one (which has more
+///     than one line).
 /// seeds : int, optional
 ///     How many runs, each with its own noise, instead of what the scenario says.
 /// progress : callable or bool, optional

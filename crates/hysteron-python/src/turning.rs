@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 /// The branch of each sample of an input.
 ///
-/// A branch ends where the input turns by more than `dead_band`; the turning point belongs to the branch before it.
+/// A branch ends where the input turns by more than `dead_band`; the turning point belongs to the
+/// branch before it.
 ///
 /// Parameters
 /// ----------

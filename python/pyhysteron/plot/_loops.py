@@ -66,7 +66,8 @@ def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> A
     ----------
     model : Model
     loads : float or array_like of shape (n,), optional
-        In the load's unit; by default the ends of the range that the model was fitted on, and its middle.
+        In the load's unit; by default the ends of the range that the model was fitted on, and its
+        middle.
     ax : matplotlib.axes.Axes, optional
 
     Returns

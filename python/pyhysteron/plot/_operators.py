@@ -15,8 +15,9 @@ from ._style import BLUE, CONTRAST, DASHED, DOTTED, MODELLED, figure, label, sev
 def operators(*, axes: Any = None) -> NDArray[Any]:
     """Output over input of one relay, one KP and one MKP operator (Fig. 5).
 
-    Models with one weight, simulated: between the two bounding curves, the ridge functions of equation (4), the relay jumps, and KP and MKP
-    operators keep their output where the input turns back.
+    Models with one weight, simulated: between the two bounding curves, the ridge functions of
+    equation (4), the relay jumps, and KP and MKP operators keep their output where the input turns
+    back.
 
     Parameters
     ----------

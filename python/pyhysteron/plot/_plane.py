@@ -124,8 +124,9 @@ def plane(
 ) -> NDArray[Any]:
     """Evolution of the plane: the operators' states at a few moments of a history (Figs. 6 and 7).
 
-    ○ for an operator at 0, a filled square for one between 0 and 1, ● for one at 1. The dashed line is the present input: rising, it
-    switches operators on below it; falling, it switches them off to its right.
+    ○ for an operator at 0, a filled square for one between 0 and 1, ● for one at 1. The dashed line
+    is the present input: rising, it switches operators on below it; falling, it switches them off
+    to its right.
 
     Parameters
     ----------
@@ -146,7 +147,8 @@ def plane(
     Raises
     ------
     ValueError
-        For a model with a thermal body, an input without samples or one that is NaN or infinite, `at` without samples, or fewer axes.
+        For a model with a thermal body, an input without samples or one that is NaN or infinite,
+        `at` without samples, or fewer axes.
     IndexError
         For a sample that the input does not have.
     TypeError

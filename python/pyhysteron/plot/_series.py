@@ -27,8 +27,8 @@ def over_time(
     recording : Recording
     model : Model
     of : {'output', 'input'}
-        The output of the model for the recorded input; or the input of the inverse model for the recorded output, in which
-        samples of a dead band, where the output stands still, are shaded.
+        The output of the model for the recorded input; or the input of the inverse model for the
+        recorded output, in which samples of a dead band, where the output stands still, are shaded.
     start : {'off', 'on', 'unknown'}
         Where the operators stand before the first sample.
     axes : sequence of two matplotlib.axes.Axes, optional
@@ -133,8 +133,9 @@ def dead_band(
 ) -> NDArray[Any]:
     """The dead band with the largest error of the inverse, close up (Fig. 15).
 
-    After a turn the output stands still while the input travels, so that the inverse cannot follow: 'hold' rests
-    until the output moves; 'anticipate', told where the output goes next, crosses the dead band at once. Shaded where the output stands still.
+    After a turn the output stands still while the input travels, so that the inverse cannot follow:
+    'hold' rests until the output moves; 'anticipate', told where the output goes next, crosses the
+    dead band at once. Shaded where the output stands still.
 
     Parameters
     ----------

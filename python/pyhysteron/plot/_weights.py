@@ -19,8 +19,8 @@ def weights(model: Model, *, kind: Literal["marks", "map", "bars"] = "marks", ax
     ----------
     model : Model
     kind : {'marks', 'map', 'bars'}
-        ○ for a weight that is zero and × for one that is not; a map, the darker the larger, in which negative weights,
-        where there are any, bear a dash; or bars in three dimensions.
+        ○ for a weight that is zero and × for one that is not; a map, the darker the larger, in
+        which negative weights, where there are any, bear a dash; or bars in three dimensions.
     ax : matplotlib.axes.Axes, optional
         For bars with ``projection='3d'``.
 
