@@ -1109,7 +1109,11 @@ class SavedState(TypedDict):
     input: float
 
 
-class Event(TypedDict, total=False):
+class _At(TypedDict):
+    at_s: float
+
+
+class Event(_At, total=False):
     """What happens to a simulated plant in `control.Controller.run`. Only 'at_s' is needed.
 
     Attributes
@@ -1128,7 +1132,6 @@ class Event(TypedDict, total=False):
         Whether the output's sensor reads nothing.
     """
 
-    at_s: float
     load_n: float
     room_degc: float
     predeformation_mm: float

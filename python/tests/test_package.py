@@ -65,6 +65,8 @@ def test_there_is_no_such_attribute():
         (lambda: MODEL.inverse().step(MODEL.start(), 1.0, heading="raising"), ValueError, "'rising'"),
         (lambda: pyhysteron.read("a.csv", input="T", output="y", repiar=True), TypeError, "`repair`"),
         (lambda: pyhysteron.design((0, 1), 5, heating_rate=1, cooling_rate=1, budgt=1), TypeError, "`budget`"),
+        (lambda: pyhysteron.Recording(INPUT, INPUT, inputname="T"), TypeError, "`input_name`"),
+        (lambda: MODEL.evaluate(INPUT, INPUT, strat="on"), TypeError, "`start`"),
         (lambda: Controller(0.1, (0, 1), polcy="hold"), TypeError, "`policy`"),
     ],
 )

@@ -53,6 +53,8 @@ def disturbed(**shown):
 DEFAULTS = {
     pyhysteron.Model: lambda **shown: pyhysteron.Model(np.ones(15), (20, 80), **shown),
     pyhysteron.Model.export_fmu: lambda **shown: MODEL.export_fmu("model.fmu", **shown),
+    pyhysteron.Recording: lambda **shown: repr(pyhysteron.Recording(SERIES, OUTPUT, **{**shown, "load": LOAD})),
+    pyhysteron.Model.evaluate: lambda **shown: MODEL.evaluate(RECORDING, **shown),
     pyhysteron.Recording.summary: lambda **shown: RECORDING.summary(**shown),
     pyhysteron.fit: lambda **shown: pyhysteron.fit(SERIES, OUTPUT, **{**shown, "load": LOAD}),
     pyhysteron.left_out: lambda **shown: pyhysteron.left_out(SERIES, OUTPUT, **{**shown, "load": LOAD}),

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 /// What a `Controller` does with a sample.
 #[pyclass(frozen, get_all, module = "pyhysteron.control")]
 pub(crate) struct Action {
-    /// The input asked for.
+    /// The commanded input.
     command: f64,
     /// The drive to write to the device.
     drive: f64,

@@ -134,9 +134,9 @@ impl Design {
 /// Raises
 /// ------
 /// DesignError
-///     For rates, a budget or a step that cannot be, or recordings outside the plane.
+///     For an invalid rate, budget or step, or recordings outside the plane.
 /// CoreError
-///     For a plane that cannot be.
+///     For an invalid plane.
 ///
 /// Examples
 /// --------

@@ -14,8 +14,8 @@ use pyo3::types::{PyDict, PyString};
 
 /// Identify a model: the weights and offset that minimise the squared error over the recording.
 ///
-/// Ctrl-C ends it. `HysteronWarning` tells of inputs outside the plane, of an output that falls as
-/// the input rises, and of operators whose state at the first sample is unknown.
+/// Ctrl-C ends it. `HysteronWarning` reports inputs outside the plane, an output that falls as
+/// the input rises, and operators whose state at the first sample is unknown.
 ///
 /// Parameters
 /// ----------

@@ -21,7 +21,8 @@ pub(crate) fn recording_of(
             "a Recording has its own output, time and load: leave these out",
         )),
         (Err(_), Some(output)) => {
-            Recording::new(value, output, time, load, "input", "output", "load", false)
+            let names = ("input", "output", "load");
+            Recording::of_arrays(value, output, time, load, names, false)
         }
         (Err(_), None) => Err(PyTypeError::new_err(
             "a Recording is needed, or an input and its output",

@@ -95,7 +95,7 @@ impl Inverse {
     /// array([-0.93      ,  0.83333333,  0.81583333,  0.08333333])
     #[pyo3(signature = (target, *, policy="hold", tolerance=None, state=None, heading=None, **unknown),
         text_signature = "($self, target, *, policy='hold', tolerance=None, state=None, heading=None)")]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::too_many_arguments)]
     fn run<'py>(
         &self,
         py: Python<'py>,

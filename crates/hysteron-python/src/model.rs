@@ -77,7 +77,7 @@ impl Model {
         let names = ["operator", "offset", "sign", "input", "output"];
         choices::none_left("Model", unknown, &names)?;
         let weights = weights_of(weights)?;
-        // The levels that come nearest; a count that is none of any plane's is then refused.
+        // The nearest number of levels. A count that fits no plane is refused below.
         let plane = Plane::new(range.0, range.1, levels_of(weights.len())).raise()?;
         let (operator, sign) = (
             choices::operator(operator)?,

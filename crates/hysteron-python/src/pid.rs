@@ -36,7 +36,7 @@ fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
 /// Parameters
 /// ----------
 /// gain : float
-///     In units of what is written for each unit of the error.
+///     In units of the controller's output for each unit of the error.
 /// integral_s, derivative_s : float
 ///     Integral and derivative time, s, from 0 on; 0 for none.
 ///

@@ -202,7 +202,7 @@ impl SimulatedPlant {
 /// RigError
 ///     Names the first number that does not fit.
 /// TypeError, ValueError
-///     For options that there are none of, and values that are no numbers.
+///     For unknown options, and values that are no numbers.
 ///
 /// Examples
 /// --------
@@ -267,7 +267,7 @@ impl SpringPlant {
 /// RigError
 ///     Names the first number that does not fit.
 /// TypeError, ValueError
-///     For options that there are none of, and values that are no numbers.
+///     For unknown options, and values that are no numbers.
 ///
 /// Examples
 /// --------

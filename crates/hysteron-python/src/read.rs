@@ -11,8 +11,7 @@ use std::path::PathBuf;
 
 /// Read a recording from a CSV, Parquet or MATLAB file.
 ///
-/// Warns (`HysteronWarning`) of what was assumed of the file, of rows that were mended and of gaps
-/// in time.
+/// `HysteronWarning` reports assumptions about the file, repaired rows and gaps in time.
 ///
 /// Parameters
 /// ----------

@@ -1,6 +1,7 @@
 //! `Recording`.
 
 use crate::array::{optional, series, times};
+use crate::choices::none_left;
 use crate::convert::result_of;
 use crate::error::Raise;
 use crate::integer::Integer;
@@ -58,19 +59,14 @@ impl From<hysteron::Recording> for Recording {
 /// An array, or `None` where there is no series.
 type Series<'py> = Option<Bound<'py, PyArray1<f64>>>;
 
-#[pymethods]
 impl Recording {
-    #[new]
-    #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false))]
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn new(
+    /// A recording of arrays; `names` are those of input, output and load.
+    pub(crate) fn of_arrays(
         input: &Bound<'_, PyAny>,
         output: &Bound<'_, PyAny>,
         time: Option<&Bound<'_, PyAny>>,
         load: Option<&Bound<'_, PyAny>>,
-        input_name: &str,
-        output_name: &str,
-        load_name: &str,
+        (input_name, output_name, load_name): (&str, &str, &str),
         simulated: bool,
     ) -> PyResult<Self> {
         let recording = hysteron::Recording {
@@ -89,6 +85,37 @@ impl Recording {
         };
         recording.check().raise()?;
         Ok(recording.into())
+    }
+}
+
+#[pymethods]
+impl Recording {
+    #[new]
+    #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false, **unknown),
+        text_signature = "(input, output, *, time=None, load=None, input_name='input', output_name='output', load_name='load', simulated=False)")]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        input: &Bound<'_, PyAny>,
+        output: &Bound<'_, PyAny>,
+        time: Option<&Bound<'_, PyAny>>,
+        load: Option<&Bound<'_, PyAny>>,
+        input_name: &str,
+        output_name: &str,
+        load_name: &str,
+        simulated: bool,
+        unknown: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let names = [
+            "time",
+            "load",
+            "input_name",
+            "output_name",
+            "load_name",
+            "simulated",
+        ];
+        none_left("Recording", unknown, &names)?;
+        let names = (input_name, output_name, load_name);
+        Self::of_arrays(input, output, time, load, names, simulated)
     }
 
     /// A recording from columns of a pandas frame, or of any object indexed by column names.
@@ -150,14 +177,16 @@ impl Recording {
             let column = column.map_or("load".into(), |column| column.to_string());
             name.map_or(column, str::to_owned)
         };
-        Self::new(
+        Self::of_arrays(
             &column(input)?,
             &column(output)?,
             time.map(column).transpose()?.as_ref(),
             load.map(column).transpose()?.as_ref(),
-            &name_of(input_name, Some(input)),
-            &name_of(output_name, Some(output)),
-            &name_of(load_name, load),
+            (
+                &name_of(input_name, Some(input)),
+                &name_of(output_name, Some(output)),
+                &name_of(load_name, load),
+            ),
             false,
         )
     }

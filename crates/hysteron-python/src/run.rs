@@ -1,6 +1,7 @@
 //! `Model.simulate`, `band`, `evaluate`, `start` and `inverse`.
 
 use crate::array::{like, optional, samples, times};
+use crate::choices::none_left;
 use crate::error::{Raise, number};
 use crate::evaluate;
 use crate::fit::start_of;
@@ -13,6 +14,7 @@ use hysteron::Surroundings;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 #[pymethods]
 impl Model {
@@ -132,7 +134,8 @@ impl Model {
     /// >>> found = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5])
     /// >>> found.forward.max_abs
     /// 0.5
-    #[pyo3(signature = (recording, output=None, *, start="off", time=None, load=None))]
+    #[pyo3(signature = (recording, output=None, *, start="off", time=None, load=None, **unknown),
+        text_signature = "($self, recording, output=None, *, start='off', time=None, load=None)")]
     #[allow(clippy::too_many_arguments)]
     fn evaluate<'py>(
         &self,
@@ -142,7 +145,9 @@ impl Model {
         start: &str,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
+        unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        none_left("Model.evaluate", unknown, &["start", "time", "load"])?;
         let recording = recording_of(recording, output, time, load)?;
         evaluate::evaluate(py, &self.inner, &recording, start_of(start)?)
     }

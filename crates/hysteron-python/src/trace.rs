@@ -61,13 +61,13 @@ impl Trace {
         PyArray1::from_slice(py, &self.inner.measured)
     }
 
-    /// The input of the hysteresis, true or measured; where neither is known, the one asked for.
+    /// The input of the hysteresis, true or measured; where neither is known, the command.
     #[getter]
     fn input<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.input)
     }
 
-    /// The input that the controller asked for.
+    /// The input that the controller commanded.
     #[getter]
     fn command<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.command)

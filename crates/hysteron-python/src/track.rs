@@ -183,7 +183,7 @@ impl Comparison {
 /// Raises
 /// ------
 /// ScenarioError
-///     Names the line or the field that cannot be.
+///     For an invalid scenario, with line or field.
 /// FileError, RigError, FitError
 ///
 /// Examples
@@ -244,7 +244,7 @@ pub(crate) fn track(
 /// Raises
 /// ------
 /// ScenarioError
-///     Names the line or the field that cannot be; or the plant does not answer the test.
+///     For an invalid scenario, with line or field, and for a plant that does not answer the test.
 /// FileError, RigError
 ///
 /// Examples

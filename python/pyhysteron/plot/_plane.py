@@ -1,4 +1,4 @@
-"""The Preisach plane: its operators, where they stand, and what an input says of them."""
+"""The Preisach plane: its operators, their states, and how well an input determines them."""
 
 import operator
 from collections.abc import Sequence

@@ -133,9 +133,9 @@ def dead_band(
 ) -> NDArray[Any]:
     """The dead band with the largest error of the inverse, close up (Fig. 15).
 
-    After a turn the output stands still while the input travels, so that the inverse cannot follow:
-    'hold' rests until the output moves; 'anticipate', told where the output goes next, crosses the
-    dead band at once. Shaded where the output stands still.
+    After a turn the output rests while the input moves, so the inverse cannot follow. 'hold' rests
+    until the output moves. 'anticipate' knows where the output goes next, and crosses the dead band
+    at once. The shaded stretches are those where the output rests.
 
     Parameters
     ----------
