@@ -83,7 +83,8 @@ def test_nothing_similar_nothing_meant():
 
 
 def test_in_the_python_half_too():
-    plot = pytest.importorskip("pyhysteron.plot")
+    pytest.importorskip("matplotlib")
+    plot = pyhysteron.plot
     with pytest.raises(ValueError, match="Did you mean 'marks'"):
         plot.weights(MODEL, kind="mark")
     with pytest.raises(TypeError, match="Did you mean `kind`"):
