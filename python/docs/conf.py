@@ -31,6 +31,7 @@ exclude_patterns = ["_build", "**.ipynb_checkpoints", "jupyter_execute"]
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings have them
 default_role = "code"
 
 myst_enable_extensions = ["amsmath", "dollarmath"]

@@ -1,16 +1,25 @@
 """Hysteresis models of actuators: identify, simulate, invert, adapt.
 
-From a recording of input and output (temperature and displacement, say) to an MKP model
-(modified Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
+From a recording of input and output (temperature and displacement, say) to an MKP model (modified
+Krasnosel'skii-Pokrovskii; KP and the classical Preisach relay beside it), and to its exact inverse.
 
-Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse` and `Model.start`.
-`design` plans a recording. Where the actuator changes, a model learns: `adapt`, `Adaptive`. Loops are in `pyhysteron.control` and
-`track`, figures in `pyhysteron.plot`, a regressor in `pyhysteron.sklearn`, blocks for python-control in `pyhysteron.blocks`.
-What can go wrong is a `HysteronError`; its kinds, of which many are ValueErrors too, are in `pyhysteron.errors`.
+Where to begin: `read` (or `Recording`), `prepare`, `fit`, then `Model.simulate`, `Model.inverse`
+and `Model.start`. `design` plans a recording. `adapt` and `Adaptive` let a model follow an actuator
+that changes.
+
+Submodules: `pyhysteron.control` and `track` for control loops, `pyhysteron.plot` for figures,
+`pyhysteron.sklearn` for a regressor, `pyhysteron.blocks` for blocks of python-control,
+`pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
+extra package are imported when they are first used.
 """
 
-from . import control
+import importlib as _importlib
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+
+from . import control, errors as errors, results as results
+from ._convert import did_you_mean as _did_you_mean
 from ._hysteron import (
+    __version__ as __version__,
     Adapted,
     Adaptive,
     Comparison,
@@ -55,6 +64,12 @@ from .errors import (
     ThermalError as ThermalError,
 )
 
+if _TYPE_CHECKING:
+    from . import blocks as blocks, plot as plot, sklearn as sklearn
+
+#: Submodules that need an extra package: imported when they are first used.
+_LAZY = ("blocks", "plot", "sklearn")
+
 __all__ = [
     "Adapted",
     "Adaptive",
@@ -81,3 +96,13 @@ __all__ = [
     "scenarios",
     "track",
 ]
+
+
+def __getattr__(name: str) -> object:
+    if name in _LAZY:
+        return _importlib.import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_did_you_mean(name, __dir__())}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY})

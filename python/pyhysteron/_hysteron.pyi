@@ -1,13 +1,38 @@
+# Written by python/stubs: change the docstrings, or the tables there.
 from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, TypedDict, final
+from typing import Any, Literal, Protocol, TypeAlias, TypedDict, TypeVar, final, overload
 
 from numpy import bool_, float64, int8, int64
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
+from .results import (
+    AdaptedComparison,
+    AdaptedTable,
+    CExport,
+    Confidence,
+    Evaluation,
+    Event,
+    FitSummary,
+    FmuExport,
+    LearningTable,
+    LeftOut,
+    Median,
+    ModelSummary,
+    Preparation,
+    Ratio,
+    RecordingSummary,
+    SavedState,
+    ScoreTable,
+    Snapshot,
+    ThermalBody,
+    TraceTable,
+)
+
 __all__ = [
+    "__version__",
     "Action",
     "Adapted",
     "Adaptive",
@@ -40,22 +65,32 @@ __all__ = [
     "tune",
 ]
 
+__version__: str
+
+# What may be None, but is not where it is used as a rule: type checkers do not ask for a check.
+_MaybeNone: TypeAlias = Any
 _Array: TypeAlias = NDArray[float64]
+_Flags: TypeAlias = NDArray[bool_]
 _Path: TypeAlias = str | PathLike[str]
+_Range: TypeAlias = tuple[float, float]
 _Operator: TypeAlias = Literal["mkp", "kp", "relay"]
-_Solver: TypeAlias = Literal["nnls", "ols"]
-_Start: TypeAlias = Literal["off", "on", "unknown"]
-_Sign: TypeAlias = Literal[1, -1]
-_Auto: TypeAlias = Literal["auto"]
-_Step: TypeAlias = float | Literal["auto", "off"]
+_Heading: TypeAlias = Literal["rising", "falling"] | None
+_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back", "rejected"]
 _Progress: TypeAlias = Callable[[str, float | None], object] | bool | None
+# Dates and durations are no ArrayLike for NumPy's stubs.
+_Times: TypeAlias = ArrayLike | Sequence[Any] | _Series
 _Inputs: TypeAlias = ArrayLike | Recording | Sequence[ArrayLike | Recording]
 _Recordings: TypeAlias = Recording | Sequence[Recording] | ArrayLike
-_Flags: TypeAlias = NDArray[bool_]
-_Heading: TypeAlias = Literal["rising", "falling"] | None
-_Method: TypeAlias = Literal["gradient", "increments", "least-squares", "drift"]
-_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back", "rejected"]
-_Range: TypeAlias = tuple[float, float]
+
+class _Series(Protocol):
+    """A pandas series, without a need for pandas."""
+
+    @property
+    def index(self) -> Any: ...
+    @property
+    def iloc(self) -> Any: ...
+
+_S = TypeVar("_S", bound=_Series)
 
 class _Sensor(TypedDict, total=False):
     lag_s: float
@@ -75,290 +110,42 @@ class _Drift(TypedDict, total=False):
     time_s: float
 
 @final
-class Model:
-    def __new__(
-        cls,
-        weights: ArrayLike,
-        range: _Range,
-        *,
-        operator: _Operator = "mkp",
-        offset: float = 0.0,
-        sign: _Sign = 1,
-        input: str = "input",
-        output: str = "output",
-    ) -> Model: ...
-    @classmethod
-    def load(cls, path: _Path) -> Model: ...
-    def save(self, path: _Path) -> None: ...
-    @classmethod
-    def from_json(cls, text: str) -> Model: ...
-    def to_json(self) -> str: ...
+class Action:
     @property
-    def operator(self) -> _Operator: ...
+    def command(self) -> float: ...
     @property
-    def levels(self) -> int: ...
+    def drive(self) -> float: ...
     @property
-    def range(self) -> _Range: ...
-    @property
-    def plane(self) -> _Array: ...
-    @property
-    def weights(self) -> _Array: ...
-    @property
-    def offset(self) -> float: ...
-    @property
-    def sign(self) -> _Sign: ...
-    @property
-    def output_range(self) -> _Range: ...
-    @property
-    def input(self) -> str: ...
-    @property
-    def output(self) -> str: ...
-    @property
-    def fit(self) -> dict[str, Any] | None: ...
-    @property
-    def confidence(self) -> dict[str, Any] | None: ...
-    @property
-    def thermal(self) -> dict[str, float] | None: ...
-    @property
-    def load_range(self) -> _Range | None: ...
-    @property
-    def load_name(self) -> str | None: ...
-    def summary(self) -> dict[str, Any]: ...
-    def simulate(
-        self, input: ArrayLike, *, time: ArrayLike | None = None, load: ArrayLike | None = None
-    ) -> _Array: ...
-    def band(
-        self, input: ArrayLike, *, time: ArrayLike | None = None, load: ArrayLike | None = None
-    ) -> tuple[_Array, _Array]: ...
-    def evaluate(
-        self,
-        recording: Recording | ArrayLike,
-        output: ArrayLike | None = None,
-        *,
-        start: _Start = "off",
-        time: ArrayLike | None = None,
-        load: ArrayLike | None = None,
-    ) -> dict[str, Any]: ...
-    def excitation(self, input: _Inputs) -> _Array: ...
-    def start(self, *, on: bool = False) -> State: ...
-    def restore(self, saved: dict[str, Any]) -> State: ...
-    def inverse(self) -> Inverse: ...
-    def export_c(
-        self,
-        folder: _Path,
-        *,
-        real: Literal["float", "double"] = "float",
-        name: str | None = None,
-        adaptation: bool = False,
-    ) -> dict[str, Any]: ...
-    def export_fmu(
-        self, path: _Path, *, inverse: bool = False, fmi: Literal[2, 3] = 2, name: str | None = None
-    ) -> dict[str, Any]: ...
-    def at_load(self, load: float) -> Model: ...
-    def __eq__(self, value: object, /) -> bool: ...
-    def __ne__(self, value: object, /) -> bool: ...
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-@final
-class State:
-    @property
-    def model(self) -> Model: ...
-    @property
-    def turning_points(self) -> _Array: ...
-    @property
-    def operators(self) -> _Array: ...
-    @property
-    def input(self) -> float: ...
-    def step(self, input: float) -> float: ...
-    def run(self, input: ArrayLike) -> _Array: ...
-    def reset(self, *, on: bool = False) -> None: ...
-    def save(self) -> dict[str, Any]: ...
-    def copy(self) -> State: ...
-    def __copy__(self) -> State: ...
-    def __deepcopy__(self, _memo: object) -> State: ...
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-@final
-class Inverse:
-    @property
-    def model(self) -> Model: ...
-    def run(
-        self,
-        target: ArrayLike,
-        *,
-        policy: Literal["hold", "anticipate"] = "hold",
-        band: float | None = None,
-        state: State | None = None,
-        heading: Sequence[_Heading] | None = None,
-    ) -> tuple[_Array, NDArray[int8]]: ...
-    def step(
-        self, state: State, target: float, *, heading: _Heading = None, band: float = 0.0
-    ) -> tuple[float, int]: ...
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-@final
-class Recording:
-    def __new__(
-        cls,
-        input: ArrayLike,
-        output: ArrayLike,
-        *,
-        time: ArrayLike | None = None,
-        load: ArrayLike | None = None,
-        input_name: str = "input",
-        output_name: str = "output",
-        load_name: str = "load",
-        simulated: bool = False,
-    ) -> Recording: ...
-    @classmethod
-    def from_frame(
-        cls,
-        frame: Any,
-        *,
-        input: Any,
-        output: Any,
-        time: Any = None,
-        load: Any = None,
-        input_name: str | None = None,
-        output_name: str | None = None,
-        load_name: str | None = None,
-    ) -> Recording: ...
-    @property
-    def input(self) -> _Array: ...
-    @property
-    def output(self) -> _Array: ...
-    @property
-    def time(self) -> _Array | None: ...
-    @property
-    def load(self) -> _Array | None: ...
-    @property
-    def input_name(self) -> str: ...
-    @property
-    def output_name(self) -> str: ...
-    @property
-    def load_name(self) -> str: ...
-    @property
-    def simulated(self) -> bool: ...
-    @property
-    def path(self) -> Path | None: ...
-    def to_csv(self, path: _Path) -> None: ...
-    def summary(self, *, levels: int = 20, range: _Range | None = None) -> dict[str, Any]: ...
-    def __len__(self) -> int: ...
-    def __eq__(self, value: object, /) -> bool: ...
-    def __ne__(self, value: object, /) -> bool: ...
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-@final
-class Design:
-    @property
-    def time(self) -> _Array: ...
-    @property
-    def input(self) -> _Array: ...
-    @property
-    def legs(self) -> list[tuple[float, float, int]]: ...
-    @property
-    def excitation(self) -> _Array: ...
-    @property
-    def recorded(self) -> _Array | None: ...
-    @property
-    def corners(self) -> int: ...
-    @property
-    def duration(self) -> float: ...
-    @property
-    def full_duration(self) -> float: ...
-    def to_csv(self, path: _Path) -> None: ...
-    def __len__(self) -> int: ...
-
-def read(
-    path: _Path,
-    *,
-    input: str,
-    output: str,
-    time: str | None = None,
-    load: str | None = None,
-    input_name: str | None = None,
-    output_name: str | None = None,
-    load_name: str | None = None,
-    repair: bool = False,
-    max_memory: int | None = None,
-) -> Recording: ...
-def fit(
-    recording: _Recordings,
-    output: ArrayLike | None = None,
-    *,
-    levels: int | _Auto = 20,
-    range: _Range | None = None,
-    operator: _Operator = "mkp",
-    solver: _Solver = "nnls",
-    smooth: float | _Auto = 0.0,
-    start: _Start = "off",
-    sign: _Sign | None = None,
-    offset: float | None = None,
-    load_degree: int = 1,
-    bootstrap: int | None = None,
-    thermal: Literal["first-order"] | None = None,
-    time: ArrayLike | None = None,
-    load: ArrayLike | None = None,
-    progress: _Progress = None,
-) -> Model: ...
-def left_out(
-    recording: _Recordings,
-    output: ArrayLike | None = None,
-    *,
-    levels: int | _Auto = 20,
-    range: _Range | None = None,
-    operator: _Operator = "mkp",
-    solver: _Solver = "nnls",
-    smooth: float | _Auto = 0.0,
-    start: _Start = "off",
-    sign: _Sign | None = None,
-    offset: float | None = None,
-    load_degree: int = 1,
-    time: ArrayLike | None = None,
-    load: ArrayLike | None = None,
-    progress: _Progress = None,
-) -> dict[str, Any]: ...
-def prepare(
-    recording: Recording | ArrayLike,
-    output: ArrayLike | None = None,
-    *,
-    spikes: _Step = "auto",
-    resample: _Step = "auto",
-    low_pass: _Step = "auto",
-    lag: _Step = "off",
-    band: _Step = "auto",
-    time: ArrayLike | None = None,
-    load: ArrayLike | None = None,
-    progress: _Progress = None,
-) -> tuple[Recording, dict[str, Any]]: ...
-def design(
-    range: _Range,
-    levels: int,
-    *,
-    heating_rate: float,
-    cooling_rate: float,
-    budget: float | None = None,
-    recorded: _Inputs | None = None,
-    step: float | None = None,
-    operator: _Operator = "mkp",
-) -> Design: ...
-def excitation(
-    input: _Inputs, range: _Range, levels: int, *, operator: _Operator = "mkp"
-) -> _Array: ...
-def branches(input: ArrayLike, *, band: float | None = None) -> NDArray[int64]: ...
-def remembered(input: ArrayLike) -> NDArray[int64]: ...
-
-@final
-class Learning:
-    def __new__(cls, output: float, error: float, outcome: _Outcome, clipped: Literal[-1, 0, 1]) -> Learning: ...
+    def prediction(self) -> float: ...
     @property
     def output(self) -> float: ...
     @property
-    def error(self) -> float: ...
+    def input(self) -> float | _MaybeNone: ...
     @property
-    def outcome(self) -> _Outcome: ...
+    def saturated(self) -> bool: ...
     @property
-    def clipped(self) -> Literal[-1, 0, 1]: ...
+    def out_of_reach(self) -> bool: ...
+    @property
+    def sensor_fault(self) -> bool: ...
+    @property
+    def adapted(self) -> bool: ...
+    @property
+    def rejected(self) -> bool: ...
+
+@final
+class Adapted:
+    def __new__(
+        cls,
+        model: Model,
+        table: AdaptedTable,
+        comparison: AdaptedComparison,
+    ) -> Adapted: ...
+    @property
+    def model(self) -> Model: ...
+    @property
+    def table(self) -> AdaptedTable: ...
+    @property
+    def comparison(self) -> AdaptedComparison: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
@@ -367,7 +154,7 @@ class Adaptive:
         cls,
         model: Model,
         *,
-        method: _Method = "gradient",
+        method: Literal["gradient", "increments", "least-squares", "drift"] = "gradient",
         start: Literal["off", "on"] = "off",
         gain: float | None = None,
         span: float | None = None,
@@ -397,9 +184,15 @@ class Adaptive:
     @property
     def offline(self) -> Model: ...
     def step(self, input: float, measured: float) -> Learning: ...
-    def run(self, input: ArrayLike, measured: ArrayLike) -> dict[str, Any]: ...
-    def predict(self, input: float) -> float: ...
-    def solve(self, target: float, *, heading: _Heading = None, band: float = 0.0) -> tuple[float, int]: ...
+    def run(self, input: ArrayLike, measured: ArrayLike) -> LearningTable: ...
+    def simulate(self, input: float) -> float: ...
+    def solve(
+        self,
+        target: float,
+        *,
+        heading: _Heading = None,
+        tolerance: float = 0.0,
+    ) -> tuple[float, int]: ...
     def align(self) -> None: ...
     def model(self) -> Model: ...
     def reset(self, *, on: bool = False) -> None: ...
@@ -411,40 +204,365 @@ class Adaptive:
     def __deepcopy__(self, _memo: object) -> Adaptive: ...
 
 @final
-class Adapted:
-    def __new__(cls, model: Model, table: dict[str, Any], comparison: dict[str, Any]) -> Adapted: ...
+class Comparison:
+    @property
+    def title(self) -> str: ...
+    @property
+    def simulated(self) -> Literal[True]: ...
+    @property
+    def controllers(self) -> list[str]: ...
+    @property
+    def scores(self) -> ScoreTable: ...
+    @property
+    def medians(self) -> list[Median]: ...
+    @property
+    def ratios(self) -> list[Ratio]: ...
+    @property
+    def traces(self) -> dict[str, Trace]: ...
     @property
     def model(self) -> Model: ...
     @property
-    def table(self) -> dict[str, Any]: ...
+    def pid(self) -> Pid | _MaybeNone: ...
     @property
-    def comparison(self) -> dict[str, Any]: ...
+    def inner_pid(self) -> Pid | _MaybeNone: ...
+    def to_csv(self, path: _Path) -> None: ...
+
+@final
+class Controller:
+    def __new__(
+        cls,
+        interval_s: float,
+        commands: _Range,
+        *,
+        model: Model | Adaptive | None = None,
+        pid: Pid | None = None,
+        policy: Literal["hold", "anticipate"] = "hold",
+        tolerance: float = 0.0,
+        bias: float = 0.0,
+        drives: _Range | None = None,
+        inner: Pid | None = None,
+        square_root: bool = False,
+        filter_s: float = 0.0,
+        stuck_s: float | None = None,
+    ) -> Controller: ...
+    @property
+    def interval_s(self) -> float: ...
+    @property
+    def adaptive(self) -> Adaptive | _MaybeNone: ...
+    def step(
+        self,
+        target: float,
+        output: float,
+        input: float | None = None,
+        *,
+        heading: _Heading = None,
+    ) -> Action: ...
+    def step_command(self, command: float, output: float, input: float | None = None) -> Action: ...
+    def run(
+        self,
+        device: object,
+        reference: ArrayLike,
+        *,
+        events: Sequence[Event] | None = None,
+    ) -> Trace: ...
+
+@final
+class Design:
+    @property
+    def time(self) -> _Array: ...
+    @property
+    def input(self) -> _Array: ...
+    @property
+    def excitation(self) -> _Array: ...
+    @property
+    def legs(self) -> list[tuple[float, float, int]]: ...
+    @property
+    def recorded(self) -> _Array | _MaybeNone: ...
+    @property
+    def corners(self) -> int: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def full_duration(self) -> float: ...
+    def to_csv(self, path: _Path) -> None: ...
+    def __len__(self) -> int: ...
+
+@final
+class Inverse:
+    @property
+    def model(self) -> Model: ...
+    @overload
+    def run(
+        self,
+        target: _S,
+        *,
+        policy: Literal["hold", "anticipate"] = "hold",
+        tolerance: float | None = None,
+        state: State | None = None,
+        heading: Sequence[_Heading] | None = None,
+    ) -> tuple[_S, _S]: ...
+    @overload
+    def run(
+        self,
+        target: ArrayLike,
+        *,
+        policy: Literal["hold", "anticipate"] = "hold",
+        tolerance: float | None = None,
+        state: State | None = None,
+        heading: Sequence[_Heading] | None = None,
+    ) -> tuple[_Array, NDArray[int8]]: ...
+    def step(
+        self,
+        state: State,
+        target: float,
+        *,
+        heading: _Heading = None,
+        tolerance: float = 0.0,
+    ) -> tuple[float, int]: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-def adapt(
-    model: Model,
-    recording: Recording | ArrayLike,
-    output: ArrayLike | None = None,
-    *,
-    time: ArrayLike | None = None,
-    method: _Method = "drift",
-    start: _Start = "off",
-    gain: float | None = None,
-    span: float | None = None,
-    forgetting: float | None = None,
-    noise: float | None = None,
-    spread: float | None = None,
-    correlation: float | None = None,
-    offset_share: float | None = None,
-    dead_zone: float | None = None,
-    leakage: float | None = None,
-    movement: float | None = None,
-    trial: int | None = None,
-    gate: float | None = None,
-    burst: int | None = None,
-    load: float | None = None,
-    progress: _Progress = None,
-) -> Adapted: ...
+@final
+class Learning:
+    def __new__(
+        cls,
+        output: float,
+        error: float,
+        outcome: _Outcome,
+        clipped: Literal[-1, 0, 1],
+    ) -> Learning: ...
+    @property
+    def output(self) -> float: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def outcome(self) -> _Outcome: ...
+    @property
+    def clipped(self) -> Literal[-1, 0, 1]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Model:
+    def __new__(
+        cls,
+        weights: ArrayLike,
+        range: _Range,
+        *,
+        operator: _Operator = "mkp",
+        offset: float = 0.0,
+        sign: Literal[1, -1] = 1,
+        input: str = "input",
+        output: str = "output",
+    ) -> Model: ...
+    @property
+    def operator(self) -> _Operator: ...
+    @property
+    def levels(self) -> int: ...
+    @property
+    def range(self) -> _Range: ...
+    @property
+    def plane(self) -> _Array: ...
+    @property
+    def weights(self) -> _Array: ...
+    @property
+    def offset(self) -> float: ...
+    @property
+    def sign(self) -> Literal[1, -1]: ...
+    @property
+    def output_range(self) -> _Range: ...
+    @property
+    def input(self) -> str: ...
+    @property
+    def output(self) -> str: ...
+    @property
+    def fit(self) -> FitSummary | _MaybeNone: ...
+    @property
+    def confidence(self) -> Confidence | _MaybeNone: ...
+    @property
+    def thermal(self) -> ThermalBody | _MaybeNone: ...
+    @property
+    def load_range(self) -> _Range | _MaybeNone: ...
+    @property
+    def load_name(self) -> str | _MaybeNone: ...
+    @overload
+    def simulate(
+        self,
+        input: _S,
+        *,
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+    ) -> _S: ...
+    @overload
+    def simulate(
+        self,
+        input: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+    ) -> _Array: ...
+    @overload
+    def band(
+        self,
+        input: _S,
+        *,
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+    ) -> tuple[_S, _S]: ...
+    @overload
+    def band(
+        self,
+        input: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+    ) -> tuple[_Array, _Array]: ...
+    def evaluate(
+        self,
+        recording: Recording | ArrayLike,
+        output: ArrayLike | None = None,
+        *,
+        start: Literal["off", "on", "unknown"] = "off",
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+    ) -> Evaluation: ...
+    def excitation(self, input: _Inputs) -> _Array: ...
+    def start(self, *, on: bool = False) -> State: ...
+    def restore(self, saved: SavedState) -> State: ...
+    def inverse(self) -> Inverse: ...
+    def at_load(self, load: float) -> Model: ...
+    def export_c(
+        self,
+        folder: _Path,
+        *,
+        real: Literal["float", "double"] = "float",
+        name: str | None = None,
+        adaptation: bool = False,
+    ) -> CExport: ...
+    def export_fmu(
+        self,
+        path: _Path,
+        *,
+        inverse: bool = False,
+        fmi: Literal[2, 3] = 2,
+        name: str | None = None,
+    ) -> FmuExport: ...
+    @classmethod
+    def load(cls, path: _Path) -> Model: ...
+    def save(self, path: _Path) -> None: ...
+    @classmethod
+    def from_json(cls, text: str) -> Model: ...
+    def to_json(self) -> str: ...
+    def summary(self) -> ModelSummary: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
+    def _repr_html_(self) -> str: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Pid:
+    def __new__(cls, gain: float, *, integral_s: float = 0.0, derivative_s: float = 0.0) -> Pid: ...
+    @property
+    def gain(self) -> float: ...
+    @property
+    def integral_s(self) -> float: ...
+    @property
+    def derivative_s(self) -> float: ...
+    @staticmethod
+    def from_oscillation(ultimate_gain: float, period_s: float) -> Pid: ...
+    @staticmethod
+    def from_step(output: ArrayLike, begin: int, step: float, interval_s: float) -> Pid: ...
+    def step(
+        self,
+        error: float,
+        dt: float,
+        *,
+        bias: float = 0.0,
+        limits: _Range | None = None,
+        held: tuple[bool, bool] = (False, False),
+    ) -> float: ...
+    def hold(self, *, bias: float = 0.0, limits: _Range | None = None) -> float: ...
+    def reset(self) -> None: ...
+
+@final
+class PreisachPlant(SimulatedPlant):
+    def __new__(
+        cls,
+        *,
+        load_n: float = 6.0,
+        lag_s: float = 0.02,
+        limit_v: float = 150.0,
+        levels: int = 240,
+        drift: _Drift = ...,
+        measure_input: bool = False,
+        output_sensor: _Sensor = ...,
+        input_sensor: _Sensor = ...,
+        seed: int = 1,
+    ) -> PreisachPlant: ...
+
+@final
+class Recording:
+    def __new__(
+        cls,
+        input: ArrayLike,
+        output: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: ArrayLike | None = None,
+        input_name: str = "input",
+        output_name: str = "output",
+        load_name: str = "load",
+        simulated: bool = False,
+    ) -> Recording: ...
+    @property
+    def input(self) -> _Array: ...
+    @property
+    def output(self) -> _Array: ...
+    @property
+    def time(self) -> _Array | _MaybeNone: ...
+    @property
+    def load(self) -> _Array | _MaybeNone: ...
+    @property
+    def input_name(self) -> str: ...
+    @property
+    def output_name(self) -> str: ...
+    @property
+    def load_name(self) -> str: ...
+    @property
+    def simulated(self) -> bool: ...
+    @property
+    def path(self) -> Path | None: ...
+    @classmethod
+    def from_frame(
+        cls,
+        frame: Any,
+        *,
+        input: Any,
+        output: Any,
+        time: Any | None = None,
+        load: Any | None = None,
+        input_name: str | None = None,
+        output_name: str | None = None,
+        load_name: str | None = None,
+    ) -> Recording: ...
+    def to_csv(self, path: _Path) -> None: ...
+    def summary(self, *, levels: int = 20, range: _Range | None = None) -> RecordingSummary: ...
+    def __eq__(self, value: object, /) -> bool: ...
+    def __ne__(self, value: object, /) -> bool: ...
+    def __len__(self) -> int: ...
+    def _repr_html_(self) -> str: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class RelayTest:
+    def __new__(cls, commands: _Range, middle: float, *, hysteresis: float = 0.0) -> RelayTest: ...
+    @property
+    def command(self) -> float: ...
+    @property
+    def done(self) -> bool: ...
+    @property
+    def outputs(self) -> _Range | None: ...
+    def push(self, output: float) -> None: ...
+    def oscillation(self, interval_s: float) -> _Range | None: ...
+    def gains(self, interval_s: float) -> Pid: ...
 
 @disjoint_base
 class SimulatedPlant:
@@ -454,10 +572,10 @@ class SimulatedPlant:
     def drives(self) -> _Range: ...
     @property
     def quantities(self) -> list[str]: ...
-    def read(self) -> tuple[float, float | None]: ...
+    def read(self) -> tuple[float, float | _MaybeNone]: ...
     def write(self, drive: float) -> None: ...
     def advance(self, dt_s: float) -> None: ...
-    def truth(self) -> tuple[float, float | None]: ...
+    def truth(self) -> tuple[float, float | _MaybeNone]: ...
     def disturb(
         self,
         *,
@@ -484,111 +602,26 @@ class SpringPlant(SimulatedPlant):
     ) -> SpringPlant: ...
 
 @final
-class PreisachPlant(SimulatedPlant):
-    def __new__(
-        cls,
-        *,
-        load_n: float = 6.0,
-        lag_s: float = 0.02,
-        limit_v: float = 150.0,
-        levels: int = 240,
-        drift: _Drift = ...,
-        measure_input: bool = False,
-        output_sensor: _Sensor = ...,
-        input_sensor: _Sensor = ...,
-        seed: int = 1,
-    ) -> PreisachPlant: ...
-
-@final
-class Pid:
-    def __new__(cls, gain: float, *, integral_s: float = 0.0, derivative_s: float = 0.0) -> Pid: ...
-    @staticmethod
-    def from_oscillation(ultimate_gain: float, period_s: float) -> Pid: ...
-    @staticmethod
-    def from_step(output: ArrayLike, begin: int, step: float, interval_s: float) -> Pid: ...
+class State:
     @property
-    def gain(self) -> float: ...
+    def model(self) -> Model: ...
     @property
-    def integral_s(self) -> float: ...
+    def turning_points(self) -> _Array: ...
     @property
-    def derivative_s(self) -> float: ...
-    def step(
-        self,
-        error: float,
-        dt: float,
-        *,
-        bias: float = 0.0,
-        limits: _Range | None = None,
-        held: tuple[bool, bool] = (False, False),
-    ) -> float: ...
-    def hold(self, *, bias: float = 0.0, limits: _Range | None = None) -> float: ...
-    def reset(self) -> None: ...
-
-@final
-class RelayTest:
-    def __new__(cls, commands: _Range, middle: float, *, band: float = 0.0) -> RelayTest: ...
+    def operators(self) -> _Array: ...
     @property
-    def command(self) -> float: ...
-    @property
-    def done(self) -> bool: ...
-    @property
-    def outputs(self) -> _Range | None: ...
-    def push(self, output: float) -> None: ...
-    def oscillation(self, interval_s: float) -> _Range | None: ...
-    def gains(self, interval_s: float) -> Pid: ...
-
-@final
-class Action:
-    @property
-    def command(self) -> float: ...
-    @property
-    def drive(self) -> float: ...
-    @property
-    def prediction(self) -> float: ...
-    @property
-    def output(self) -> float: ...
-    @property
-    def input(self) -> float | None: ...
-    @property
-    def saturated(self) -> bool: ...
-    @property
-    def out_of_reach(self) -> bool: ...
-    @property
-    def sensor_fault(self) -> bool: ...
-    @property
-    def adapted(self) -> bool: ...
-    @property
-    def rejected(self) -> bool: ...
-
-@final
-class Controller:
-    def __new__(
-        cls,
-        interval_s: float,
-        commands: _Range,
-        *,
-        model: Model | Adaptive | None = None,
-        pid: Pid | None = None,
-        rest: Literal["hold", "anticipate"] = "hold",
-        tolerance: float = 0.0,
-        bias: float = 0.0,
-        drives: _Range | None = None,
-        inner: Pid | None = None,
-        square_root: bool = False,
-        filter_s: float = 0.0,
-        stuck_s: float | None = None,
-    ) -> Controller: ...
-    @property
-    def interval_s(self) -> float: ...
-    @property
-    def adaptive(self) -> Adaptive | None: ...
-    def step(
-        self, target: float, output: float, input: float | None = None, *, heading: _Heading = None
-    ) -> Action: ...
-    def step_command(self, command: float, output: float, input: float | None = None) -> Action: ...
-    def run(
-        self, device: object, reference: ArrayLike, *, events: Sequence[dict[str, Any]] | None = None
-    ) -> Trace: ...
+    def input(self) -> float: ...
+    def step(self, input: float) -> float: ...
+    @overload
+    def run(self, input: _S) -> _S: ...
+    @overload
+    def run(self, input: ArrayLike) -> _Array: ...
+    def reset(self, *, on: bool = False) -> None: ...
+    def save(self) -> SavedState: ...
+    def copy(self) -> State: ...
+    def __copy__(self) -> State: ...
+    def __deepcopy__(self, _memo: object) -> State: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Trace:
@@ -619,36 +652,123 @@ class Trace:
     @property
     def rejected(self) -> _Flags: ...
     @property
-    def snapshots(self) -> list[dict[str, Any]]: ...
-    def to_dict(self) -> dict[str, NDArray[Any]]: ...
+    def snapshots(self) -> list[Snapshot]: ...
+    def to_dict(self) -> TraceTable: ...
     def to_csv(self, path: _Path) -> None: ...
     def __len__(self) -> int: ...
 
-@final
-class Comparison:
-    @property
-    def title(self) -> str: ...
-    @property
-    def simulated(self) -> Literal[True]: ...
-    @property
-    def controllers(self) -> list[str]: ...
-    @property
-    def scores(self) -> dict[str, Any]: ...
-    @property
-    def medians(self) -> list[dict[str, Any]]: ...
-    @property
-    def ratios(self) -> list[dict[str, Any]]: ...
-    @property
-    def traces(self) -> dict[str, Trace]: ...
-    @property
-    def model(self) -> Model: ...
-    @property
-    def pid(self) -> Pid | None: ...
-    @property
-    def inner_pid(self) -> Pid | None: ...
-    def to_csv(self, path: _Path) -> None: ...
-
-def track(scenario: _Path, *, seeds: int | None = None, progress: _Progress = None) -> Comparison: ...
-def tune(scenario: _Path) -> tuple[Pid | None, Pid | None]: ...
+def adapt(
+    model: Model,
+    recording: Recording | ArrayLike,
+    output: ArrayLike | None = None,
+    *,
+    time: _Times | None = None,
+    method: Literal["drift", "least-squares", "gradient", "increments"] = "drift",
+    start: Literal["off", "on", "unknown"] = "off",
+    gain: float | None = None,
+    span: float | None = None,
+    forgetting: float | None = None,
+    noise: float | None = None,
+    spread: float | None = None,
+    correlation: float | None = None,
+    offset_share: float | None = None,
+    dead_zone: float | None = None,
+    leakage: float | None = None,
+    movement: float | None = None,
+    trial: int | None = None,
+    gate: float | None = None,
+    burst: int | None = None,
+    load: float | None = None,
+    progress: _Progress = None,
+) -> Adapted: ...
+def branches(input: ArrayLike, *, dead_band: float | None = None) -> NDArray[int64]: ...
+def design(
+    range: _Range,
+    levels: int,
+    *,
+    heating_rate: float,
+    cooling_rate: float,
+    budget: float | None = None,
+    recorded: _Inputs | None = None,
+    step: float | None = None,
+    operator: _Operator = "mkp",
+) -> Design: ...
+def excitation(
+    input: _Inputs,
+    range: _Range,
+    levels: int,
+    *,
+    operator: _Operator = "mkp",
+) -> _Array: ...
+def fit(
+    recording: _Recordings,
+    output: ArrayLike | None = None,
+    *,
+    levels: int | Literal['auto'] = 20,
+    range: _Range | None = None,
+    operator: _Operator = "mkp",
+    solver: Literal["nnls", "ols"] = "nnls",
+    smooth: float | Literal['auto'] = 0.0,
+    start: Literal["off", "on", "unknown"] = "off",
+    sign: Literal[1, -1] | None = None,
+    offset: float | None = None,
+    load_degree: int = 1,
+    bootstrap: int | None = None,
+    thermal: Literal["first-order"] | None = None,
+    time: _Times | None = None,
+    load: ArrayLike | None = None,
+    progress: _Progress = None,
+) -> Model: ...
+def headings(series: ArrayLike, tolerance: float = 0.0) -> list[_Heading]: ...
+def left_out(
+    recording: _Recordings,
+    output: ArrayLike | None = None,
+    *,
+    levels: int | Literal['auto'] = 20,
+    range: _Range | None = None,
+    operator: _Operator = "mkp",
+    solver: Literal["nnls", "ols"] = "nnls",
+    smooth: float | Literal['auto'] = 0.0,
+    start: Literal["off", "on", "unknown"] = "off",
+    sign: Literal[1, -1] | None = None,
+    offset: float | None = None,
+    load_degree: int = 1,
+    time: _Times | None = None,
+    load: ArrayLike | None = None,
+    progress: _Progress = None,
+) -> LeftOut: ...
+def prepare(
+    recording: Recording | ArrayLike,
+    output: ArrayLike | None = None,
+    *,
+    spikes: float | Literal['auto', 'off'] = "auto",
+    resample: float | Literal['auto', 'off'] = "auto",
+    low_pass: float | Literal['auto', 'off'] = "auto",
+    lag: float | Literal['auto', 'off'] = "off",
+    dead_band: float | Literal['auto', 'off'] = "auto",
+    time: _Times | None = None,
+    load: ArrayLike | None = None,
+    progress: _Progress = None,
+) -> tuple[Recording, Preparation]: ...
+def read(
+    path: _Path,
+    *,
+    input: str,
+    output: str,
+    time: str | None = None,
+    load: str | None = None,
+    input_name: str | None = None,
+    output_name: str | None = None,
+    load_name: str | None = None,
+    repair: bool = False,
+    max_memory: int | None = None,
+) -> Recording: ...
+def remembered(input: ArrayLike) -> NDArray[int64]: ...
 def scenarios() -> dict[str, str]: ...
-def headings(series: ArrayLike, band: float = 0.0) -> list[_Heading]: ...
+def track(
+    scenario: _Path,
+    *,
+    seeds: int | None = None,
+    progress: _Progress | None = None,
+) -> Comparison: ...
+def tune(scenario: _Path) -> tuple[Pid | _MaybeNone, Pid | _MaybeNone]: ...

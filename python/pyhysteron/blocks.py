@@ -1,22 +1,28 @@
 """Discrete blocks for python-control (``pip install pyhysteron[control]``).
 
-A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and simulated there.
+A model, its inverse and an adaptive compensator as `control.NonlinearIOSystem`, to be connected and
+simulated there.
 
-python-control calls the functions of a block more than once for a sample, with inputs that are not final yet. So the state
-vector of model and inverse carries the whole memory: ``[count, input, turning points…]``, all zero with every operator
-off, and the functions have no other memory. A model's output follows its input at once: in a closed loop there has to be a
-delay somewhere, as in any other loop of python-control.
+python-control calls the functions of a block several times for a sample, with inputs that are not
+final yet. So the state vector of model and inverse holds the whole memory: ``[count, input, turning
+points…]``, all zero with every operator off. The output of a model follows its input without delay.
+A closed loop needs a delay elsewhere, as any loop of python-control.
 """
 
+from __future__ import annotations
+
 import numbers
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 try:
     import control
 except ImportError as _missing:
     raise ImportError("pyhysteron.blocks needs python-control: pip install 'pyhysteron[control]'") from _missing
 
+from ._convert import one_of
 from ._hysteron import Adaptive, Model, State
 from .errors import CoreError
 
@@ -27,7 +33,7 @@ _HEADINGS = {1.0: "rising", -1.0: "falling"}
 _REMEMBERED = 64
 
 
-def memory(model: Model, state: State | None = None) -> np.ndarray:
+def memory(model: Model, state: State | None = None) -> NDArray[np.float64]:
     """The state vector of a block for `model`: an initial value for a simulation.
 
     Parameters
@@ -90,7 +96,7 @@ def _states(model):
     return [f"memory[{n}]" for n in range(len(memory(model)))]
 
 
-def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
+def model_block(model: Model, dt: float | Literal[True], **kwargs: Any) -> control.NonlinearIOSystem:
     """The model as a block, from its input to its output.
 
     Parameters
@@ -128,7 +134,14 @@ def model_block(model: Model, dt: float, **kwargs) -> control.NonlinearIOSystem:
     return _block(update, output, dt, kwargs, **usual)
 
 
-def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float = 0.0, **kwargs) -> control.NonlinearIOSystem:
+def inverse_block(
+    model: Model,
+    dt: float | Literal[True],
+    policy: Literal["hold", "anticipate"] = "hold",
+    *,
+    tolerance: float = 0.0,
+    **kwargs: Any,
+) -> control.NonlinearIOSystem:
     """The exact inverse as a block, from the wanted output to the input.
 
     Parameters
@@ -137,9 +150,10 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     dt : float
         Time between samples, s; True for discrete time without a length, as in python-control.
     policy : {'hold', 'anticipate'}
-        With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling, 0 not known.
-    band : float
-        Reversals of the target up to this size are not followed, in the output's unit.
+        With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling,
+        0 not known.
+    tolerance : float
+        Reversals of the target up to this size are noise and not followed, in the output's unit.
     **kwargs
         To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
 
@@ -161,15 +175,14 @@ def inverse_block(model: Model, dt: float, policy: str = "hold", *, band: float 
     >>> control.input_output_response(control.series(inverse, plant), np.array([0, 0.1, 0.2]), [4.0, 6.0, 5.0]).y
     array([[4., 6., 5.]])
     """
-    if policy not in ("hold", "anticipate"):
-        raise ValueError(f"`policy` is '{policy}': one of 'hold', 'anticipate' is needed")
+    one_of("policy", policy, "hold", "anticipate")
     _needed("model", model, Model)
     inverse = model.inverse()
     inputs = ["target"] if policy == "hold" else ["target", "heading"]
 
     def solve(x, u):
         state = _state(model, x)
-        return state, inverse.step(state, u[0], heading=_heading(u[1:]), band=band)[0]
+        return state, inverse.step(state, u[0], heading=_heading(u[1:]), tolerance=tolerance)[0]
 
     def update(t, x, u, params):
         return memory(model, solve(x, u)[0])
@@ -185,21 +198,24 @@ def _heading(signal) -> str | None:
     return _HEADINGS.get(float(np.sign(signal[0]))) if len(signal) else None
 
 
-def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs) -> control.NonlinearIOSystem:
+def adaptive_block(
+    adaptive: Adaptive, dt: float | Literal[True], *, tolerance: float = 0.0, **kwargs: Any
+) -> control.NonlinearIOSystem:
     """An adaptive compensator as a block: its inverse gives the input for a target, and it learns from what is measured.
 
-    The input for a target comes from the weights that were learned up to the sample before, so that what is measured does
-    not act on it at once. An estimator's memory is no vector: the state is a number that stands for one. The block
-    knows the estimator that it began with (number 0) and the last ones; an older one is refused.
+    The input for a target comes from the weights learned up to the sample before, so that a reading
+    does not act on it at once. The memory of an estimator is no vector: the block's state is the
+    number of an estimator. The block keeps the first estimator (number 0) and the last ones, and
+    refuses an older number.
 
     Parameters
     ----------
     adaptive : Adaptive
-        Where it begins. It stays as it is.
+        The estimator at the start; it is copied.
     dt : float
         Time between samples, s; True for discrete time without a length, as in python-control.
-    band : float
-        Reversals of the target up to this size are not followed, in the output's unit.
+    tolerance : float
+        Reversals of the target up to this size are noise and not followed, in the output's unit.
     **kwargs
         To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
 
@@ -233,7 +249,7 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
         question = (int(x[0]), *map(float, u))
         if question not in followed:
             estimator = at(x)
-            estimator.solve(u[0], band=band)
+            estimator.solve(u[0], tolerance=tolerance)
             estimator.step(u[2], u[1])
             count += 1
             known[count], followed[question] = estimator, count
@@ -244,7 +260,7 @@ def adaptive_block(adaptive: Adaptive, dt: float, *, band: float = 0.0, **kwargs
         return np.array([float(followed[question])])
 
     def output(t, x, u, params):
-        return np.array([at(x).solve(u[0], band=band)[0]])
+        return np.array([at(x).solve(u[0], tolerance=tolerance)[0]])
 
     usual = {"name": "adaptive", "inputs": ["target", "output", "input"], "outputs": ["command"], "states": ["estimator"]}
     return _block(update, output, dt, kwargs, **usual)

@@ -1,8 +1,9 @@
 """Control loops on a hysteresis model and its inverse.
 
-A `Controller` is an inverse as feedforward, a `Pid`, or both, fixed or adapting. It follows a reference on a simulated plant
-(`pyhysteron.SpringPlant`, `pyhysteron.PreisachPlant`) or on any object with ``read`` and ``write``; or it is stepped in a loop of one's
-own. Gains come from a `RelayTest`, from a step test (`Pid.from_step`), or from a scenario's own test (`tune`).
+A `Controller` is an inverse as feedforward, a `Pid`, or both, fixed or adapting. `Controller.run`
+follows a reference on a simulated plant (`pyhysteron.SpringPlant`, `pyhysteron.PreisachPlant`) or
+on any object with ``read`` and ``write``. `Controller.step` is for a loop of your own. Gains come
+from a `RelayTest`, from a step test (`Pid.from_step`), or from a scenario's own test (`tune`).
 `pyhysteron.track` compares controllers. Times are in seconds.
 """
 

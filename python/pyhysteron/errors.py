@@ -1,6 +1,6 @@
-"""What can go wrong: one class for each kind of error, all of them `HysteronError`.
+"""Exceptions: one class for each kind of error, all of them `HysteronError`.
 
-Every exception has the attribute `code`, the number that the C interface and the library return for it.
+Every exception has the attribute `code`, the error's number in the C interface and the library.
 """
 
 __all__ = [
@@ -30,7 +30,7 @@ class HysteronError(Exception):
 
 
 class CoreError(HysteronError, ValueError):
-    """A plane, weights or an input that cannot be; a state of another model."""
+    """An invalid plane, invalid weights or inputs, or a state of another model."""
 
 
 class FileError(HysteronError, OSError):
@@ -42,48 +42,48 @@ class FileMissingError(FileError, FileNotFoundError):
 
 
 class ModelFileError(HysteronError, ValueError):
-    """A model, or its file, says something that cannot be."""
+    """An invalid model or model file."""
 
 
 class RecordingError(HysteronError, ValueError):
-    """A recording cannot be used as it is."""
+    """An invalid recording."""
 
 
 class FitError(HysteronError, ValueError):
-    """Model or options of a fit do not allow this."""
+    """Options do not fit the model or the recording."""
 
 
 class FilterError(HysteronError, ValueError):
-    """A filter's arguments do not fit the data."""
+    """Arguments of a filter do not fit the data."""
 
 
 class RigError(HysteronError, ValueError):
-    """The virtual rig was asked for something outside its physics."""
+    """A value outside the physics of a simulated plant."""
 
 
 class PreparationError(HysteronError, ValueError):
-    """A step of the preparation cannot be done as told."""
+    """A step of `prepare` is impossible with its options."""
 
 
 class DesignError(HysteronError, ValueError):
-    """No experiment follows from the options."""
+    """No experiment is possible with the options."""
 
 
 class ThermalError(HysteronError, ValueError):
-    """A thermal body cannot be run or identified."""
+    """A thermal body cannot be simulated or identified."""
 
 
 class ScenarioError(HysteronError, ValueError):
-    """A scenario says something that cannot be."""
+    """An invalid scenario."""
 
 
 class ControlError(HysteronError, ValueError):
-    """A controller cannot be made as told."""
+    """Invalid arguments of a controller."""
 
 
 class ExportError(HysteronError, ValueError):
-    """A model cannot be carried to where it should run."""
+    """A model cannot be exported."""
 
 
 class HysteronWarning(UserWarning):
-    """What speaks against a result, or was mended on the way to it."""
+    """Something that makes a result doubtful, or that was repaired."""

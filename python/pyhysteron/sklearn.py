@@ -1,14 +1,20 @@
 """pyhysteron for scikit-learn: a regressor with memory, and a splitter that respects the memory.
 
-A column of `X` is the input, and the rows are samples in the order in which they were taken. The output depends on that
-order, as scikit-learn does not foresee: shuffled rows are another experiment. `predict` simulates from the start of what it is given, every
-operator off (or on, with ``start='on'``). So a plain `KFold`, which hands over the middle of a recording without what came before,
-scores the wrong experiment; `BranchSplit` hands over what the operators remember as well.
+A column of `X` is the input. The rows are samples in the order of time, and the output depends on
+that order: shuffled rows are another experiment. `predict` starts at the first row with every
+operator off (or on, with ``start='on'``). A plain `KFold` scores the wrong experiment, since it
+passes the middle of a recording without its past. `BranchSplit` also passes what the operators
+remember.
 """
 
+from __future__ import annotations
+
 import numbers
+from collections.abc import Iterator
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 try:
     from sklearn.base import BaseEstimator, RegressorMixin
@@ -43,14 +49,14 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     smooth : float or 'auto'
         Strength of the smoothness across the plane.
     start : {'off', 'on', 'unknown'}
-        Where the operators stand before the first sample. 'unknown' is estimated in `fit`; `predict`, which has no output to
-        tell it from, then sets out with every operator off.
+        State of the operators before the first sample. `fit` estimates 'unknown'. `predict` then
+        starts with every operator off, since it has no output to estimate from.
     sign : {None, 1, -1}
     offset : float, optional
     bootstrap : int
         Replicates for `Model.confidence` and `Model.band` of ``model_``.
     column : int
-        The column of `X` that is the input; others are not looked at.
+        The column of `X` that is the input; others are ignored.
 
     Attributes
     ----------
@@ -73,17 +79,17 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
 
     def __init__(
         self,
-        levels=20,
-        range=None,
-        operator="mkp",
-        solver="nnls",
-        smooth=0.0,
-        start="off",
-        sign=None,
-        offset=None,
-        bootstrap=0,
-        column=0,
-    ):
+        levels: int | Literal["auto"] = 20,
+        range: tuple[float, float] | None = None,
+        operator: Literal["mkp", "kp", "relay"] = "mkp",
+        solver: Literal["nnls", "ols"] = "nnls",
+        smooth: float | Literal["auto"] = 0.0,
+        start: Literal["off", "on", "unknown"] = "off",
+        sign: Literal[1, -1] | None = None,
+        offset: float | None = None,
+        bootstrap: int = 0,
+        column: int = 0,
+    ) -> None:
         self.levels = levels
         self.range = range
         self.operator = operator
@@ -95,7 +101,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.bootstrap = bootstrap
         self.column = column
 
-    def fit(self, X, y):
+    def fit(self, X: ArrayLike, y: Any) -> HysteresisRegressor:
         """Identify the model.
 
         Parameters
@@ -127,8 +133,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.model_ = _hysteron.fit(_hysteron.Recording(input, y, **named), **options)
         return self
 
-    def predict(self, X):
-        """The outputs, from the start of what is given.
+    def predict(self, X: ArrayLike) -> NDArray[np.float64]:
+        """The outputs, starting at the first row.
 
         Parameters
         ----------
@@ -169,21 +175,22 @@ def _column(X, column):
 class BranchSplit:
     """Leaves out runs of whole branches in turn, with what the operators remember before each run.
 
-    The samples of one branch are so alike that leaving out some of them tests nothing; so a fold is a run of whole
-    branches, about as many samples in each fold. What a hysteresis operator does depends on the past, but only on the few turning points that nothing
-    since has wiped out (`pyhysteron.remembered`). These samples, some two to a few dozen, go before the fold in the test
-    set, and before what follows the fold in the training set. Thus each operator stands after any fold exactly where it
-    stands in the whole recording, and the model is fitted and scored on the material's own path.
+    The samples of one branch are alike. Leaving out some of them tests nothing, so a fold is a run
+    of whole branches, with about as many samples in each fold. An operator depends on the past only
+    through the turning points that no larger swing has wiped out (`pyhysteron.remembered`): two to
+    a few dozen samples. They go before the fold in the test set, and before what follows the fold
+    in the training set. So each operator has the same state after a fold as in the whole recording.
 
-    The price: those few samples are in both sets, so that the folds are no partition (`cross_val_score`, `cross_validate` and
-    `GridSearchCV` take that, `cross_val_predict` does not). `pyhysteron.left_out` does without.
+    These few samples are in both sets, and the folds are no partition. `cross_val_score`,
+    `cross_validate` and `GridSearchCV` accept that, `cross_val_predict` does not.
+    `pyhysteron.left_out` needs no such samples.
 
     Parameters
     ----------
     n_splits : int
         How many folds, 2 at least.
-    band : float, optional
-        Reversals of the input up to this are noise; by default 1 % of its range.
+    dead_band : float, optional
+        Reversals of the input up to this size are noise, in its unit. By default 1 % of its range.
     column : int
         The column of `X` that is the input.
 
@@ -198,18 +205,18 @@ class BranchSplit:
     [0 1 2 3 4] [0 2 4 5 6 7 8]
     """
 
-    def __init__(self, n_splits=5, *, band=None, column=0):
+    def __init__(self, n_splits: int = 5, *, dead_band: float | None = None, column: int = 0) -> None:
         self.n_splits = n_splits
-        self.band = band
+        self.dead_band = dead_band
         self.column = column
 
-    def get_n_splits(self, X=None, y=None, groups=None):
+    def get_n_splits(self, X: object = None, y: object = None, groups: object = None) -> int:
         """How many folds there are.
 
         Parameters
         ----------
         X, y, groups : object, optional
-            Not looked at.
+            Ignored.
 
         Returns
         -------
@@ -223,7 +230,9 @@ class BranchSplit:
         """
         return self.n_splits
 
-    def split(self, X, y=None, groups=None):
+    def split(
+        self, X: ArrayLike, y: object = None, groups: object = None
+    ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
         """Indices of each fold.
 
         Parameters
@@ -231,7 +240,7 @@ class BranchSplit:
         X : array_like, shape (n, 1)
             The input, in the order in which it was sampled.
         y, groups : object, optional
-            Not looked at.
+            Ignored.
 
         Yields
         ------
@@ -255,7 +264,7 @@ class BranchSplit:
         array([0., 8., 1., 5., 3.])
         """
         input = _column(check_array(X, dtype=np.float64), self.column)
-        starts = _starts(_hysteron.branches(input, band=self.band), self.n_splits)
+        starts = _starts(_hysteron.branches(input, dead_band=self.dead_band), self.n_splits)
         ends = [*starts[1:], len(input)]
         rows = np.arange(len(input))
         for start, end in zip(starts, ends):
@@ -266,7 +275,7 @@ class BranchSplit:
             yield train, test
 
     def __repr__(self):
-        return f"BranchSplit(n_splits={self.n_splits}, band={self.band}, column={self.column})"
+        return f"BranchSplit(n_splits={self.n_splits}, dead_band={self.dead_band}, column={self.column})"
 
 
 def _starts(branch, folds):

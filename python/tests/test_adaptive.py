@@ -65,7 +65,7 @@ def test_it_begins_as_its_model_is(sign):
     assert adaptive.model().input == "temperature [degC]"
     expected = offline.simulate(TEMPERATURE)
     # The estimator's offset is added in another order.
-    assert np.allclose([adaptive.predict(x) for x in TEMPERATURE], expected, rtol=0, atol=1e-12)
+    assert np.allclose([adaptive.simulate(x) for x in TEMPERATURE], expected, rtol=0, atol=1e-12)
     assert adaptive.output == pytest.approx(expected[-1], abs=1e-12)
     assert adaptive.input == TEMPERATURE[-1]
     state = offline.start()
@@ -92,7 +92,7 @@ def test_the_inverse_is_that_of_the_weights_as_they_are(sign):
 
 def test_solve_has_a_memory_of_its_own():
     adaptive = pyhysteron.Adaptive(model())
-    adaptive.predict(75.0)
+    adaptive.simulate(75.0)
     first, _ = adaptive.solve(8.0)
     assert adaptive.input == 75.0, "the measured input has moved"
     inverse, state = model().inverse(), model().start()
@@ -176,7 +176,7 @@ def test_samples_that_are_refused():
         with pytest.raises(pyhysteron.CoreError, match="`measured`"):
             adaptive.step(50.0, bad)
         with pytest.raises(pyhysteron.CoreError, match="`input`"):
-            adaptive.predict(bad)
+            adaptive.simulate(bad)
         with pytest.raises(pyhysteron.CoreError, match=r"`measured\[1\]`"):
             adaptive.run([1.0, 2.0], [1.0, bad])
         with pytest.raises(pyhysteron.CoreError, match="`target`"):
@@ -205,7 +205,7 @@ def test_threads_may_share_one():
                 case 3:
                     assert np.isfinite(adaptive.model().offset)
                 case 4:
-                    adaptive.copy().predict(x)
+                    adaptive.copy().simulate(x)
 
     together(work)
     assert np.nanmin(adaptive.weights) >= 0.0
@@ -215,19 +215,19 @@ def test_threads_may_share_one():
 def test_adapt(method, sign):
     measured = model(1.4, sign).simulate(TEMPERATURE)
     adapted = pyhysteron.adapt(model(1.0, sign), TEMPERATURE, measured, method=method, time=np.arange(2000.0))
-    last = adapted.comparison["thirds"][-1]
-    assert last["adapting"]["rmse"] < 0.3 * last["fixed"]["rmse"]
+    last = adapted.comparison.thirds[-1]
+    assert last.adapting.rmse < 0.3 * last.fixed.rmse
     table = adapted.table
     assert np.array_equal(table["input"], TEMPERATURE) and np.array_equal(table["output"], measured)
     assert np.array_equal(table["error"], measured - table["output_model"])
-    whole = adapted.comparison["whole"]["adapting"]
-    assert whole["rmse"] == pytest.approx(np.sqrt(np.mean(table["error"] ** 2)))
-    counts = adapted.comparison["counts"]
-    assert counts["learned"] == (table["outcome"] == "learned").sum() > 0
+    whole = adapted.comparison.whole.adapting
+    assert whole.rmse == pytest.approx(np.sqrt(np.mean(table["error"] ** 2)))
+    counts = adapted.comparison.counts
+    assert counts.learned == (table["outcome"] == "learned").sum() > 0
     again = adapted.model.simulate(TEMPERATURE) - measured
-    assert adapted.comparison["again"]["rmse"] == pytest.approx(np.sqrt(np.mean(again**2)))
-    assert adapted.model.fit["adapted"]["method"] == method
-    assert adapted.comparison["drift"]["weights"][1] > adapted.comparison["drift"]["weights"][0]
+    assert adapted.comparison.again.rmse == pytest.approx(np.sqrt(np.mean(again**2)))
+    assert adapted.model.fit.other["adapted"]["method"] == method
+    assert adapted.comparison.drift.weights[1] > adapted.comparison.drift.weights[0]
     assert repr(adapted).startswith("<Adapted: RMSE")
 
 

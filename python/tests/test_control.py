@@ -56,7 +56,7 @@ def test_all_schemes_track(identified):
         "pid": plain,
         "inverse": controller(identified, pid=None),
         "inverse-pid": controller(identified),
-        "anticipate": controller(identified, rest="anticipate"),
+        "anticipate": controller(identified, policy="anticipate"),
         "adaptive": controller(pyhysteron.Adaptive(identified, method="least-squares")),
     }
     errors = {name: error(scheme.run(pyhysteron.PreisachPlant(), REFERENCE)) for name, scheme in schemes.items()}
@@ -66,8 +66,8 @@ def test_all_schemes_track(identified):
 
 
 def test_run_is_the_loop_written_out(identified):
-    trace = controller(identified, rest="anticipate").run(pyhysteron.PreisachPlant(), REFERENCE)
-    plant, own = pyhysteron.PreisachPlant(), controller(identified, rest="anticipate")
+    trace = controller(identified, policy="anticipate").run(pyhysteron.PreisachPlant(), REFERENCE)
+    plant, own = pyhysteron.PreisachPlant(), controller(identified, policy="anticipate")
     headings = pyhysteron.control.headings(REFERENCE, 0.5)
     for n, (target, heading) in enumerate(zip(REFERENCE, headings, strict=True)):
         assert plant.truth()[0] == trace.output[n]
@@ -164,8 +164,8 @@ def test_snapshots_of_what_was_learned(identified):
     trace = loop.run(pyhysteron.PreisachPlant(), REFERENCE)
     assert trace.adapted.any() and len(trace.snapshots) > 10
     last = trace.snapshots[-1]
-    assert np.array_equal(last["weights"], loop.adaptive.weights, equal_nan=True)
-    assert last["offset"] == loop.adaptive.offset
+    assert np.array_equal(last.weights, loop.adaptive.weights, equal_nan=True)
+    assert last.offset == loop.adaptive.offset
     assert adaptive.model().offset == identified.offset, "the one that was given has learned"
 
 
@@ -226,7 +226,7 @@ def test_plants_are_labelled_and_repeat_themselves():
         (lambda: Controller(0.1, (1, 0)), pyhysteron.ControlError, "`commands`"),
         (lambda: Controller(0.1, (0, 1), drives=(0, np.inf)), pyhysteron.ControlError, "`drives`"),
         (lambda: Controller(0.1, (0, 1), stuck_s=0), pyhysteron.ControlError, "`stuck_s`"),
-        (lambda: Controller(0.1, (0, 1), rest="sleep"), ValueError, "`rest` is 'sleep'"),
+        (lambda: Controller(0.1, (0, 1), policy="sleep"), ValueError, "`policy` is 'sleep'"),
         (lambda: Controller(0.1, (0, 1), model=3), TypeError, "`model` is 3: a Model or an Adaptive"),
         (lambda: Controller(0.1, (0, 1), model=pyhysteron.Model([1, -1, 1], (0, 1))), pyhysteron.CoreError, ""),
         (lambda: controller().step(np.nan, 0.0), pyhysteron.CoreError, "`target`"),
@@ -234,7 +234,7 @@ def test_plants_are_labelled_and_repeat_themselves():
         (lambda: controller().step_command(np.inf, 0.0), pyhysteron.CoreError, "`command`"),
         (lambda: controller().run(Stage(), [1.0, np.nan]), pyhysteron.CoreError, "`reference[1]`"),
         (lambda: RelayTest((1, 0), 0.5), pyhysteron.ControlError, "`commands`"),
-        (lambda: RelayTest((0, 1), 0.5, band=-1), pyhysteron.ControlError, "`band`"),
+        (lambda: RelayTest((0, 1), 0.5, hysteresis=-1), pyhysteron.ControlError, "`hysteresis`"),
         (lambda: RelayTest((0, 1), 0.5).gains(0.1), ValueError, "not done"),
         (lambda: Pid.from_step(np.zeros(100), 50, 1.0, 0.1), ValueError, "does not answer"),
     ],
@@ -257,7 +257,7 @@ def test_pid_by_hand():
 
 
 def test_a_relay_test_tunes_a_loop_that_tracks():
-    plant, test = pyhysteron.PreisachPlant(), RelayTest((40, 110), 36.0, band=0.5)
+    plant, test = pyhysteron.PreisachPlant(), RelayTest((40, 110), 36.0, hysteresis=0.5)
     assert test.outputs is None and test.oscillation(INTERVAL) is None
     for _ in range(10_000):
         if test.done:

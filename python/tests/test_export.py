@@ -13,11 +13,11 @@ MODEL = pyhysteron.Model(np.full(15, 0.5), (20, 80), input="temperature [degC]",
 @pytest.mark.parametrize("real", ["float", "double"])
 def test_c(tmp_path, real):
     export = MODEL.export_c(tmp_path, real=real, name="wire")
-    assert export["name"] == "wire" and export["inverse"] is True
-    assert export["flash_bytes"] > 0 and export["ram_bytes"] > 0 and export["step_loop"] == 13
-    assert all(file.exists() for file in export["files"])
+    assert export.name == "wire" and export.inverse is True
+    assert export.flash_bytes > 0 and export.ram_bytes > 0 and export.step_loop == 13
+    assert all(file.exists() for file in export.files)
     learns = MODEL.export_c(tmp_path, real=real, name="wire", adaptation=True)
-    assert {file.name for file in learns["files"]} > {"hysteron_mcu_adapt.c", "hysteron_mcu_adapt.h"}
+    assert {file.name for file in learns.files} > {"hysteron_mcu_adapt.c", "hysteron_mcu_adapt.h"}
     assert f"typedef {real} hys_real;" in (tmp_path / "hysteron_mcu.h").read_text()
 
 
@@ -26,10 +26,10 @@ def test_c(tmp_path, real):
 def test_fmu(tmp_path, fmi, inverse):
     path = tmp_path / "wire.fmu"
     said = MODEL.export_fmu(path, inverse=inverse, fmi=fmi)
-    assert said["name"] == ("sf_Inverse_MKP" if inverse else "sf_MKP") and said["bytes"] == path.stat().st_size
+    assert said.name == ("sf_Inverse_MKP" if inverse else "sf_MKP") and said.bytes == path.stat().st_size
     description = zipfile.ZipFile(path).read("modelDescription.xml").decode()
     assert f'fmiVersion="{fmi}.0"' in description
-    assert all(f'name="{name}"' in description for name in said["inputs"] + said["outputs"])
+    assert all(f'name="{name}"' in description for name in said.inputs + said.outputs)
 
 
 def test_what_is_refused(tmp_path):

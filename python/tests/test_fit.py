@@ -8,7 +8,7 @@ import pyhysteron
 
 
 def nrmse(model):
-    return model.fit["nrmse_percent"]
+    return model.fit.nrmse_percent
 
 
 def test_recording_arrays_and_lists_are_the_same_experiment(recording):
@@ -18,7 +18,7 @@ def test_recording_arrays_and_lists_are_the_same_experiment(recording):
     assert one == pyhysteron.fit([recording], levels=8, bootstrap=0)
     assert one.input == "temperature [degC]" and other.input == "input"
     several = pyhysteron.fit([recording, recording], levels=8, bootstrap=0)
-    assert several.fit["samples"] == 2 * len(recording)
+    assert several.fit.samples == 2 * len(recording)
 
 
 def test_the_weights_are_those_behind_the_data(truth, swings):
@@ -49,11 +49,11 @@ def test_options_reach_the_fit(recording, options):
     model = pyhysteron.fit(recording, **{"levels": 10, "bootstrap": 0, **options})
     told = model.fit
     for name in ("solver", "start"):
-        assert told[name] == options.get(name, told[name])
+        assert getattr(told, name) == options.get(name, getattr(told, name))
     assert model.operator == options.get("operator", "mkp")
     assert model.offset == options.get("offset", model.offset)
     assert model.range == options.get("range", model.range)
-    assert ("auto" in options.values()) == ("validation" in told)
+    assert ("auto" in options.values()) == (told.validation is not None)
     assert (model.confidence is None) == ("bootstrap" not in options)
     assert nrmse(model) < 5
 
@@ -61,7 +61,7 @@ def test_options_reach_the_fit(recording, options):
 def test_levels_are_20_and_replicates_200(recording):
     model = pyhysteron.fit(recording)
     assert model.levels == 20
-    assert model.confidence["replicates"] == 200
+    assert model.confidence.replicates == 200
 
 
 def test_load(recording, swings):
@@ -93,10 +93,10 @@ def test_thermal(truth):
     output = truth.simulate(temperature)
     model = pyhysteron.fit(duty, output, time=time, levels=8, thermal="first-order", bootstrap=0)
     # Eight levels for a material of twelve.
-    assert model.thermal["tau_heating"] == pytest.approx(2, rel=0.2)
+    assert model.thermal.tau_heating == pytest.approx(2, rel=0.2)
     modelled = model.simulate(duty, time=time)
     assert np.std(modelled - output) < 0.03 * np.ptp(output)
-    assert model.evaluate(duty, output, time=time)["inverse"] is None
+    assert model.evaluate(duty, output, time=time).inverse is None
     with pytest.raises(pyhysteron.ThermalError, match="time"):
         model.simulate(duty)
     with pytest.raises(pyhysteron.ThermalError, match="times must not go back"):
@@ -178,13 +178,13 @@ def test_other_threads_go_on_during_a_fit(recording):
 
 def test_left_out(recording):
     found = pyhysteron.left_out(recording, levels=10)
-    assert found["predicted"].shape == found["fold"].shape == (len(recording),)
-    assert set(found["fold"]) == set(range(5))
-    error = found["predicted"] - recording.output
+    assert found.predicted.shape == found.fold.shape == (len(recording),)
+    assert set(found.fold) == set(range(5))
+    error = found.predicted - recording.output
     rmse = 100 * np.sqrt(np.mean(error**2)) / np.ptp(recording.output)
-    assert rmse == pytest.approx(found["nrmse_percent"])
-    assert found["nrmse_percent"] > found["training_nrmse_percent"]
-    chosen = pyhysteron.left_out(recording, levels="auto", smooth=1e-6)["chosen"]
+    assert rmse == pytest.approx(found.nrmse_percent)
+    assert found.nrmse_percent > found.training_nrmse_percent
+    chosen = pyhysteron.left_out(recording, levels="auto", smooth=1e-6).chosen
     assert len(chosen) == 5 and all(smooth == 1e-6 for _, smooth in chosen)
 
 

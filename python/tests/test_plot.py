@@ -52,7 +52,7 @@ def test_over_time(recording, model):
 
 def test_the_inverse_over_time(recording, model):
     upper, lower = plot.over_time(recording, model, of="input")
-    hold = model.evaluate(recording)["inverse"]["hold"]["input_model"]
+    hold = model.evaluate(recording).inverse.hold.input_model
     np.testing.assert_array_equal(lines(upper)["inverse, hold"].get_ydata(), hold)
     assert upper.patches, "dead bands are shaded"
     with pytest.raises(ValueError, match="`of` is 'both': one of 'output', 'input' is needed"):
@@ -93,15 +93,15 @@ def test_a_thermal_body_is_refused_where_it_would_be_left_out(truth, swings):
 
 def test_band(recording, model):
     ax = plot.band(recording, model)
-    coverage = model.evaluate(recording)["band"]["coverage_percent"]
+    coverage = model.evaluate(recording).band.coverage_percent
     assert f"{coverage:.1f} % inside" in list(lines(ax))[0]
     with pytest.raises(pyhysteron.FitError, match="bootstrap"):
         plot.band(recording, pyhysteron.Model([1.0, 2.0, 4.0], (30, 80)))
 
 
 def test_dead_band_shows_the_worst(recording, model):
-    inverse = model.evaluate(recording)["inverse"]
-    error = np.where(inverse["moving"], 0, np.abs(inverse["hold"]["input_model"] - recording.input))
+    inverse = model.evaluate(recording).inverse
+    error = np.where(inverse.moving, 0, np.abs(inverse.hold.input_model - recording.input))
     upper, lower = plot.dead_band(recording, model)
     low, high = lower.get_xlim()
     assert low < recording.time[np.argmax(error)] < high

@@ -79,10 +79,10 @@ def test_summary(recording):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         summary = recording.summary(levels=10)
-    assert summary["samples"] == 3000
-    assert summary["operators"] == 55
-    assert summary["input"]["unit"] == "degC"
-    assert summary["time"]["gaps"] == 0
+    assert summary.samples == 3000
+    assert summary.operators == 55
+    assert summary.input.unit == "degC"
+    assert summary.time.gaps == 0
 
 
 @pytest.mark.parametrize("name", ["run--two.csv", "run --old/m.csv", "--start unknown.csv", "`--repair`.csv"])

@@ -32,6 +32,17 @@ def driven(plant):
     return readings
 
 
+RATES = {"heating_rate": 2.0, "cooling_rate": 0.5}
+#: Written by a test's fixture.
+FILE = "run.csv"
+COLUMNS = {"input": "input", "output": "output"}
+
+
+def commanded(**shown):
+    loop = pyhysteron.control.Controller(0.1, (0, 100), **shown)
+    return [loop.step(target, 0.5 * target, heading="rising").drive for target in (2.0, 9.0, 8.5, 1.0, 1.0)]
+
+
 def disturbed(**shown):
     plant = pyhysteron.SpringPlant()
     plant.disturb(**shown)
@@ -42,12 +53,18 @@ def disturbed(**shown):
 DEFAULTS = {
     pyhysteron.Model: lambda **shown: pyhysteron.Model(np.ones(15), (20, 80), **shown),
     pyhysteron.Model.export_fmu: lambda **shown: MODEL.export_fmu("model.fmu", **shown),
+    pyhysteron.Recording: lambda **shown: repr(pyhysteron.Recording(SERIES, OUTPUT, **{**shown, "load": LOAD})),
+    pyhysteron.Model.evaluate: lambda **shown: MODEL.evaluate(RECORDING, **shown),
     pyhysteron.Recording.summary: lambda **shown: RECORDING.summary(**shown),
     pyhysteron.fit: lambda **shown: pyhysteron.fit(SERIES, OUTPUT, **{**shown, "load": LOAD}),
     pyhysteron.left_out: lambda **shown: pyhysteron.left_out(SERIES, OUTPUT, **{**shown, "load": LOAD}),
     pyhysteron.prepare: lambda **shown: pyhysteron.prepare(RECORDING, **shown),
     pyhysteron.adapt: lambda **shown: pyhysteron.adapt(MODEL, RECORDING, **shown).table,
     pyhysteron.Adaptive: lambda **shown: pyhysteron.Adaptive(MODEL, **shown).run(SERIES, OUTPUT),
+    pyhysteron.Inverse.run: lambda **shown: MODEL.inverse().run(SERIES / 5, **shown),
+    pyhysteron.design: lambda **shown: pyhysteron.design((20, 80), 5, **{**shown, **RATES}).input,
+    pyhysteron.read: lambda **shown: pyhysteron.read(FILE, **{**shown, **COLUMNS}),
+    pyhysteron.control.Controller: lambda **shown: commanded(**{**shown, "model": MODEL}),
     pyhysteron.SpringPlant: lambda **shown: driven(pyhysteron.SpringPlant(**shown)),
     pyhysteron.PreisachPlant: lambda **shown: driven(pyhysteron.PreisachPlant(**shown)),
     pyhysteron.SimulatedPlant.disturb: disturbed,
@@ -63,7 +80,8 @@ def options(call):
 @pytest.mark.parametrize("function", DEFAULTS, ids=lambda function: function.__qualname__)
 def test_the_defaults_are_those_that_are_shown(function, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shown = {p.name: p.default for p in options(function) if p.default is not ...}
+    RECORDING.to_csv(FILE)
+    shown = {p.name: p.default for p in options(function) if p.default not in (..., p.empty)}
     assert shown
     np.testing.assert_equal(DEFAULTS[function](**shown), DEFAULTS[function]())
 

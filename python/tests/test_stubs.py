@@ -1,4 +1,4 @@
-"""The type stubs say what the module has."""
+"""The type stubs say what the module has, and are those that `python/stubs` writes."""
 
 import pathlib
 import subprocess
@@ -7,6 +7,11 @@ import sys
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def test_they_are_written_by_the_script():
+    done = subprocess.run([sys.executable, ROOT / "python/stubs", "--check"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_stubs():

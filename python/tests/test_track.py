@@ -25,10 +25,10 @@ def test_scores_are_a_table(comparison):
 
 def test_medians_and_ratios(comparison):
     first = comparison.medians[0]
-    assert (first["controller"], first["window"]) == ("PID", "first half")
-    assert first["rmse"] == pytest.approx(np.median(comparison.scores["rmse"][[0, 2]]))
-    assert first["prediction_rmse"] is None
-    assert comparison.ratios[0]["rmse"] < 1.0
+    assert (first.controller, first.window) == ("PID", "first half")
+    assert first.rmse == pytest.approx(np.median(comparison.scores["rmse"][[0, 2]]))
+    assert first.prediction_rmse is None
+    assert comparison.ratios[0].rmse < 1.0
 
 
 def test_what_else_there_is(comparison, tmp_path):

@@ -63,12 +63,12 @@ class TestInverse:
         inverse, state, found = model.inverse(), model.start(), []
         for target, heading in zip(run["target"], run["heading"], strict=True):
             state = between(state)
-            found.append(inverse.step(state, target, heading=HEADINGS[heading], band=run["tolerance"]))
+            found.append(inverse.step(state, target, heading=HEADINGS[heading], tolerance=run["tolerance"]))
         self.judge(model, tolerance, run, *zip(*found, strict=True))
 
     def test_run(self, model, tolerance, run):
         headings = [HEADINGS[heading] for heading in run["heading"]]
-        inputs, status = model.inverse().run(run["target"], heading=headings, band=run["tolerance"])
+        inputs, status = model.inverse().run(run["target"], heading=headings, tolerance=run["tolerance"])
         self.judge(model, tolerance, run, inputs, status)
 
     def judge(self, model, tolerance, run, inputs, status):
@@ -86,6 +86,6 @@ def test_a_run_that_anticipates_is_its_steps():
             continue
         inverse, state = model.inverse(), model.start()
         headings = pyhysteron.control.headings(run["target"], 0.01)
-        steps = [inverse.step(state, y, heading=h, band=0.01) for y, h in zip(run["target"], headings, strict=True)]
-        inputs, status = inverse.run(run["target"], policy="anticipate", band=0.01)
+        steps = [inverse.step(state, y, heading=h, tolerance=0.01) for y, h in zip(run["target"], headings, strict=True)]
+        inputs, status = inverse.run(run["target"], policy="anticipate", tolerance=0.01)
         assert steps == list(zip(inputs, status, strict=True))

@@ -20,7 +20,7 @@ def test_weights(model, kind):
         zero, some = ax.get_lines()
         assert len(zero.get_xdata()) + len(some.get_xdata()) == 78
         assert (some.get_ydata() >= some.get_xdata()).all(), "β is upright"
-        assert len(some.get_xdata()) == model.fit["weights_not_zero"]
+        assert len(some.get_xdata()) == model.fit.weights_not_zero
     else:
         drawn = ax.collections[0].get_array().reshape(12, 12)
         np.testing.assert_array_equal(np.ma.filled(drawn, np.nan), model.weights.T)

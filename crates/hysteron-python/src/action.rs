@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 /// What a `Controller` does with a sample.
 #[pyclass(frozen, get_all, module = "pyhysteron.control")]
 pub(crate) struct Action {
-    /// The input asked for.
+    /// The commanded input.
     command: f64,
     /// The drive to write to the device.
     drive: f64,
@@ -14,7 +14,8 @@ pub(crate) struct Action {
     prediction: f64,
     /// The output as filtered; NaN where there is nothing new to be believed.
     output: f64,
-    /// The input as filtered; NaN where there is nothing new to be believed, None where it is not known.
+    /// The input as filtered; NaN where there is nothing new to be believed, None where it is not
+    /// known.
     input: Option<f64>,
     /// Whether the drive or the command stood at a limit.
     saturated: bool,

@@ -1,33 +1,31 @@
 //! `adapt`.
 
+use crate::choices::{learner, named, no_argument};
+use crate::convert::{result, to_python};
 use crate::fit::start_of;
-use crate::given::recording_of;
+use crate::inputs::recording_of;
+use crate::integer::Integer;
 use crate::learning::outcomes;
 use crate::model::Model;
-use crate::said::told;
-use crate::watched::watched;
-use crate::whole::Whole;
-use crate::word::{learner, named, no_argument};
+use crate::progress::with_progress;
 use hysteron::AdaptOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// What came of an adaptation to a recording.
+/// The result of an adaptation to a recording.
 #[pyclass(frozen, get_all, module = "pyhysteron")]
 pub(crate) struct Adapted {
-    /// The model with the last weights that are not on probation; `model.fit` tells of them over
+    /// The model with the last weights that are not on probation. `model.fit` has its errors over
     /// the whole recording.
     model: Model,
-    /// Arrays of shape (n,): 'input', 'output', 'output_model' (predicted before the sample was learned from), 'error'
-    /// (measured less predicted) and 'outcome' (as in `Learning`).
+    /// A table, as pandas takes it: arrays of shape (n,).
+    ///
+    /// 'input', 'output', 'output_model' (before the sample was learned from), 'error' (measured
+    /// less modelled) and 'outcome' (as in `Learning`).
     table: Py<PyDict>,
-    /// Errors of the model that learned ('adapting', before it learned from the samples compared) beside those of the
-    /// model left as it was ('fixed'): 'whole', 'thirds' (a list), 'again' (the last weights over the whole recording);
-    /// 'late' (the last third without readings rejected, or None) and whether the model ended
-    /// 'worse' there than the one left alone; 'probation' (samples at the end that the model has
-    /// nothing of, as no later ones judge them);
-    /// 'counts' of the outcomes; 'drift' of weights and offset, before and after.
+    /// Errors of the model that learned beside those of the fixed model: a
+    /// `results.AdaptedComparison`.
     comparison: Py<PyAny>,
 }
 
@@ -49,8 +47,8 @@ impl Adapted {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let whole = self.comparison.bind(py).get_item("whole")?;
-        let rmse = |of| whole.get_item(of)?.get_item("rmse")?.extract::<f64>();
+        let whole = self.comparison.bind(py).getattr("whole")?;
+        let rmse = |of| whole.getattr(of)?.getattr("rmse")?.extract::<f64>();
         Ok(format!(
             "<Adapted: RMSE {:.4} adapting, {:.4} fixed>",
             rmse("adapting")?,
@@ -59,7 +57,7 @@ impl Adapted {
     }
 }
 
-/// Let a model learn from a recording: each sample is predicted, then learned from.
+/// Let a model learn from a recording, sample by sample: first simulate, then learn.
 ///
 /// Parameters
 /// ----------
@@ -69,16 +67,18 @@ impl Adapted {
 /// output : array_like, shape (n,), optional
 ///     Where `recording` is the input.
 /// time : array_like, shape (n,), optional
-///     Seconds. Only looked at for whether it goes back.
+///     As in `Recording`. Only checked for going back.
 /// method : {'drift', 'least-squares', 'gradient', 'increments'}
-///     What follows the error, and how; see `Adaptive`. 'drift' errs least on measured recordings.
+///     The estimator; see `Adaptive`. 'drift' errs least on measured recordings.
 /// start : {'off', 'on', 'unknown'}
-///     Where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less.
+///     State of the operators before the first sample. 'unknown': off or on, whichever gives the
+///     smaller error of the model as it is.
 /// progress : callable, bool or None
-///     As for `fit`. Ctrl-C ends it in any case.
+///     As for `fit`. Ctrl-C ends the work in any case.
 /// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
-///     As for `Adaptive`; what is left out follows from model and recording. The noise is that of the output,
-///     and at least 2 % of its range or the model's, whichever is larger, for weights, 5 % for shares; the dead zone is twice the output's noise.
+///     As for `Adaptive`. Defaults follow from model and recording. The noise is that of the
+///     output, and at least 2 % (with 'drift' 5 %) of the larger of the ranges of output and
+///     model. The dead zone is twice the output's noise.
 ///
 /// Returns
 /// -------
@@ -88,7 +88,7 @@ impl Adapted {
 /// Raises
 /// ------
 /// RecordingError
-///     For lengths that differ, samples that are not finite and time that goes back.
+///     For different lengths, samples that are not finite, and time that goes back.
 /// FitError, CoreError
 ///     As for `Adaptive`.
 ///
@@ -98,8 +98,8 @@ impl Adapted {
 /// >>> temperature = 50 - 40 * np.cos(0.05 * np.arange(1000))
 /// >>> measured = pyhysteron.Model(np.full(15, 1.5), (20, 80)).simulate(temperature)
 /// >>> adapted = pyhysteron.adapt(model, temperature, measured)
-/// >>> last = adapted.comparison['thirds'][-1]
-/// >>> last['adapting']['rmse'] < 0.05 * last['fixed']['rmse']
+/// >>> last = adapted.comparison.thirds[-1]
+/// >>> last.adapting.rmse < 0.05 * last.fixed.rmse
 /// True
 #[pyfunction]
 #[pyo3(
@@ -118,11 +118,12 @@ pub(crate) fn adapt<'py>(
     progress: Option<&Bound<'py, PyAny>>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Adapted> {
-    let options = adapt_options(method, start, options)?;
+    let names = ["time", "progress"];
+    let options = adapt_options(("adapt", &names), method, start, options)?;
     let recording = recording_of(recording, output, time, None)?.inner;
     let model = &model.inner;
-    let adapted = watched(py, progress, |watch| {
-        hysteron::adapt_watched(model, &recording, &options, watch)
+    let adapted = with_progress(py, progress, |progress| {
+        hysteron::adapt(model, &recording, &options, progress)
     })?;
     let errors = PyArray1::from_vec(py, adapted.errors(&recording));
     let table = PyDict::new(py);
@@ -131,38 +132,58 @@ pub(crate) fn adapt<'py>(
     table.set_item("error", errors)?;
     table.set_item("outcome", outcomes(py, adapted.outcomes.iter().copied())?)?;
     let comparison = PyDict::new(py);
-    comparison.set_item("whole", told(py, &adapted.whole)?)?;
-    comparison.set_item("thirds", told(py, &adapted.thirds)?)?;
-    comparison.set_item("late", told(py, &adapted.late)?)?;
+    comparison.set_item("whole", to_python(py, &adapted.whole)?)?;
+    comparison.set_item("thirds", to_python(py, &adapted.thirds)?)?;
+    comparison.set_item("late", to_python(py, &adapted.late)?)?;
     comparison.set_item("worse", adapted.worse)?;
     comparison.set_item("probation", adapted.probation)?;
-    comparison.set_item("again", told(py, &adapted.again)?)?;
-    comparison.set_item("counts", told(py, &adapted.counts)?)?;
-    comparison.set_item("drift", told(py, &adapted.drift)?)?;
+    comparison.set_item("again", to_python(py, &adapted.again)?)?;
+    comparison.set_item("counts", to_python(py, &adapted.counts)?)?;
+    comparison.set_item("drift", to_python(py, &adapted.drift)?)?;
     table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
     Ok(Adapted {
         model: adapted.model.into(),
         table: table.unbind(),
-        comparison: comparison.into_any().unbind(),
+        comparison: result(py, "AdaptedComparison", comparison)?.unbind(),
     })
 }
 
-/// The options of `Adaptive` and `adapt`.
+const OPTIONS: [&str; 16] = [
+    "method",
+    "start",
+    "gain",
+    "span",
+    "forgetting",
+    "noise",
+    "spread",
+    "correlation",
+    "offset_share",
+    "dead_zone",
+    "leakage",
+    "movement",
+    "trial",
+    "gate",
+    "burst",
+    "load",
+];
+
+/// The options of `Adaptive` and `adapt`. `names` are those that only `call` has.
 pub(crate) fn adapt_options(
+    (call, names): (&str, &[&str]),
     method: &str,
     start: &str,
-    given: Option<&Bound<'_, PyDict>>,
+    keywords: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<AdaptOptions> {
     let mut options = AdaptOptions {
         learner: learner(method)?,
         start: start_of(start)?,
         ..AdaptOptions::default()
     };
-    for (name, value) in given.into_iter().flatten() {
+    for (name, value) in keywords.into_iter().flatten() {
         let name: String = name.extract()?;
         let counts = [("trial", &mut options.trial), ("burst", &mut options.burst)];
         if let Some((_, slot)) = counts.into_iter().find(|(slot, _)| *slot == name) {
-            let count: Option<Whole> = value.extract()?;
+            let count: Option<Integer> = value.extract()?;
             *slot = count.map(|count| count.of(&name)).transpose()?;
             continue;
         }
@@ -181,7 +202,7 @@ pub(crate) fn adapt_options(
             ("load", &mut options.load),
         ];
         let Some((_, slot)) = slots.into_iter().find(|(slot, _)| *slot == name) else {
-            return Err(no_argument(&name));
+            return Err(no_argument(call, &name, &[names, &OPTIONS].concat()));
         };
         *slot = named(&name, "a number", &value)?;
     }

@@ -2,14 +2,14 @@
 
 use crate::adapt::adapt_options;
 use crate::array::samples;
+use crate::choices;
 use crate::error::{Raise, finite, number};
 use crate::learning::{Learning, outcomes, side};
 use crate::model::Model;
 use crate::plane::on_plane;
 use crate::pool::detached;
+use crate::progress::with_progress;
 use crate::shared::Shared;
-use crate::watched::watched;
-use crate::word::policy;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -17,60 +17,70 @@ use pyo3::types::PyDict;
 
 /// A model that learns while it runs: its weights and offset follow the plant.
 ///
-/// It holds the state of the model, which follows the measured input, and one of the inverse, which follows
-/// the inputs that `solve` gave. Several threads may share one: each call is done before the next begins.
-/// The estimator's memory cannot be pickled; what it has learned can, as `model()`.
+/// It holds two states. That of the model follows the measured input. That of the inverse follows
+/// the inputs that `solve` returned. Threads may share an Adaptive: each call ends before the next
+/// one begins. An Adaptive cannot be pickled; what it has learned can, as `model()`.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The off-line model. It stays as it is.
 /// method : {'gradient', 'increments', 'least-squares', 'drift'}
-///     All weights by the normalised gradient, by that on increments, or by recursive least squares; or
-///     by least squares the shares of a few ways in which weights change under load and drift.
+///     'gradient': all weights, by the normalised gradient. 'increments': the same on increments.
+///     'least-squares': all weights, by recursive least squares. 'drift': coefficients of a few
+///     patterns in which weights change under load and drift, by least squares.
 /// start : {'off', 'on'}
-///     Where the operators stand.
+///     State of the operators.
 /// gain : float, optional
-///     Gradient methods: share of a sample's error that is taken away, above 0 and below 2. By default 0.3.
+///     Gradient methods: the share of a sample's error to remove, above 0 and below 2. By default
+///     0.3.
 /// span : float, optional
 ///     'increments': levels between two updates, from 1/8 to 8. By default 1.
 /// forgetting : float, optional
-///     Least squares: what a sample counts after the next, above 0 and up to 1. By default 0.999, and 0.9999 with 'drift'.
+///     Least squares: the weight of a sample relative to the next one, above 0 and up to 1. By
+///     default 0.999, and 0.9999 with 'drift'.
 /// noise : float, optional
-///     Least squares: standard deviation of a reading's error, that of the model included, in the output's
-///     unit, above 0. By default 2 % of the model's range, 5 % with 'drift'.
+///     Least squares: standard deviation of a reading's error, model error included, in the
+///     output's unit, above 0. By default 2 % of the model's range, 5 % with 'drift'.
 /// spread : float, optional
-///     Least squares: standard deviation by which a weight (or a share) may differ from its off-line value, above 0.
-///     By default such that the sum of the weights may deviate by 30 % of the model's range; 0.5 for shares.
+///     Least squares: standard deviation of a weight (or coefficient) around its off-line value,
+///     above 0. By default such that the sum of the weights may deviate by 30 % of the model's
+///     range; 0.5 for coefficients.
 /// correlation : float, optional
-///     'least-squares': levels over which deviations go together, from 0 on. By default 1.
+///     'least-squares': correlation length of the deviations, in levels, from 0 on. By default 1.
 /// offset_share : float, optional
-///     How freely the offset moves, beside one weight or share, from 0 on. By default 0.2 √N of N weights with the gradient
-///     methods; with least squares such that the offset may deviate by 30 % of the model's range.
+///     How freely the offset moves, relative to one weight or coefficient, from 0 on. By default
+///     0.2 √N for N weights with the gradient methods; with least squares such that the offset may
+///     deviate by 30 % of the model's range.
 /// dead_zone : float, optional
 ///     Errors up to this are noise, in the output's unit, from 0 on. By default 0.
 /// leakage : float, optional
-///     Share by which the weights return to the off-line ones with each update, from 0 to 1. By default 0.
+///     Share by which the weights return to the off-line weights with each update, from 0 to 1.
+///     By default 0.
 /// movement : float, optional
-///     Levels that the input has to move before a sample is learned from, from 0 on. By default 0.05.
+///     Levels that the input has to move before the model learns again, from 0 on. By default
+///     0.05.
 /// trial : int, optional
-///     Samples after which the weights are judged against the last good ones, 1 or more. By default 256.
+///     Samples after which the weights are compared with the last good ones, 1 or more. By
+///     default 256.
 /// gate : float, optional
-///     How many times the usual surprise a reading may be off to be learned from, from 2 on; 0:
-///     any. By default 12.
+///     Reject a reading whose error exceeds this many times the usual error, from 2 on; 0 accepts
+///     all. By default 12.
 /// burst : int, optional
-///     Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
-///     more a plant that jumped. 1 or more, by default 8.
+///     After this many consecutive readings beyond the gate that agree, the plant has jumped and
+///     they are learned from. 1 or more, by default 8.
 /// load : float, optional
-///     'drift' of a model that depends on a load: where the shares start. By default the middle of its range.
+///     'drift' with a model that depends on a load: the load at the start. By default the middle
+///     of its range.
 ///
 /// Raises
 /// ------
 /// CoreError
 ///     For an option out of range and for negative weights.
 /// FitError
-///     For an option that the method does not use, a model with a thermal body, one that depends on a load (with
-///     another method than 'drift'), and one with too many levels for the memory of the method.
+///     For an option that the method does not use, a model with a thermal body, a model that
+///     depends on a load (with another method than 'drift'), and too many levels for the memory
+///     of the method.
 ///
 /// Examples
 /// --------
@@ -122,12 +132,12 @@ impl Adaptive {
                 "`start` is 'unknown': one of 'off', 'on' is needed",
             ));
         }
-        let options = adapt_options(method, start, options)?;
+        let options = adapt_options(("Adaptive", &[]), method, start, options)?;
         let model = &model.inner;
         Ok(detached(py, || options.adaptive(model)).raise()?.into())
     }
 
-    /// Move to `input`, tell the output expected there, and learn from the one `measured`.
+    /// Move to `input`, and learn from the output `measured` there.
     ///
     /// Parameters
     /// ----------
@@ -140,7 +150,7 @@ impl Adaptive {
     /// Raises
     /// ------
     /// CoreError
-    ///     For numbers that are NaN or infinite; nothing is changed then.
+    ///     For numbers that are NaN or infinite. Nothing is changed then.
     ///
     /// Examples
     /// --------
@@ -153,7 +163,7 @@ impl Adaptive {
         Ok(self.inner.with(py, step).raise()?.into())
     }
 
-    /// Predict each sample, then learn from it. Ctrl-C ends it; what was learned until then stays.
+    /// Simulate each sample, then learn from it. Ctrl-C ends it; what was learned so far stays.
     ///
     /// Parameters
     /// ----------
@@ -191,8 +201,8 @@ impl Adaptive {
         }
         finite("input", input)?;
         finite("measured", measured)?;
-        let learned = watched(py, None, |watch| {
-            let run = |adaptive: &mut hysteron::Adaptive| adaptive.run(input, measured, watch);
+        let learned = with_progress(py, None, |progress| {
+            let run = |adaptive: &mut hysteron::Adaptive| adaptive.run(input, measured, progress);
             self.inner.with_detached(run)
         })?;
         let table = PyDict::new(py);
@@ -210,7 +220,7 @@ impl Adaptive {
         Ok(table)
     }
 
-    /// Move to `input` and tell the output expected there, without learning.
+    /// Move to `input` and return the output expected there, without learning.
     ///
     /// Parameters
     /// ----------
@@ -227,23 +237,24 @@ impl Adaptive {
     ///
     /// Examples
     /// --------
-    /// >>> pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))).predict(0.5)
+    /// >>> pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))).simulate(0.5)
     /// 4.0
-    fn predict(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
+    fn simulate(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
         let input = number("input", input)?;
-        let predict = |adaptive: &mut hysteron::Adaptive| adaptive.predict(input);
-        self.inner.with(py, predict).raise()
+        let simulate = |adaptive: &mut hysteron::Adaptive| adaptive.predict(input);
+        self.inner.with(py, simulate).raise()
     }
 
-    /// The input that gives `target`, by the weights as they are now. The inverse moves there from where it stood.
+    /// The input that gives `target`, by the present weights. Moves the inverse there.
     ///
     /// Parameters
     /// ----------
     /// target : float
     /// heading : {None, 'rising', 'falling'}
-    ///     Where the target goes next: the dead band is crossed at once. With None the input rests with the target.
-    /// band : float
-    ///     How far a target may go back and still count as resting.
+    ///     Where the target goes next: the dead band is crossed at once. With None the input rests
+    ///     while the target rests.
+    /// tolerance : float
+    ///     Reversals of the target up to this size are noise, in the output's unit.
     ///
     /// Returns
     /// -------
@@ -262,24 +273,24 @@ impl Adaptive {
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> adaptive.solve(4.0)
     /// (0.5, 0)
-    #[pyo3(signature = (target, *, heading=None, band=0.0))]
+    #[pyo3(signature = (target, *, heading=None, tolerance=0.0))]
     fn solve(
         &self,
         py: Python<'_>,
         target: f64,
         heading: Option<&str>,
-        band: f64,
+        tolerance: f64,
     ) -> PyResult<(f64, i8)> {
-        let (target, policy) = (number("target", target)?, policy(heading, band)?);
-        let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target, policy);
+        let target = choices::target(target, heading, tolerance)?;
+        let solve = |adaptive: &mut hysteron::Adaptive| adaptive.solve(target);
         let solution = self.inner.with(py, solve).raise()?;
         Ok((solution.input, solution.status.number()))
     }
 
-    /// Let the inverse set out from where the measured input is.
+    /// Move the inverse to where the measured input is.
     ///
-    /// Turning points that were asked for by weights long changed stay in its memory until they are wiped out;
-    /// a loop may call this wherever its target turns.
+    /// The inverse remembers turning points that came from older weights, until larger swings wipe
+    /// them out. A loop may call this wherever its target turns.
     ///
     /// Examples
     /// --------
@@ -310,7 +321,7 @@ impl Adaptive {
         self.inner.with(py, |adaptive| adaptive.offset())
     }
 
-    /// The model that this began with; of one that depends on a load, the one at the load that was named.
+    /// The model at the start. Of a model that depends on a load, the model at `load`.
     #[getter]
     fn offline(&self, py: Python<'_>) -> Model {
         self.inner
@@ -328,7 +339,7 @@ impl Adaptive {
         PyArray1::from_vec(py, points)
     }
 
-    /// The last input, as it was given.
+    /// The last input.
     #[getter]
     fn input(&self, py: Python<'_>) -> f64 {
         self.inner.with(py, |adaptive| adaptive.state().input())
@@ -371,7 +382,7 @@ impl Adaptive {
         self.inner.with(py, reset).raise()
     }
 
-    /// While frozen, `step` predicts and nothing is learned.
+    /// While frozen, `step` moves and nothing is learned.
     ///
     /// Parameters
     /// ----------
@@ -399,7 +410,7 @@ impl Adaptive {
         self.inner.with(py, |adaptive| adaptive.keep());
     }
 
-    /// Go back to the last good weights and offset: those last kept, or that stood a trial since.
+    /// Return to the last good weights and offset: those last kept, or that passed a trial since.
     ///
     /// Examples
     /// --------
@@ -413,7 +424,7 @@ impl Adaptive {
         self.inner.with(py, |adaptive| adaptive.roll_back()).raise()
     }
 
-    /// One of its own that has learned the same.
+    /// An independent copy.
     ///
     /// Returns
     /// -------
@@ -424,7 +435,7 @@ impl Adaptive {
     /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)))
     /// >>> other = adaptive.copy()
     /// >>> _ = adaptive.step(0.5, 4.5)
-    /// >>> adaptive.output > 4 and other.predict(0.5) == 4
+    /// >>> adaptive.output > 4 and other.simulate(0.5) == 4
     /// True
     fn copy(&self, py: Python<'_>) -> Self {
         self.now(py).into()

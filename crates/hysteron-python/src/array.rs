@@ -1,26 +1,28 @@
-//! Samples from Python: arrays of float64 as they lie in memory, everything else converted to one.
+//! Samples from Python: float64 arrays as they are in memory, everything else converted.
 
-use crate::recording::Recording;
 use numpy::PyUntypedArrayMethods;
 use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray1, PyUntypedArray};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// One-dimensional samples, from an array, a pandas series, a list or whatever NumPy makes an array of.
+/// One-dimensional samples from an array, a pandas series, a list, or anything that NumPy converts.
 ///
 /// # Errors
-/// `TypeError` for complex numbers, texts and objects that are no numbers; `ValueError` for another shape.
+/// `TypeError` for complex numbers, dates, texts and objects that are no numbers; `ValueError` for
+/// another shape.
 pub(crate) fn samples<'py>(
     value: &Bound<'py, PyAny>,
     argument: &str,
 ) -> PyResult<PyReadonlyArray1<'py, f64>> {
-    if value.is_instance_of::<Recording>() {
+    // By its name: `recording.rs` builds on this file.
+    if value.get_type().name()? == "Recording" && value.hasattr("input_name")? {
         let text =
             format!("`{argument}` is a Recording: give one of its series, as `recording.input`");
         return Err(PyTypeError::new_err(text));
     }
     let numpy = value.py().import("numpy")?;
-    // A masked array is one as well, and its mask counts.
+    // A masked array is a subclass, and its mask counts.
     if let Ok(array) = value.cast::<PyArray1<f64>>()
         && value.get_type().is(&numpy.getattr("ndarray")?)
     {
@@ -36,7 +38,11 @@ pub(crate) fn samples<'py>(
     let kind = array.dtype().kind();
     if !matches!(kind, b'f' | b'i' | b'u' | b'O') {
         let dtype = array.dtype();
-        let text = format!("`{argument}`: real numbers are needed, not {dtype}");
+        let remedy = match kind {
+            b'M' | b'm' => ". Dates and durations go to `time`",
+            _ => "",
+        };
+        let text = format!("`{argument}`: real numbers are needed, not {dtype}{remedy}");
         return Err(PyTypeError::new_err(text));
     }
     if array.ndim() != 1 {
@@ -52,7 +58,7 @@ pub(crate) fn samples<'py>(
     Ok(converted.cast::<PyArray1<f64>>()?.try_readonly()?)
 }
 
-/// As an array of whatever it holds; what is masked is NaN.
+/// An array of whatever `value` holds; masked entries are NaN.
 pub(crate) fn array<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let numpy = value.py().import("numpy")?;
     if value.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
@@ -60,6 +66,44 @@ pub(crate) fn array<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
         return numbers.call_method1("filled", (f64::NAN,));
     }
     numpy.call_method1("asarray", (value,))
+}
+
+/// A copy of samples.
+pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
+    Ok(samples(value, argument)?.as_slice()?.to_vec())
+}
+
+/// A copy of samples that may be absent.
+pub(crate) fn optional(
+    value: Option<&Bound<'_, PyAny>>,
+    argument: &str,
+) -> PyResult<Option<Vec<f64>>> {
+    value.map(|value| series(value, argument)).transpose()
+}
+
+/// Time in seconds. Dates and durations are converted by `pyhysteron._convert.seconds`.
+pub(crate) fn times(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+    let Some(value) = value else {
+        return Ok(None);
+    };
+    let half = value.py().import("pyhysteron._convert")?;
+    let seconds = half.call_method1("seconds", (value,))?;
+    series(&seconds, "time").map(Some)
+}
+
+/// `result` as a pandas series with the index of `input`, where `input` is one; otherwise as it is.
+pub(crate) fn like<'py>(
+    input: &Bound<'py, PyAny>,
+    result: impl IntoPyObject<'py>,
+    name: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = input.py();
+    let result = result.into_bound_py_any(py)?;
+    if input.is_instance_of::<PyUntypedArray>() {
+        return Ok(result);
+    }
+    let half = py.import("pyhysteron._convert")?;
+    half.call_method1("like", (input, result, name))
 }
 
 /// Runs `work` on new samples, without the interpreter's lock.

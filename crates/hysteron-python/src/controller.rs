@@ -3,27 +3,28 @@
 use crate::action::Action;
 use crate::adaptive::Adaptive;
 use crate::array::samples;
+use crate::choices::POLICIES;
+use crate::choices::{choice, direction, none_left};
 use crate::device::{events_of, follow};
 use crate::error::{Raise, finite, number};
 use crate::model::Model;
 use crate::pid::Pid;
 use crate::plant::SimulatedPlant;
+use crate::progress::with_progress;
 use crate::shared::Shared;
 use crate::trace::Trace;
-use crate::watched::watched;
-use crate::word::{choice, direction};
-use hysteron::control::{
-    self, Compensator, Course, Gains, InnerLoop, Reading, Rest, Scheme, Target,
-};
+use hysteron::control::{self, Compensator, Course, Gains, InnerLoop, Reading, Reference, Scheme};
 use hysteron_sim::track::course;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-/// One controller for all schemes: the inverse of a model as feedforward, a PID, both, and a loop around the input inside.
+/// One controller for all schemes: feedforward by the inverse of a model, a PID, or both, and an
+/// optional inner loop around the input.
 ///
-/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and nothing is learned.
-/// Without news from the input's sensor the loop inside holds the drive for `stuck_s` and then goes to the lowest one.
-/// A controller in motion cannot be pickled.
+/// Without readings of the output, the feedback holds, the feedforward goes on and nothing is
+/// learned. Without readings of the input, the inner loop holds the drive for `stuck_s` and then
+/// goes to the lowest drive. A controller cannot be pickled.
 ///
 /// Parameters
 /// ----------
@@ -32,32 +33,34 @@ use pyo3::prelude::*;
 /// commands : tuple of float
 ///     Lowest and highest input that may be commanded.
 /// model : Model or Adaptive, optional
-///     For feedforward through its inverse. Of an `Adaptive` a copy goes on learning here.
+///     Feedforward by its inverse. An `Adaptive` is copied, and the copy learns here.
 /// pid : Pid, optional
 ///     Feedback of the output, added to the feedforward: a PID with these gains, at rest.
-/// rest : {'hold', 'anticipate'}
-///     What the inverse does where the target rests.
+/// policy : {'hold', 'anticipate'}
+///     What the inverse does while the target rests; see `pyhysteron.Inverse.run`.
 /// tolerance : float
-///     Reversals of the target up to this size are not followed by the inverse, in the output's unit, from 0 on.
+///     Reversals of the target up to this size are noise, and the inverse does not follow them. In
+///     the output's unit, from 0 on.
 /// bias : float
-///     Without a model the command sets out from here.
+///     The command at rest, without a model.
 /// drives : tuple of float, optional
 ///     Lowest and highest drive. By default those of the commands.
 /// inner : Pid, optional
-///     Gains of the loop inside, which brings the input (a temperature) to the one commanded. Without, the
-///     command is the drive.
+///     Gains of the inner loop, which brings the input (a temperature) to the command. Without an
+///     inner loop, the command is the drive.
 /// square_root : bool
-///     The drive is the root of what the loop inside gives: a current, whose heat goes with its square.
+///     The drive is the square root of the inner loop's output: a current, which heats with its
+///     square.
 /// filter_s : float
 ///     Time constant of the filter on both readings, s, from 0 on.
 /// stuck_s : float, optional
-///     Time without news after which a sensor is taken as broken, s, above 0. None where a sensor has no noise to
-///     tell a broken one from one at rest.
+///     A sensor whose readings do not change for this time is taken as broken, s, above 0. None
+///     for sensors without noise.
 ///
 /// Raises
 /// ------
 /// ControlError
-///     Names the argument that no loop can run with.
+///     For an invalid argument, by name.
 /// CoreError
 ///     For a model that has no inverse.
 ///
@@ -85,16 +88,16 @@ pub(crate) struct Controller {
 impl Controller {
     #[new]
     #[pyo3(signature = (
-        interval_s, commands, *, model=None, pid=None, rest="hold", tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=false,
-        filter_s=0.0, stuck_s=None
-    ))]
+        interval_s, commands, *, model=None, pid=None, policy="hold", tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=false,
+        filter_s=0.0, stuck_s=None, **unknown
+    ), text_signature = "(interval_s, commands, *, model=None, pid=None, policy='hold', tolerance=0.0, bias=0.0, drives=None, inner=None, square_root=False, filter_s=0.0, stuck_s=None)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         interval_s: f64,
         commands: (f64, f64),
         model: Option<&Bound<'_, PyAny>>,
         pid: Option<&Pid>,
-        rest: &str,
+        policy: &str,
         tolerance: f64,
         bias: f64,
         drives: Option<(f64, f64)>,
@@ -102,16 +105,14 @@ impl Controller {
         square_root: bool,
         filter_s: f64,
         stuck_s: Option<f64>,
+        unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        none_left("Controller", unknown, &NAMES)?;
         let gains = |pid: &Pid| -> Gains { pid.gains };
         let scheme = Scheme {
             interval_s,
             compensator: model.map(compensator).transpose()?,
-            rest: choice(
-                "rest",
-                rest,
-                &[("hold", Rest::Hold), ("anticipate", Rest::Anticipate)],
-            )?,
+            policy: choice("policy", policy, &POLICIES)?,
             tolerance,
             pid: pid.map(gains),
             bias,
@@ -128,7 +129,7 @@ impl Controller {
         Ok(Self { inner, tolerance })
     }
 
-    /// One sample: from what is wanted and what was read to what is to be written.
+    /// One sample: from target and readings to the drive.
     ///
     /// Parameters
     /// ----------
@@ -137,7 +138,8 @@ impl Controller {
     /// output : float
     ///     The output as measured; NaN where the sensor gave nothing.
     /// input : float, optional
-    ///     The input of the hysteresis as measured; NaN where the sensor gave nothing, None where the drive itself is the input.
+    ///     The input of the hysteresis as measured; NaN where the sensor gave nothing, None where
+    ///     the drive itself is the input.
     /// heading : {None, 'rising', 'falling'}
     ///     Where the target goes next, for 'anticipate'; see `headings`.
     ///
@@ -167,7 +169,7 @@ impl Controller {
         heading: Option<&str>,
     ) -> PyResult<Action> {
         let heading = heading.map(direction).transpose()?;
-        let target = Target {
+        let target = Reference {
             output: number("target", target)?,
             heading,
         };
@@ -178,7 +180,8 @@ impl Controller {
         Ok(action.raise()?.into())
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings, relay and step tests.
+    /// One sample that brings the input to `command`, whatever the output is: for recordings, relay
+    /// and step tests.
     ///
     /// Parameters
     /// ----------
@@ -233,15 +236,16 @@ impl Controller {
 
     /// Follow a reference on a device, one sample for each of its values.
     ///
-    /// A simulated plant is told how long to go on. On anything else this is the loop `read`, `step`, `write`: whoever writes
-    /// the device keeps the time between samples, in `read`. Where the device raises, that is raised, and the drive stays as
-    /// it was written last.
+    /// A simulated plant is advanced by `interval_s` for each sample. For any other device this is
+    /// the loop `read`, `step`, `write`, and its `read` has to wait for the next sample. What the
+    /// device raises is raised here; the drive stays as last written.
     ///
     /// Parameters
     /// ----------
     /// device : SpringPlant, PreisachPlant or object
-    ///     An object has ``read()``, which returns the output or a pair of output and input (NaN or None for a lost reading
-    ///     of the output), and ``write(drive)``; a simulation may have ``advance(dt_s)`` too.
+    ///     An object has ``read()``, which returns the output or a pair of output and input (NaN or
+    ///     None for a lost reading of the output), and ``write(drive)``; a simulation may have
+    ///     ``advance(dt_s)`` too.
     /// reference : array_like, shape (n,)
     ///     In the output's unit. Where it goes next is taken from it, for 'anticipate'.
     /// events : sequence of dict
@@ -258,7 +262,8 @@ impl Controller {
     /// RigError
     ///     For an event that the plant does not know.
     /// ValueError, TypeError
-    ///     For events of a device that is no simulated plant, and for a device that cannot be read or written.
+    ///     For events of a device that is no simulated plant, and for a device that cannot be read
+    ///     or written.
     ///
     /// Examples
     /// --------
@@ -293,10 +298,10 @@ impl Controller {
                 headings: &headings,
                 events: &events,
             };
-            let trace = watched(py, None, |watch| {
+            let trace = with_progress(py, None, |progress| {
                 plant.inner.with_detached(|plant| {
                     let run = |controller: &mut _| {
-                        control::run(plant.as_mut(), controller, &course, watch)
+                        control::run(plant.as_mut(), controller, &course, progress)
                     };
                     self.inner.with_detached(run)
                 })
@@ -312,6 +317,19 @@ impl Controller {
         Ok(trace.into())
     }
 }
+
+const NAMES: [&str; 10] = [
+    "model",
+    "pid",
+    "policy",
+    "tolerance",
+    "bias",
+    "drives",
+    "inner",
+    "square_root",
+    "filter_s",
+    "stuck_s",
+];
 
 fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {
     if let Ok(adaptive) = model.cast::<Adaptive>() {

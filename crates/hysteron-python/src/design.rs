@@ -1,16 +1,17 @@
 //! `design` and `Design`.
 
 use crate::error::Raise;
-use crate::given::inputs_of;
-use crate::judge::classes;
+use crate::evaluate::classes;
+use crate::inputs::inputs_of;
+use crate::integer::Integer;
 use crate::pool::detached;
-use crate::whole::Whole;
 use hysteron::{DesignOptions, Plane, Rates};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// A profile of the input, and what is known once it has been recorded. Made by `design`.
+/// An input profile, and what its recording will determine. Made by `design`.
 #[pyclass(frozen, module = "pyhysteron")]
 pub(crate) struct Design {
     inner: hysteron::Design,
@@ -24,13 +25,15 @@ impl Design {
         PyArray1::from_slice(py, &self.inner.time)
     }
 
-    /// Input at each sample, shape (n,); it starts at the bottom of the plane, with every operator off.
+    /// Input at each sample, shape (n,); it starts at the bottom of the plane, with every operator
+    /// off.
     #[getter]
     fn input<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.inner.input)
     }
 
-    /// The branches in order: input at the start, input at the end, and how many corners of the plane none before it shows.
+    /// The branches in order: input at the start, input at the end, and how many corners of the
+    /// plane none before it shows.
     #[getter]
     fn legs(&self) -> Vec<(f64, f64, usize)> {
         let legs = self.inner.legs.iter();
@@ -51,7 +54,8 @@ impl Design {
         recorded.map(|found| classes(py, found)).transpose()
     }
 
-    /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is determined.
+    /// Corners of the plane known then, of ``K (K + 1) / 2``: with all of them every operator is
+    /// determined.
     #[getter]
     fn corners(&self) -> usize {
         self.inner.corners
@@ -103,12 +107,15 @@ impl Design {
     }
 }
 
-/// The shortest input profile that determines every operator of a plane, or what recordings lack of that.
+/// The shortest input profile that determines every operator of a plane.
+///
+/// With `recorded`, only what these recordings do not determine.
 ///
 /// Parameters
 /// ----------
 /// range : tuple of float
-///     Lowest and highest level of the plane, in the input's unit; the profile starts one level below the lowest.
+///     Lowest and highest level of the plane, in the input's unit; the profile starts one level
+///     below the lowest.
 /// levels : int
 /// heating_rate, cooling_rate : float
 ///     How fast the input can rise and fall, in its unit per second.
@@ -127,9 +134,9 @@ impl Design {
 /// Raises
 /// ------
 /// DesignError
-///     For rates, a budget or a step that cannot be, or recordings outside the plane.
+///     For an invalid rate, budget or step, or recordings outside the plane.
 /// CoreError
-///     For a plane that cannot be.
+///     For an invalid plane.
 ///
 /// Examples
 /// --------
@@ -141,26 +148,37 @@ impl Design {
 /// >>> len(pyhysteron.design((20, 80), 20, heating_rate=2, cooling_rate=0.5, recorded=profile.input))
 /// 0
 #[pyfunction]
-#[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp"))]
+#[pyo3(signature = (range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator="mkp", **unknown),
+    text_signature = "(range, levels, *, heating_rate, cooling_rate, budget=None, recorded=None, step=None, operator='mkp')")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn design(
     py: Python<'_>,
     range: (f64, f64),
-    levels: Whole,
+    levels: Integer,
     heating_rate: f64,
     cooling_rate: f64,
     budget: Option<f64>,
     recorded: Option<&Bound<'_, PyAny>>,
     step: Option<f64>,
     operator: &str,
+    unknown: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Design> {
+    let names = [
+        "heating_rate",
+        "cooling_rate",
+        "budget",
+        "recorded",
+        "step",
+        "operator",
+    ];
+    crate::choices::none_left("design", unknown, &names)?;
     let rates = Rates {
         heating: heating_rate,
         cooling: cooling_rate,
     };
     let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
     let options = DesignOptions {
-        operator: crate::word::operator(operator)?,
+        operator: crate::choices::operator(operator)?,
         budget_s: budget,
         step_s: step,
         ..DesignOptions::new(plane, rates)

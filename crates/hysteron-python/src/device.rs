@@ -1,11 +1,11 @@
 //! Control loops on a device that is a Python object, and what happens to a plant meanwhile.
 
+use crate::choices::another_kind;
+use crate::convert::options;
 use crate::error::Raise;
-use crate::said::options;
 use crate::shared::Shared;
-use crate::word::another_kind;
 use hysteron::Direction;
-use hysteron::control::{Controller, Reading, Target, Trace};
+use hysteron::control::{Controller, Reading, Reference, Trace};
 use hysteron_sim::track::Event;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -29,7 +29,7 @@ pub(crate) fn follow(
     for (&output, &heading) in reference.iter().zip(headings) {
         py.check_signals()?;
         let (target, reading) = (
-            Target { output, heading },
+            Reference { output, heading },
             reading(&device.call_method0("read")?)?,
         );
         let step = |controller: &mut Controller| {
@@ -47,11 +47,11 @@ pub(crate) fn follow(
 }
 
 /// What happens to a plant in a run.
-pub(crate) fn events_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<Event>> {
-    let given: Vec<Bound<'_, PyDict>> = given.extract().map_err(|_| {
+pub(crate) fn events_of(value: &Bound<'_, PyAny>) -> PyResult<Vec<Event>> {
+    let events: Vec<Bound<'_, PyDict>> = value.extract().map_err(|_| {
         PyTypeError::new_err("`events`: a sequence of dictionaries is needed, each with 'at_s'")
     })?;
-    let events = given.iter().enumerate();
+    let events = events.iter().enumerate();
     let events = events.map(|(n, event)| {
         let of = format!("`events[{n}]`");
         let event: Event = options(&of, event.as_any())?;

@@ -10,7 +10,7 @@ use std::path::Path;
 pub(crate) trait Raise<T> {
     /// As an exception.
     fn raise(self) -> PyResult<T>;
-    /// As an exception that names the argument, and tells the value of a sample that is not finite.
+    /// As an exception that names the argument and the value of a sample that is not finite.
     fn raise_of(self, argument: &str, samples: &[f64]) -> PyResult<T>;
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn finite(argument: &str, samples: &[f64]) -> PyResult<()> {
     }
 }
 
-/// A number, which is refused where it is not finite.
+/// A finite number.
 pub(crate) fn number(argument: &str, value: f64) -> PyResult<f64> {
     match value.is_finite() {
         true => Ok(value),
@@ -86,14 +86,14 @@ fn exception(error: &Error) -> PyErr {
     new(class, (text,), error.code())
 }
 
-/// An error of the system's, which Python says in its own words: with `errno` and `filename`.
+/// An error of the operating system, with Python's text, `errno` and `filename`.
 fn of_file(class: &str, path: &Path, number: i32, code: i32) -> PyErr {
-    let said = Python::attach(|py| {
-        let said = py.import("os")?.call_method1("strerror", (number,))?;
-        Ok::<_, PyErr>(said.unbind())
+    let text = Python::attach(|py| {
+        let text = py.import("os")?.call_method1("strerror", (number,))?;
+        Ok::<_, PyErr>(text.unbind())
     });
-    match said {
-        Ok(said) => new(class, (number, said, path.as_os_str()), code),
+    match text {
+        Ok(text) => new(class, (number, text, path.as_os_str()), code),
         Err(error) => error,
     }
 }
@@ -112,7 +112,7 @@ pub(crate) fn spelt(remedy: &Remedy) -> String {
 }
 
 /// An exception of a class of `pyhysteron.errors`.
-fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {
+pub(crate) fn new(class: &str, arguments: impl for<'py> PyCallArgs<'py>, code: i32) -> PyErr {
     let made = Python::attach(|py| {
         let class = py.import("pyhysteron.errors")?.getattr(class)?;
         let error = class.call1(arguments)?;

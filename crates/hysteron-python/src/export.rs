@@ -1,9 +1,10 @@
 //! `Model.export_c` and `Model.export_fmu`.
 
+use crate::choices::choice;
+use crate::convert::result;
 use crate::error::Raise;
+use crate::integer::Integer;
 use crate::model::Model;
-use crate::whole::Whole;
-use crate::word::choice;
 use hysteron::Destination;
 use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
 use pyo3::prelude::*;
@@ -14,7 +15,8 @@ use std::path::{Path, PathBuf};
 impl Model {
     /// Write the model as C99 for a microcontroller, with the algorithm beside it.
     ///
-    /// Files exported before are replaced. One that was edited since, or is another's, is kept and a FileError raised.
+    /// Files of an earlier export are replaced. A file that was edited since, or that was not
+    /// exported, is kept and FileError is raised.
     ///
     /// Parameters
     /// ----------
@@ -24,18 +26,17 @@ impl Model {
     /// name : str, optional
     ///     The model's name in C, and of its files. By default 'model'.
     /// adaptation : bool
-    ///     Also write what lets the weights follow the plant there, by the gradient method.
+    ///     Also write the code that adapts the weights there, by the gradient method.
     ///
     /// Returns
     /// -------
-    /// dict
-    ///     'files', 'name', 'inverse' (whether there is one), 'flash_bytes', 'ram_bytes' (for each state), 'step_loop' and
-    ///     'inverse_halvings' (turns of the loops of one call at most).
+    /// results.CExport
     ///
     /// Raises
     /// ------
     /// ExportError
-    ///     For a model that depends on a load or has a thermal body, and for a name that cannot be one in C.
+    ///     For a model that depends on a load or has a thermal body, and for an
+    ///     invalid C name.
     /// FileError
     ///
     /// Examples
@@ -44,7 +45,7 @@ impl Model {
     /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> with tempfile.TemporaryDirectory() as folder:
     /// ...     export = model.export_c(folder, name='wire')
-    /// ...     sorted(os.path.basename(file) for file in export['files'])
+    /// ...     sorted(os.path.basename(file) for file in export.files)
     /// ['hysteron_mcu.c', 'hysteron_mcu.h', 'hysteron_mcu_internal.h', 'hysteron_mcu_inverse.c', 'wire.c', 'wire.h']
     #[pyo3(signature = (folder, *, real="float", name=None, adaptation=false))]
     fn export_c<'py>(
@@ -54,7 +55,7 @@ impl Model {
         real: &str,
         name: Option<&str>,
         adaptation: bool,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let real = choice(
             "real",
             real,
@@ -73,19 +74,20 @@ impl Model {
             &options,
         )
         .raise()?;
-        let said = PyDict::new(py);
-        said.set_item("files", export.files)?;
-        said.set_item("name", export.name)?;
-        said.set_item("inverse", export.inverse)?;
-        said.set_item("flash_bytes", export.memory.constants)?;
-        said.set_item("ram_bytes", export.memory.state + export.memory.turns)?;
-        said.set_item("step_loop", export.worst_case.step)?;
-        said.set_item("inverse_halvings", export.worst_case.halvings)?;
-        Ok(said)
+        let dict = PyDict::new(py);
+        dict.set_item("files", export.files)?;
+        dict.set_item("name", export.name)?;
+        dict.set_item("inverse", export.inverse)?;
+        dict.set_item("flash_bytes", export.memory.constants)?;
+        dict.set_item("ram_bytes", export.memory.state + export.memory.turns)?;
+        dict.set_item("step_loop", export.worst_case.step)?;
+        dict.set_item("inverse_halvings", export.worst_case.halvings)?;
+        result(py, "CExport", dict)
     }
 
-    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools. A file that is there
-    /// already is replaced.
+    /// Write the model, or its inverse, as a functional mock-up unit for Simulink and other tools.
+    ///
+    /// An existing file is replaced.
     ///
     /// Parameters
     /// ----------
@@ -100,13 +102,13 @@ impl Model {
     ///
     /// Returns
     /// -------
-    /// dict
-    ///     'name', 'token', 'bytes', and the names of the 'inputs', 'outputs' and 'parameters'.
+    /// results.FmuExport
     ///
     /// Raises
     /// ------
     /// ExportError
-    ///     For a model that depends on a load or has a thermal body, and for a name or a path that cannot be.
+    ///     For a model that depends on a load or has a thermal body, and for an
+    ///     invalid name or path.
     /// CoreError
     ///     For the inverse of a model with weights below zero.
     /// FileError
@@ -116,30 +118,30 @@ impl Model {
     /// >>> import os, tempfile
     /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> fmu = model.export_fmu(os.path.join(tempfile.mkdtemp(), 'inverse.fmu'), inverse=True)
-    /// >>> fmu['name'], fmu['inputs'], fmu['outputs']
-    /// ('sf_Inverse_MKP', ['target', 'heading'], ['input', 'status'])
+    /// >>> fmu.name, fmu.inputs, fmu.outputs
+    /// ('sf_Inverse_MKP', ('target', 'heading'), ('input', 'status'))
     #[pyo3(signature = (path, *, inverse=false, fmi=None, name=None), text_signature = "($self, path, *, inverse=False, fmi=2, name=None)")]
     fn export_fmu<'py>(
         &self,
         py: Python<'py>,
         path: PathBuf,
         inverse: bool,
-        fmi: Option<Whole>,
+        fmi: Option<Integer>,
         name: Option<String>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let versions = [(2, Fmi::V2), (3, Fmi::V3)];
         let fmi = fmi.map_or(Ok(Fmi::V2), |fmi| fmi.one_of("fmi", "2 or 3", &versions))?;
         let options = FmuOptions { inverse, fmi, name };
         let fmu = py
             .detach(|| hysteron_export::fmu(&self.inner, &options, &path))
             .raise()?;
-        let said = PyDict::new(py);
-        said.set_item("name", fmu.name)?;
-        said.set_item("token", fmu.token)?;
-        said.set_item("bytes", fmu.bytes)?;
-        said.set_item("inputs", fmu.inputs)?;
-        said.set_item("outputs", fmu.outputs)?;
-        said.set_item("parameters", fmu.parameters)?;
-        Ok(said)
+        let dict = PyDict::new(py);
+        dict.set_item("name", fmu.name)?;
+        dict.set_item("token", fmu.token)?;
+        dict.set_item("bytes", fmu.bytes)?;
+        dict.set_item("inputs", fmu.inputs)?;
+        dict.set_item("outputs", fmu.outputs)?;
+        dict.set_item("parameters", fmu.parameters)?;
+        result(py, "FmuExport", dict)
     }
 }

@@ -1,55 +1,62 @@
 //! `fit` and `left_out`.
 
+use crate::choices::{another_kind, choice, named, no_argument, operator};
+use crate::convert::{result, warn};
 use crate::error::spelt;
-use crate::given::recordings_of;
+use crate::inputs::recordings_of;
+use crate::integer::Integer;
 use crate::model::{Model, sign_of};
-use crate::said::warn;
-use crate::watched::watched;
-use crate::whole::Whole;
-use crate::word::{another_kind, choice, named, no_argument, operator};
-use hysteron::{Candidates, FitOptions, Open, Solver, Start};
+use crate::progress::with_progress;
+use hysteron::{Auto, Candidates, Fit, FitOptions, Solver, Start};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 /// Identify a model: the weights and offset that minimise the squared error over the recording.
 ///
-/// Ctrl-C ends it. Warns (`HysteronWarning`) of what speaks against the fit: inputs outside the plane, an output against its
-/// input, operators that the first sample leaves open.
+/// Ctrl-C ends it. `HysteronWarning` reports inputs outside the plane, an output that falls as
+/// the input rises, and operators whose state at the first sample is unknown.
 ///
 /// Parameters
 /// ----------
 /// recording : Recording, list of Recording, or array_like of shape (n,)
-///     Several are one experiment, each from its own initial state; or the input, with the output beside it.
+///     A list is one experiment: each recording starts from its own initial state. An array is
+///     the input, and `output` is needed.
 /// output : array_like, shape (n,), optional
 /// levels : int or 'auto'
-///     Number of levels ``K`` of the plane, from 2 on, which has ``K (K + 1) / 2`` operators. 'auto' chooses it by the error on
-///     branches left out.
+///     Number of levels ``K`` of the plane, from 2 on; it has ``K (K + 1) / 2`` operators. 'auto'
+///     chooses it by cross-validation.
 /// range : tuple of float, optional
-///     Lowest and highest level, in the input's unit. By default the active range is that of the input.
+///     Lowest and highest level, in the input's unit. By default the active range is that of the
+///     input.
 /// operator : {'mkp', 'kp', 'relay'}
-///     With an offset that is identified 'kp' fits as 'mkp' does: it is the same but for the offset.
+///     With an identified offset, 'kp' fits as 'mkp' does: they differ by an offset.
 /// solver : {'nnls', 'ols'}
-///     Weights from zero on, which have an inverse, or plain least squares, as a rule without one.
+///     'nnls': weights from zero on; the model has an inverse. 'ols': plain least squares; as a
+///     rule without an inverse.
 /// smooth : float or 'auto'
-///     Strength of the smoothness across the plane, from 0 on, 1e-10 to 1e-4 as a rule; 'auto' as for the levels.
+///     Strength of the smoothness across the plane, from 0 on; 1e-10 to 1e-4 are usual. 'auto'
+///     chooses it by cross-validation.
 /// start : {'off', 'on', 'unknown'}
-///     Where the operators stand before the first sample.
+///     State of the operators before the first sample.
 /// sign : {None, 1, -1}
 ///     Direction of the output; None for the one that fits better.
 /// offset : float, optional
 ///     Output with every operator off; by default identified.
 /// load_degree : int
-///     Order of the weights as a function of the load, where the recordings have one; 0 to 5.
+///     Order of the weights as a function of the load, 0 to 5, where the recordings have a load.
 /// bootstrap : int, optional
-///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45 levels on 0.
+///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45
+///     levels on 0.
 /// thermal : {None, 'first-order'}
-///     Identify a thermal body in front of the operators too: for an input that heats. It is taken as proportional to the
-///     power, as a duty cycle is; of a current or a voltage give the square. Needs time.
+///     Identify a thermal body in front of the operators, for an input that heats. The input has
+///     to be proportional to the power, as a duty cycle is: give the square of a current or a
+///     voltage. Needs `time`.
 /// time, load : array_like, shape (n,), optional
-///     With an input and an output.
+///     For an input and an output given as arrays. `time` as in `Recording`.
 /// progress : callable, bool or None
-///     Called now and then with what is being done and the share that is done, None where that is not known; True for tqdm.
+///     Called about 20 times a second with the name of the stage and the share done (None where
+///     unknown). What it raises ends the work. True shows a tqdm bar.
 ///
 /// Returns
 /// -------
@@ -58,9 +65,9 @@ use pyo3::types::{PyDict, PyString};
 /// Raises
 /// ------
 /// RecordingError
-///     For samples that cannot be worked with, or that never change.
+///     For invalid samples, or samples that never change.
 /// FitError, CoreError, ThermalError
-///     For options that cannot be, or do not go with the recording.
+///     For invalid options, or options that do not fit the recording.
 ///
 /// Examples
 /// --------
@@ -68,7 +75,7 @@ use pyo3::types::{PyDict, PyString};
 /// >>> input = 50 - 30 * np.cos(t) * np.exp(-t / 20)
 /// >>> truth = pyhysteron.Model(np.full(15, 0.2), (30, 80))
 /// >>> model = pyhysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0)
-/// >>> model.fit['nrmse_percent'] < 1
+/// >>> model.fit.nrmse_percent < 1
 /// True
 #[pyfunction]
 #[pyo3(signature = (
@@ -79,26 +86,34 @@ pub(crate) fn fit(
     py: Python<'_>,
     recording: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
-    bootstrap: Option<Whole>,
+    bootstrap: Option<Integer>,
     thermal: Option<&str>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
-    let (options, mut open) = fit_options(options)?;
-    open.bootstrap = bootstrap.is_none();
-    let options = FitOptions {
-        bootstrap: bootstrap.map_or(Ok(0), |n| n.of("bootstrap"))?,
-        ..options
+    let names = ["bootstrap", "thermal", "time", "load", "progress"];
+    let (options, auto) = fit_options("fit", &names, options)?;
+    let mut fit = Fit::from(options);
+    if auto.levels {
+        fit = fit.levels(Auto);
+    }
+    if auto.smooth {
+        fit = fit.smooth(Auto);
+    }
+    fit = match bootstrap {
+        None => fit.bootstrap(Auto),
+        Some(count) => fit.bootstrap(count.of::<usize>("bootstrap")?),
     };
     let thermal = match thermal {
         None => false,
-        Some(word) => choice("thermal", word, &[("first-order", true)])?,
+        Some(name) => choice("thermal", name, &[("first-order", true)])?,
     };
     let recordings = recordings_of(recording, output, time, load)?;
-    let (model, advice) = watched(py, progress, |watch| {
-        let model = hysteron::identify(&recordings, &options, open, thermal, watch)?;
+    let (model, advice) = with_progress(py, progress, |progress| {
+        let fit = fit.thermal(thermal).progress(progress);
+        let model = fit.run(&recordings)?;
         let advice = hysteron::advice(&model, &recordings)?;
         Ok((model, advice))
     })?;
@@ -108,19 +123,17 @@ pub(crate) fn fit(
     Ok(model.into())
 }
 
-/// The error on branches that were left out of the whole fit in turn, choices included.
+/// Cross-validate: leave out groups of branches in turn, fit the rest, and predict what was left
+/// out.
 ///
 /// Parameters
 /// ----------
 /// recording, output, levels, range, operator, solver, smooth, start, sign, offset, load_degree, time, load, progress
-///     As for `fit`. What is 'auto' is chosen anew without each group of branches.
+///     As for `fit`. 'auto' chooses again for each group, without its branches.
 ///
 /// Returns
 /// -------
-/// dict
-///     'predicted' (ndarray, shape (n,)), the output at each sample when it was left out; 'fold' (ndarray of int, shape (n,)),
-///     the group of branches that it was left out with; 'nrmse_percent' and 'training_nrmse_percent', errors left out and over
-///     what was fitted, in percent of the measured range; 'branches' (int); 'chosen', levels and smoothness of each fold.
+/// results.LeftOut
 ///
 /// Raises
 /// ------
@@ -131,7 +144,7 @@ pub(crate) fn fit(
 /// --------
 /// >>> input = 50 - 30 * np.cos(np.linspace(0, 20, 400))
 /// >>> found = pyhysteron.left_out(input, 0.5 * input, levels=5)
-/// >>> found['branches'], found['nrmse_percent'] < 1
+/// >>> found.branches, found.nrmse_percent < 1
 /// (7, True)
 #[pyfunction]
 #[pyo3(signature = (
@@ -146,17 +159,17 @@ pub(crate) fn left_out<'py>(
     load: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
     options: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (options, open) = fit_options(options)?;
-    let candidates = (open.levels || open.smooth).then(|| {
+) -> PyResult<Bound<'py, PyAny>> {
+    let (options, auto) = fit_options("left_out", &["time", "load", "progress"], options)?;
+    let candidates = (auto.levels || auto.smooth).then(|| {
         Candidates::new(
-            (!open.levels).then_some(options.levels),
-            (!open.smooth).then_some(options.smooth),
+            (!auto.levels).then_some(options.levels),
+            (!auto.smooth).then_some(options.smooth),
         )
     });
     let recordings = recordings_of(recording, output, time, load)?;
-    let found = watched(py, progress, |watch| {
-        hysteron::left_out(&recordings, &options, candidates.as_ref(), watch)
+    let found = with_progress(py, progress, |progress| {
+        hysteron::left_out(&recordings, &options, candidates.as_ref(), progress)
     })?;
     let dict = PyDict::new(py);
     dict.set_item("predicted", PyArray1::from_slice(py, &found.predicted))?;
@@ -166,57 +179,76 @@ pub(crate) fn left_out<'py>(
     dict.set_item("training_nrmse_percent", found.training_nrmse_percent)?;
     dict.set_item("branches", found.branches)?;
     dict.set_item("chosen", found.chosen)?;
-    Ok(dict)
+    result(py, "LeftOut", dict)
+}
+
+/// What is `'auto'`.
+#[derive(Default)]
+struct LeftToTheData {
+    levels: bool,
+    smooth: bool,
 }
 
 /// The options that `fit` and `left_out` share.
-fn fit_options(given: Option<&Bound<'_, PyDict>>) -> PyResult<(FitOptions, Open)> {
+fn fit_options(
+    call: &str,
+    names: &[&str],
+    keywords: Option<&Bound<'_, PyDict>>,
+) -> PyResult<(FitOptions, LeftToTheData)> {
     let mut options = FitOptions {
         bootstrap: 0,
         ..FitOptions::default()
     };
-    let mut open = Open {
-        levels: false,
-        smooth: false,
-        bootstrap: false,
-    };
-    for (name, value) in given.into_iter().flatten() {
+    let mut auto = LeftToTheData::default();
+    for (name, value) in keywords.into_iter().flatten() {
         let name: String = name.extract()?;
-        let word = || named::<String>(&name, "a text", &value);
+        let text = || named::<String>(&name, "a text", &value);
         match name.as_str() {
             _ if value.is_none() => {}
-            "levels" if is_auto(&value) => open.levels = true,
+            "levels" if is_auto(&value) => auto.levels = true,
             "levels" if value.is_instance_of::<PyString>() => {
                 return Err(another_kind(&name, "a whole number or 'auto'", &value));
             }
-            "levels" => options.levels = value.extract::<Whole>()?.of("levels")?,
+            "levels" => options.levels = value.extract::<Integer>()?.of("levels")?,
             "range" => options.range = Some(named(&name, "a pair of numbers", &value)?),
-            "operator" => options.operator = operator(&word()?)?,
-            "solver" => options.solver = choice("solver", &word()?, &SOLVERS)?,
-            "smooth" if is_auto(&value) => open.smooth = true,
+            "operator" => options.operator = operator(&text()?)?,
+            "solver" => options.solver = choice("solver", &text()?, &SOLVERS)?,
+            "smooth" if is_auto(&value) => auto.smooth = true,
             "smooth" => options.smooth = named(&name, "a number or 'auto'", &value)?,
-            "start" => options.start = start_of(&word()?)?,
+            "start" => options.start = start_of(&text()?)?,
             "sign" => options.sign = Some(sign_of(value.extract()?)?),
             "offset" => options.offset = Some(named(&name, "a number", &value)?),
-            "load_degree" => options.load_degree = value.extract::<Whole>()?.of("load_degree")?,
-            _ => return Err(no_argument(&name)),
+            "load_degree" => options.load_degree = value.extract::<Integer>()?.of("load_degree")?,
+            _ => return Err(no_argument(call, &name, &[names, &OPTIONS].concat())),
         }
     }
-    Ok((options, open))
+    Ok((options, auto))
 }
+
+const OPTIONS: [&str; 9] = [
+    "levels",
+    "range",
+    "operator",
+    "solver",
+    "smooth",
+    "start",
+    "sign",
+    "offset",
+    "load_degree",
+];
 
 const SOLVERS: [(&str, Solver); 2] = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
 
 fn is_auto(value: &Bound<'_, PyAny>) -> bool {
-    value.cast::<PyString>().is_ok_and(|word| *word == "auto")
+    value.cast::<PyString>().is_ok_and(|text| *text == "auto")
 }
 
 /// Where the operators stand at first.
-pub(crate) fn start_of(word: &str) -> PyResult<Start> {
+pub(crate) fn start_of(name: &str) -> PyResult<Start> {
     let starts = [
         ("off", Start::Off),
         ("on", Start::On),
         ("unknown", Start::Unknown),
     ];
-    choice("start", word, &starts)
+    choice("start", name, &starts)
 }

@@ -1,16 +1,16 @@
 //! `Inverse`.
 
-use crate::array::samples;
-use crate::error::{Raise, number};
+use crate::array::{like, samples};
+use crate::choices::{self, POLICIES, choice, direction, none_left, size};
+use crate::error::Raise;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
-use crate::word::{choice, direction, policy, width};
-use hysteron::Invert;
+use hysteron::Policy;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 /// The exact inverse of a model: the input that gives a wanted output. Made by `Model.inverse`.
 ///
@@ -59,30 +59,31 @@ impl Inverse {
     /// target : array_like, shape (n,)
     ///     In the output's unit.
     /// policy : {'hold', 'anticipate'}
-    ///     What the input does while the target stands still: it rests, or crosses the dead band to where
-    ///     the output starts to move the way that the target goes next.
-    /// band : float, optional
-    ///     Reversals of the target up to this size are noise and not followed, in the output's unit: a
-    ///     target that wavers may be missed by up to twice as much. By default 0 with 'hold', and 1 % of the model's range with 'anticipate'.
+    ///     What the input does while the target rests. 'hold': it rests too. 'anticipate': it
+    ///     crosses the dead band, to where the output starts to move with the target.
+    /// tolerance : float, optional
+    ///     Reversals of the target up to this size are noise and not followed, in the output's
+    ///     unit. A noisy target may be missed by up to twice as much. By default 0 with 'hold', and
+    ///     1 % of the model's range with 'anticipate'.
     /// state : State, optional
-    ///     Where to go on from; it is moved. By default every operator off.
+    ///     The state to start from; it is moved. By default every operator off.
     /// heading : sequence of {None, 'rising', 'falling'}, shape (n,), optional
-    ///     Where the target goes next at each sample, told beforehand, in place of `policy`.
+    ///     Where the target goes next at each sample, known beforehand. Replaces `policy`.
     ///
     /// Returns
     /// -------
-    /// input : ndarray, shape (n,)
-    ///     In the input's unit.
-    /// status : ndarray of int8, shape (n,)
-    ///     0 where the input gives the target, up to the band, -1 and 1 where it lies below or above every
-    ///     output, 2 where a relay model jumps past it.
+    /// input : ndarray or pandas.Series, shape (n,)
+    ///     In the input's unit. A Series gives a Series with the same index.
+    /// status : ndarray of int8 or pandas.Series, shape (n,)
+    ///     0 where the input gives the target, up to the tolerance, -1 and 1 where it lies below or
+    ///     above every output, 2 where a relay model jumps past it.
     ///
     /// Raises
     /// ------
     /// CoreError
     ///     For a target that is NaN or infinite, or a state of another model.
     /// ValueError
-    ///     For a `heading` of another length, unknown words and a `band` below zero.
+    ///     For a `heading` of another length, unknown names and a `tolerance` below zero.
     ///
     /// Examples
     /// --------
@@ -92,45 +93,47 @@ impl Inverse {
     /// array([-1.        ,  0.83333333,  0.83333333,  0.08333333])
     /// >>> inverse.run(wanted, policy='anticipate')[0]  # over the dead band at the turn
     /// array([-0.93      ,  0.83333333,  0.81583333,  0.08333333])
-    #[pyo3(signature = (target, *, policy="hold", band=None, state=None, heading=None))]
-    #[allow(clippy::type_complexity)]
+    #[pyo3(signature = (target, *, policy="hold", tolerance=None, state=None, heading=None, **unknown),
+        text_signature = "($self, target, *, policy='hold', tolerance=None, state=None, heading=None)")]
+    #[allow(clippy::too_many_arguments)]
     fn run<'py>(
         &self,
         py: Python<'py>,
         target: &Bound<'py, PyAny>,
         policy: &str,
-        band: Option<f64>,
+        tolerance: Option<f64>,
         state: Option<&State>,
         heading: Option<Vec<Option<String>>>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i8>>)> {
+        unknown: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        none_left(
+            "Inverse.run",
+            unknown,
+            &["policy", "tolerance", "state", "heading"],
+        )?;
+        let argument = target;
         let target = samples(target, "target")?;
         let target = target.as_slice()?;
         let model = &self.model.inner;
-        let anticipate = choice("policy", policy, &[("hold", false), ("anticipate", true)])?;
-        let band = match band {
-            None if anticipate => model.usual_tolerance(),
+        let policy = choice("policy", policy, &POLICIES)?;
+        let tolerance = match tolerance {
+            None if policy == Policy::Anticipate => model.usual_tolerance(),
             None => 0.0,
-            Some(band) => width(band)?,
+            Some(tolerance) => size("tolerance", tolerance)?,
         };
-        let told = |word: &Option<String>| word.as_deref().map(direction).transpose();
-        let headings = heading.map(|words| words.iter().map(told).collect::<PyResult<Vec<_>>>());
+        let known = |name: &Option<String>| name.as_deref().map(direction).transpose();
+        let headings = heading.map(|names| names.iter().map(known).collect::<PyResult<Vec<_>>>());
         let headings = headings.transpose()?;
         if let Some(headings) = headings.as_ref().filter(|h| h.len() != target.len()) {
             let (n, m) = (target.len(), headings.len());
             let text = format!("`heading` has {m} entries, `target` {n}");
             return Err(PyValueError::new_err(text));
         }
-        let how = if anticipate {
-            let rows = target.len();
-            Invert::Anticipate { band, rows }
-        } else {
-            Invert::Hold { band }
-        };
         let solutions = detached(py, || {
             let inverse = model.inverse()?;
             let through = |state: &mut hysteron::State| match &headings {
-                Some(headings) => inverse.headed(state, target, headings, band),
-                None => inverse.series(state, target, how),
+                Some(headings) => inverse.headed(state, target, headings, tolerance),
+                None => inverse.series(state, target, policy, tolerance),
             };
             match state {
                 Some(state) => state.inner.with_detached(through),
@@ -140,7 +143,10 @@ impl Inverse {
         let solutions = solutions.raise_of("target", target)?;
         let input = PyArray1::from_iter(py, solutions.iter().map(|solution| solution.input));
         let status = PyArray1::from_iter(py, solutions.iter().map(|s| s.status.number()));
-        Ok((input, status))
+        Ok((
+            like(argument, input, &self.model.input())?,
+            like(argument, status, "status")?,
+        ))
     }
 
     /// The input for one target; moves `state` there.
@@ -150,9 +156,10 @@ impl Inverse {
     /// state : State
     /// target : float
     /// heading : {None, 'rising', 'falling'}
-    ///     Where the target goes next: the dead band is crossed at once. With None the input rests with the target.
-    /// band : float
-    ///     How far a target may go back and still count as resting.
+    ///     Where the target goes next: the dead band is crossed at once. With None the input rests
+    ///     while the target rests.
+    /// tolerance : float
+    ///     Reversals of the target up to this size are noise, in the output's unit.
     ///
     /// Returns
     /// -------
@@ -164,7 +171,8 @@ impl Inverse {
     /// Raises
     /// ------
     /// CoreError
-    ///     For a target that is NaN or infinite, or a state of another model; the state is then as it was.
+    ///     For a target that is NaN or infinite, or a state of another model. The state is
+    ///     unchanged then.
     ///
     /// Examples
     /// --------
@@ -174,18 +182,18 @@ impl Inverse {
     /// (0.8333333333333335, 0)
     /// >>> model.inverse().step(state, 10.0)  # out of reach: the top of the plane
     /// (1.0, 1)
-    #[pyo3(signature = (state, target, *, heading=None, band=0.0))]
+    #[pyo3(signature = (state, target, *, heading=None, tolerance=0.0))]
     fn step(
         &self,
         py: Python<'_>,
         state: &State,
         target: f64,
         heading: Option<&str>,
-        band: f64,
+        tolerance: f64,
     ) -> PyResult<(f64, i8)> {
-        let (target, policy) = (number("target", target)?, policy(heading, band)?);
+        let target = choices::target(target, heading, tolerance)?;
         let inverse = self.model.inner.inverse().raise()?;
-        let step = |state: &mut _| inverse.step(state, target, policy);
+        let step = |state: &mut _| inverse.step(state, target);
         let solution = state.inner.with(py, step).raise()?;
         Ok((solution.input, solution.status.number()))
     }

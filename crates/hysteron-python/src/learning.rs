@@ -1,6 +1,6 @@
 //! `Learning`, and outcomes of learning as arrays.
 
-use crate::word::choice;
+use crate::choices::choice;
 use hysteron::{Clipped, Outcome};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -13,9 +13,9 @@ pub(crate) struct Learning {
     output: f64,
     /// Measured less expected.
     error: f64,
-    /// What was done: 'learned', 'waiting' (error within the dead zone, or an increment not finished),
-    /// 'at-rest' (the input did not move), 'frozen', 'rolled-back' (the weights went back to the
-    /// last good ones) or 'rejected' (the reading is too far from what was expected).
+    /// What was done: 'learned', 'waiting' (error within the dead zone, or an increment not
+    /// finished), 'at-rest' (the input did not move), 'frozen', 'rolled-back' (the weights went
+    /// back to the last good ones) or 'rejected' (the reading is too far from what was expected).
     outcome: &'static str,
     /// -1 or 1 where the input lay below or above the plane, else 0.
     clipped: i8,

@@ -4,15 +4,18 @@ mod action;
 mod adapt;
 mod adaptive;
 mod array;
+mod choices;
 mod controller;
+mod convert;
 mod design;
 mod device;
 mod error;
+mod evaluate;
 mod export;
 mod fit;
-mod given;
+mod inputs;
+mod integer;
 mod inverse;
-mod judge;
 mod learning;
 mod model;
 mod pid;
@@ -20,24 +23,28 @@ mod plane;
 mod plant;
 mod pool;
 mod prepare;
+mod progress;
 mod read;
 mod recording;
 mod relay_test;
 mod run;
-mod said;
 mod shared;
 mod state;
 mod trace;
 mod track;
 mod turning;
-mod watched;
-mod whole;
-mod word;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 mod _hysteron {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
     #[pymodule_export]
     use crate::action::Action;
     #[pymodule_export]
@@ -49,11 +56,11 @@ mod _hysteron {
     #[pymodule_export]
     use crate::design::{Design, design};
     #[pymodule_export]
+    use crate::evaluate::excitation;
+    #[pymodule_export]
     use crate::fit::{fit, left_out};
     #[pymodule_export]
     use crate::inverse::Inverse;
-    #[pymodule_export]
-    use crate::judge::excitation;
     #[pymodule_export]
     use crate::learning::Learning;
     #[pymodule_export]

@@ -1,11 +1,11 @@
 //! `Model`.
 
+use crate::choices::{self, operator_name};
+use crate::convert::{result, result_of};
 use crate::error::Raise;
-use crate::judge;
+use crate::evaluate;
+use crate::integer::Integer;
 use crate::plane::{levels_of, on_plane, weights_of};
-use crate::said::told;
-use crate::whole::Whole;
-use crate::word::{self, operator_name};
 use hysteron::{Plane, Quantity, Sign};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// A model of an actuator: ``output = offset + sign · Σ μ_ij γ_ij(input)``.
 ///
-/// A model does not change. What it remembers of its input is a `State`, which `start` makes.
+/// A model is immutable. Its memory of the input is a `State`, made by `start`.
 ///
 /// Parameters
 /// ----------
@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// sign : {1, -1}
 ///     -1 where the output falls as the input rises.
 /// input, output : str
-///     What they are, with their unit in brackets: ``'temperature [degC]'``.
+///     Names, with the unit in brackets: ``'temperature [degC]'``.
 ///
 /// Raises
 /// ------
@@ -61,7 +61,7 @@ impl From<hysteron::Model> for Model {
 #[pymethods]
 impl Model {
     #[new]
-    #[pyo3(signature = (weights, range, *, operator="mkp", offset=0.0, sign=None, input="input", output="output"),
+    #[pyo3(signature = (weights, range, *, operator="mkp", offset=0.0, sign=None, input="input", output="output", **unknown),
         text_signature = "(weights, range, *, operator='mkp', offset=0.0, sign=1, input='input', output='output')")]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -69,15 +69,18 @@ impl Model {
         range: (f64, f64),
         operator: &str,
         offset: f64,
-        sign: Option<Whole>,
+        sign: Option<Integer>,
         input: &str,
         output: &str,
+        unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let names = ["operator", "offset", "sign", "input", "output"];
+        choices::none_left("Model", unknown, &names)?;
         let weights = weights_of(weights)?;
-        // The levels that come nearest; a count that is none of any plane's is then refused.
+        // The nearest number of levels. A count that fits no plane is refused below.
         let plane = Plane::new(range.0, range.1, levels_of(weights.len())).raise()?;
         let (operator, sign) = (
-            word::operator(operator)?,
+            choices::operator(operator)?,
             sign.map_or(Ok(Sign::Positive), sign_of)?,
         );
         let mut model = hysteron::Model::new(operator, plane, weights, offset, sign).raise()?;
@@ -113,7 +116,7 @@ impl Model {
         Ok(hysteron::Model::read(&path).raise()?.into())
     }
 
-    /// Write the model file, whole or not at all. A file that is there already is replaced.
+    /// Write the model file. An existing file is replaced, in one step.
     ///
     /// Parameters
     /// ----------
@@ -132,7 +135,7 @@ impl Model {
         self.inner.write(&path).raise()
     }
 
-    /// The model that the text of a model file says.
+    /// The model from the text of a model file.
     ///
     /// Parameters
     /// ----------
@@ -195,8 +198,10 @@ impl Model {
         PyArray1::from_iter(py, (1..=plane.levels()).map(|k| plane.level(k)))
     }
 
-    /// The weights ``μ_ij``, shape (K, K), in the output's unit: ``weights[i-1, j-1]``, NaN below the diagonal. Where they
-    /// depend on a load these are those at the middle of its range, as are `offset` and `output_range`.
+    /// The weights ``μ_ij``, shape (K, K), in the output's unit: ``weights[i-1, j-1]``.
+    ///
+    /// NaN below the diagonal. Where the weights depend on a load, these are the weights at the
+    /// middle of its range. The same holds for `offset` and `output_range`.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         on_plane(py, self.inner.weights())
@@ -220,71 +225,81 @@ impl Model {
         self.inner.output_range()
     }
 
-    /// What the input is, with its unit: 'temperature [degC]'.
+    /// Name and unit of the input: 'temperature [degC]'.
     #[getter]
-    fn input(&self) -> String {
+    pub(crate) fn input(&self) -> String {
         self.inner.input.to_column()
     }
 
-    /// What the output is, with its unit.
+    /// Name and unit of the output.
     #[getter]
-    fn output(&self) -> String {
+    pub(crate) fn output(&self) -> String {
         self.inner.output.to_column()
     }
 
-    /// How the model was obtained: what the model file says under `fit`; None where it was not identified.
+    /// How the model was identified; None for a model that was not identified.
     ///
-    /// A dict: the options 'solver', 'smooth' and 'start'; 'samples', and the errors over them, 'rmse' and 'max_abs' in the output's
-    /// unit and 'nrmse_percent' of its range; 'weights_not_zero'; 'open_at_start', operators that the first input leaves open;
-    /// 'simulated'; where it is from a file, 'file' and its 'sha256'; 'validation', what a choice by itself tried; and 'confidence', for which
-    /// the attribute `confidence` is easier to read.
+    /// A `results.FitSummary`: options, samples, errors, files and cross-validation.
     #[getter]
-    fn fit<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        told(py, &self.inner.fit)
+    fn fit<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some(fit) = &self.inner.fit else {
+            return Ok(None);
+        };
+        let mut fit = fit.clone();
+        fit.confidence = None; // `Model.confidence` has it as arrays
+        result_of(py, "FitSummary", &fit).map(Some)
     }
 
-    /// What the data say of the weights, and what not; None for a model that was fitted without a bootstrap.
+    /// How well the data determine the weights; None for a model that was fitted without bootstrap.
     ///
-    /// A dict: 'standard_error' of each weight, shape (K, K), NaN below the diagonal, in the output's unit, and 'offset_error';
-    /// 'excitation', shape (K, K), what the input says of each operator, as `excitation` has it; 'levels', shape (K,), those of the
-    /// plane; 'rank' of 'unknowns' combinations of weights that the data determine, and their 'condition'; 'noise', the standard
-    /// deviation of what the model leaves; 'branches' of the input; 'replicates' of the bootstrap.
+    /// A `results.Confidence`: standard errors, excitation, rank, condition and noise.
     #[getter]
-    fn confidence<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        judge::confidence(py, &self.inner)
+    fn confidence<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let found = evaluate::confidence(py, &self.inner)?;
+        found
+            .map(|found| result(py, "Confidence", found))
+            .transpose()
     }
 
-    /// The thermal body in front of the operators: its 'gain' and the time constants 'tau_heating' and 'tau_cooling' in seconds; or None.
+    /// The thermal body in front of the operators, a `results.ThermalBody`; None without one.
     #[getter]
-    fn thermal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        told(py, &self.inner.thermal)
+    fn thermal<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let body = self.inner.thermal.as_ref();
+        body.map(|body| result_of(py, "ThermalBody", body))
+            .transpose()
     }
 
-    /// Smallest and largest load that the model was fitted on; None where it does not depend on one.
+    /// Smallest and largest load of the fit; None for a model that does not depend on a load.
     #[getter]
     fn load_range(&self) -> Option<(f64, f64)> {
         self.inner.load.as_ref().map(|load| load.range())
     }
 
-    /// What the load is, with its unit; None where the model does not depend on one.
+    /// Name and unit of the load; None for a model that does not depend on one.
     #[getter]
     fn load_name(&self) -> Option<String> {
         let load = self.inner.load.as_ref();
         load.map(|load| load.quantity.to_column())
     }
 
-    /// Size, range of the output, widest loop, and what the data said of the weights, in short.
+    /// Size, output range, widest loop and confidence in short.
     ///
     /// Returns
     /// -------
-    /// dict
+    /// results.ModelSummary
     ///
     /// Examples
     /// --------
-    /// >>> pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).summary()['widest_loop']
+    /// >>> pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).summary().widest_loop
     /// 2.0
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        told(py, &hysteron::inspect_model(&self.inner).raise()?)
+        let summary = hysteron::inspect_model(&self.inner).raise()?;
+        result_of(py, "ModelSummary", &summary)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let half = slf.py().import("pyhysteron._html")?;
+        half.call_method1("model", (slf,))
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -312,7 +327,7 @@ impl Model {
     }
 }
 
-pub(crate) fn sign_of(sign: Whole) -> PyResult<Sign> {
+pub(crate) fn sign_of(sign: Integer) -> PyResult<Sign> {
     sign.one_of(
         "sign",
         "1 or -1",

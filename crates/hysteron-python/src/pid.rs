@@ -2,8 +2,8 @@
 
 use crate::array::samples;
 use crate::error::{Raise, number};
+use crate::integer::Integer;
 use crate::shared::Shared;
-use crate::whole::Whole;
 use hysteron::control::{self, Gains};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -30,13 +30,13 @@ fn ordered(limits: Option<(f64, f64)>) -> PyResult<(f64, f64)> {
 
 /// A PID controller for samples, ``u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)``.
 ///
-/// It stays within limits: while the output stands at one, the integral does not grow in that direction. The derivative
-/// is filtered with an eighth of its time.
+/// It stays within limits: while the output stands at one, the integral does not grow in that
+/// direction. The derivative is filtered with an eighth of its time.
 ///
 /// Parameters
 /// ----------
 /// gain : float
-///     In units of what is written for each unit of the error.
+///     In units of the controller's output for each unit of the error.
 /// integral_s, derivative_s : float
 ///     Integral and derivative time, s, from 0 on; 0 for none.
 ///
@@ -125,7 +125,8 @@ impl Pid {
     /// Raises
     /// ------
     /// ValueError
-    ///     Where the output does not answer by more than its noise, and for a `begin` or an `interval_s` that cannot be.
+    ///     Where the output does not answer by more than its noise, and for a `begin` or an
+    ///     `interval_s` that cannot be.
     ///
     /// Examples
     /// --------
@@ -136,7 +137,7 @@ impl Pid {
     #[staticmethod]
     fn from_step(
         output: &Bound<'_, PyAny>,
-        begin: Whole,
+        begin: Integer,
         step: f64,
         interval_s: f64,
     ) -> PyResult<Self> {
@@ -191,7 +192,8 @@ impl Pid {
     /// Raises
     /// ------
     /// CoreError
-    ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a reading there is `hold`.
+    ///     For an error or a bias that is NaN or infinite; nothing is changed then. Without a
+    ///     reading there is `hold`.
     /// ValueError
     ///     For a `dt` of zero and less, and limits of which the upper one comes first.
     ///

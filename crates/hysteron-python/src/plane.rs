@@ -6,7 +6,8 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Levels of the plane that has so many operators, ``K (K + 1) / 2``; those that come nearest where none has.
+/// Levels of the plane that has so many operators, ``K (K + 1) / 2``; those that come nearest where
+/// none has.
 pub(crate) fn levels_of(operators: usize) -> usize {
     (2.0 * operators as f64).sqrt() as usize
 }

@@ -1,7 +1,7 @@
 //! Simulated plants.
 
+use crate::convert::{arguments, options};
 use crate::error::{Raise, number};
-use crate::said::{arguments, options};
 use crate::shared::Shared;
 use hysteron_sim::plant::{self, PreisachPlantOptions, SpringPlantOptions};
 use hysteron_sim::track::{Event, PlantOptions};
@@ -16,8 +16,8 @@ type Boxed = Box<dyn hysteron::control::SimulatedPlant + Send>;
 
 /// A simulated device: `SpringPlant` or `PreisachPlant`.
 ///
-/// Once a sample: `read`, `write`, `advance`. Several threads may share one. It cannot be pickled: one made with the same options and
-/// seed does the same.
+/// Once a sample: `read`, `write`, `advance`. Several threads may share one. It cannot be pickled:
+/// one made with the same options and seed does the same.
 #[pyclass(frozen, subclass, module = "pyhysteron")]
 pub(crate) struct SimulatedPlant {
     pub(crate) inner: Shared<Boxed>,
@@ -164,16 +164,17 @@ impl SimulatedPlant {
     /// nan
     #[pyo3(signature = (**what), text_signature = "($self, *, load_n=None, room_degc=None, predeformation_mm=None, stuck=None, lost=None)")]
     fn disturb(&self, py: Python<'_>, what: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        let given = arguments(py, what, &[])?;
-        given.set_item("at_s", 0.0)?;
-        let event: Event = options("a disturbance", given.as_any())?;
+        let event = arguments(py, what, &[])?;
+        event.set_item("at_s", 0.0)?;
+        let event: Event = options("disturb", event.as_any())?;
         let what = event.disturbances();
         let disturb = |plant: &mut Boxed| what.into_iter().try_for_each(|what| plant.disturb(what));
         self.inner.with(py, disturb).raise()
     }
 }
 
-/// A simulated NiTi spring, heated by a current and read through a thermocouple and an LVDT: the rig of the chapter.
+/// A simulated NiTi spring, heated by a current and read through a thermocouple and an LVDT: the
+/// rig of the chapter.
 ///
 /// Drive: current, A. Input of the hysteresis: temperature, °C. Output: displacement, mm.
 ///
@@ -188,10 +189,11 @@ impl SimulatedPlant {
 /// limit_a : float
 ///     Largest current, A, from 0.1 to 3.
 /// fatigue : dict, optional
-///     Drift with the thermal cycles: 'shift_k' (-20 to 20), 'irrecoverable_mm' (0 to 10), 'cycles' (0.1 to 1e6). By default none.
+///     Drift with the thermal cycles: 'shift_k' (-20 to 20), 'irrecoverable_mm' (0 to 10), 'cycles'
+///     (0.1 to 1e6). By default none.
 /// thermocouple, lvdt : dict, optional
-///     The sensors: 'lag_s', 'accuracy' (three standard deviations), 'resolution', 'range' (a pair), 'dropout' (0 to 1); what is
-///     left out is perfect. By default those of the chapter.
+///     The sensors: 'lag_s', 'accuracy' (three standard deviations), 'resolution', 'range' (a
+///     pair), 'dropout' (0 to 1); what is left out is perfect. By default those of the chapter.
 /// seed : int
 ///     Of the sensors' noise.
 ///
@@ -200,7 +202,7 @@ impl SimulatedPlant {
 /// RigError
 ///     Names the first number that does not fit.
 /// TypeError, ValueError
-///     For options that there are none of, and values that are no numbers.
+///     For unknown options, and values that are no numbers.
 ///
 /// Examples
 /// --------
@@ -234,9 +236,11 @@ impl SpringPlant {
     }
 }
 
-/// A simulated piezo-like actuator behind an amplifier, made of relays that no model here has on its plane.
+/// A simulated piezo-like actuator behind an amplifier, made of relays that no model here has on
+/// its plane.
 ///
-/// Drive: voltage, V. Input of the hysteresis: the amplifier's voltage, V. Output: displacement, µm.
+/// Drive: voltage, V. Input of the hysteresis: the amplifier's voltage, V. Output: displacement,
+/// µm.
 ///
 /// Parameters
 /// ----------
@@ -249,7 +253,8 @@ impl SpringPlant {
 /// levels : int
 ///     Centres of relays, and half-widths for each, from 4 to 1000.
 /// drift : dict, optional
-///     Drift with time: 'threshold_v' (-20 to 20), 'gain' (-0.5 to 0.5), 'time_s' (10 to 1e7). By default none.
+///     Drift with time: 'threshold_v' (-20 to 20), 'gain' (-0.5 to 0.5), 'time_s' (10 to 1e7). By
+///     default none.
 /// measure_input : bool
 ///     Whether the amplifier's voltage is measured.
 /// output_sensor, input_sensor : dict, optional
@@ -262,7 +267,7 @@ impl SpringPlant {
 /// RigError
 ///     Names the first number that does not fit.
 /// TypeError, ValueError
-///     For options that there are none of, and values that are no numbers.
+///     For unknown options, and values that are no numbers.
 ///
 /// Examples
 /// --------

@@ -15,8 +15,8 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     py.detach(|| in_pool(work))
 }
 
-/// Does `work` in a pool whose threads are there. A fork copies the pool and not its threads: work that is given to it
-/// would be waited for for ever.
+/// Does `work` in a pool whose threads are there. A fork copies the pool and not its threads: work
+/// that is given to it would be waited for for ever.
 pub(crate) fn in_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let process = std::process::id();
     if *USUAL.get_or_init(|| process) == process {

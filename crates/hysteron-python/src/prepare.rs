@@ -1,45 +1,47 @@
 //! `prepare`.
 
-use crate::given::recording_of;
+use crate::choices::{another_kind, none_left};
+use crate::convert::{result, to_python};
+use crate::inputs::recording_of;
+use crate::progress::with_progress;
 use crate::recording::Recording;
-use crate::said::told;
-use crate::watched::watched;
-use crate::word::another_kind;
 use hysteron::{PrepareOptions, RateDependence, Step};
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyDict, PyString};
 
-/// Prepare a recording for `fit`: give back lost signs, remove spikes, resample and smooth where noise asks for it, undo a
-/// sensor's lag if told to, and take false reversals from the input.
+/// Prepare a recording for `fit`.
 ///
-/// A clean recording comes through unchanged. Each step is 'auto', 'off', or a number.
+/// The steps: restore lost signs and remove spikes, resample, smooth, undo a sensor's lag, remove
+/// false reversals of the input. Each step is 'auto', 'off', or a number. A clean recording is
+/// returned unchanged.
 ///
 /// Parameters
 /// ----------
 /// recording : Recording, or array_like of shape (n,)
-///     Or the input, with the output beside it.
+///     An array is the input, and `output` is needed.
 /// output : array_like, shape (n,), optional
 /// spikes : 'auto', 'off' or float
-///     How many median absolute deviations make a spike.
+///     A spike is this many median absolute deviations away from its neighbours.
 /// resample : 'auto', 'off' or float
-///     The step of time, s; 'auto' only where time is irregular and a filter needs it.
+///     The time step, s. 'auto' resamples only where time is irregular and a filter needs it.
 /// low_pass : 'auto', 'off' or float
-///     Cut-off of a zero-phase low-pass, Hz, without time in cycles a sample; 'auto' as far as the noise goes.
+///     Cut-off of a zero-phase low-pass, Hz; without time in cycles per sample. 'auto' follows
+///     the noise.
 /// lag : 'auto', 'off' or float
-///     Time constant of the input's sensor, s; 'auto' is right only for a material that does not depend on rate.
-/// band : 'auto', 'off' or float
-///     Reversals of the input up to this are noise, in its unit; 'auto' as far as the noise reaches.
+///     Time constant of the input's sensor, s. 'auto' is right only for a material that does not
+///     depend on rate.
+/// dead_band : 'auto', 'off' or float
+///     Reversals of the input up to this size are noise, in its unit. 'auto' measures the noise.
 /// time, load : array_like, shape (n,), optional
-///     With an input and an output.
+///     For an input and an output given as arrays. `time` as in `Recording`.
 /// progress : callable, bool or None
-///     As for `fit`. Ctrl-C ends it in any case.
+///     As for `fit`. Ctrl-C ends the work in any case.
 ///
 /// Returns
 /// -------
 /// recording : Recording
-/// report : dict
-///     What each step did; 'rate', how much the output depends on the rate of the input, None without time; and
-///     'rate_dependent', whether that is more than a static model can follow.
+/// report : results.Preparation
+///     What each step did, and how much the output depends on the rate of the input.
 ///
 /// Raises
 /// ------
@@ -51,13 +53,13 @@ use pyo3::types::PyString;
 /// >>> output = 0.5 * input
 /// >>> input[100] = 0  # a reading that was lost
 /// >>> prepared, report = pyhysteron.prepare(input, output)
-/// >>> report['spikes']['input']['first']  # counted from 1
-/// [101]
+/// >>> report.spikes.input.first  # counted from 1
+/// (101,)
 /// >>> bool(abs(prepared.input[100] + 38.36) < 0.1)
 /// True
 #[pyfunction]
-#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, band=None, time=None, load=None, progress=None),
-    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', band='auto', time=None, load=None, progress=None)")]
+#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, dead_band=None, time=None, load=None, progress=None, **unknown),
+    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', dead_band='auto', time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn prepare<'py>(
     py: Python<'py>,
@@ -67,41 +69,54 @@ pub(crate) fn prepare<'py>(
     resample: Option<&Bound<'py, PyAny>>,
     low_pass: Option<&Bound<'py, PyAny>>,
     lag: Option<&Bound<'py, PyAny>>,
-    band: Option<&Bound<'py, PyAny>>,
+    dead_band: Option<&Bound<'py, PyAny>>,
     time: Option<&Bound<'py, PyAny>>,
     load: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
+    unknown: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<(Recording, Bound<'py, PyAny>)> {
+    none_left("prepare", unknown, &NAMES)?;
     let usual = PrepareOptions::default();
     let options = PrepareOptions {
         spikes: step("spikes", spikes, usual.spikes)?,
         resample: step("resample", resample, usual.resample)?,
         low_pass: step("low_pass", low_pass, usual.low_pass)?,
         lag: step("lag", lag, usual.lag)?,
-        band: step("band", band, usual.band)?,
+        dead_band: step("dead_band", dead_band, usual.dead_band)?,
     };
     let recording = recording_of(recording, output, time, load)?;
-    let (prepared, report, rate) = watched(py, progress, |watch| {
-        let (prepared, report) = hysteron::prepare_watched(&recording.inner, &options, watch)?;
-        watch("dependence on rate", f64::NAN)?;
+    let (prepared, report, rate) = with_progress(py, progress, |progress| {
+        let (prepared, report) = hysteron::prepare(&recording.inner, &options, progress)?;
+        progress.tell("dependence on rate", f64::NAN)?;
         let rate = hysteron::rate_dependence(&prepared)?;
         Ok((prepared, report, rate))
     })?;
-    let said = told(py, &report)?;
-    said.set_item("rate", told(py, &rate)?)?;
+    let found = to_python(py, &report)?;
+    found.set_item("rate", to_python(py, &rate)?)?;
     let dependent = rate.as_ref().map(RateDependence::is_material);
-    said.set_item("rate_dependent", dependent)?;
-    Ok((prepared.into(), said))
+    found.set_item("rate_dependent", dependent)?;
+    Ok((prepared.into(), result(py, "Preparation", found)?))
 }
+
+const NAMES: [&str; 8] = [
+    "spikes",
+    "resample",
+    "low_pass",
+    "lag",
+    "dead_band",
+    "time",
+    "load",
+    "progress",
+];
 
 fn step(argument: &str, value: Option<&Bound<'_, PyAny>>, usual: Step) -> PyResult<Step> {
     let Some(value) = value else {
         return Ok(usual);
     };
-    let word = value.cast::<PyString>().ok();
+    let text = value.cast::<PyString>().ok();
     match (
         value.extract(),
-        word.map(|w| w.to_cow()).transpose()?.as_deref(),
+        text.map(|text| text.to_cow()).transpose()?.as_deref(),
     ) {
         (Ok(value), _) => Ok(Step::Value(value)),
         (_, Some("auto")) => Ok(Step::Auto),

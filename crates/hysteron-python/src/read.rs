@@ -1,32 +1,37 @@
 //! `read`.
 
+use crate::choices::none_left;
+use crate::convert::warn;
 use crate::error::Raise;
 use crate::recording::Recording;
-use crate::said::warn;
 use hysteron::{Columns, Quantity, ReadOptions, Repair};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// Read a recording from a CSV, Parquet or MATLAB file.
 ///
-/// Warns (`HysteronWarning`) of what was assumed of the file, of rows that were mended and of gaps in time.
+/// `HysteronWarning` reports assumptions about the file, repaired rows and gaps in time.
 ///
 /// Parameters
 /// ----------
 /// path : str or path-like
 /// input, output : str
-///     The columns, by name, with or without the unit in brackets, or by number from 1; in a MATLAB file the
-///     variables, ``'M:2'`` being the second column of the matrix ``M`` and ``'s.x'`` the field ``x`` of the structure ``s``.
+///     The columns, by name, with or without the unit in brackets, or by number from 1; in a MATLAB
+///     file the variables, ``'M:2'`` being the second column of the matrix ``M`` and ``'s.x'`` the
+///     field ``x`` of the structure ``s``.
 /// time : str, optional
 ///     The column of time: in seconds, or with another unit in its name.
 /// load : str, optional
 ///     The column of the load or stress.
 /// input_name, output_name, load_name : str, optional
-///     What they are, with their unit in brackets; by default what the file says.
+///     Names, with the unit in brackets. By default those of the file.
 /// repair : bool
-///     Drop rows without a number or cut short, sort times that go back, merge repeated ones. By default they are refused.
+///     Drop rows without a number or cut short, sort times that go back, merge repeated ones. By
+///     default they are refused.
 /// max_memory : int, optional
-///     Most memory in bytes that the contents of the file may take; more is refused. By default 4 GiB.
+///     Most memory in bytes that the contents of the file may take; more is refused. By default 4
+///     GiB.
 ///
 /// Returns
 /// -------
@@ -46,7 +51,8 @@ use std::path::PathBuf;
 /// >>> pyhysteron.read(path, input='T [degC]', output='lift').input
 /// array([20.5, 80. ])
 #[pyfunction]
-#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false, max_memory=None))]
+#[pyo3(signature = (path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=false, max_memory=None, **unknown),
+    text_signature = "(path, *, input, output, time=None, load=None, input_name=None, output_name=None, load_name=None, repair=False, max_memory=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn read(
     py: Python<'_>,
@@ -60,7 +66,20 @@ pub(crate) fn read(
     load_name: Option<&str>,
     repair: bool,
     max_memory: Option<u64>,
+    unknown: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Recording> {
+    let names = [
+        "input",
+        "output",
+        "time",
+        "load",
+        "input_name",
+        "output_name",
+        "load_name",
+        "repair",
+        "max_memory",
+    ];
+    none_left("read", unknown, &names)?;
     let columns = Columns {
         input,
         output,

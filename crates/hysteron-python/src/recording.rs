@@ -1,10 +1,11 @@
 //! `Recording`.
 
+use crate::array::{optional, series, times};
+use crate::choices::none_left;
+use crate::convert::result_of;
 use crate::error::Raise;
-use crate::given::{optional, series};
+use crate::integer::Integer;
 use crate::pool::detached;
-use crate::said::told;
-use crate::whole::Whole;
 use hysteron::{FitOptions, Origin, Plane, Quantity};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
@@ -19,18 +20,20 @@ use std::sync::Arc;
 /// ----------
 /// input, output : array_like, shape (n,)
 /// time : array_like, shape (n,), optional
-///     Seconds, not decreasing.
+///     Seconds, not decreasing. Dates (datetime64, a pandas DatetimeIndex, datetime objects) become
+///     seconds from the first sample, durations (timedelta64, timedelta objects) seconds.
 /// load : array_like, shape (n,), optional
 ///     The load or stress.
 /// input_name, output_name, load_name : str
-///     What they are, with their unit in brackets: ``'temperature [degC]'``.
+///     Names, with the unit in brackets: ``'temperature [degC]'``.
 /// simulated : bool
-///     Whether the samples come from a simulation; everything made from them says so.
+///     Whether the samples come from a simulation. Models and figures made from them say so.
 ///
 /// Raises
 /// ------
 /// RecordingError
-///     For series of different lengths, no samples, one that is NaN or infinite, or time that goes back.
+///     For series of different lengths, no samples, one that is NaN or infinite, or time that goes
+///     back.
 ///
 /// Examples
 /// --------
@@ -56,23 +59,18 @@ impl From<hysteron::Recording> for Recording {
 /// An array, or `None` where there is no series.
 type Series<'py> = Option<Bound<'py, PyArray1<f64>>>;
 
-#[pymethods]
 impl Recording {
-    #[new]
-    #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false))]
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn new(
+    /// A recording of arrays; `names` are those of input, output and load.
+    pub(crate) fn of_arrays(
         input: &Bound<'_, PyAny>,
         output: &Bound<'_, PyAny>,
         time: Option<&Bound<'_, PyAny>>,
         load: Option<&Bound<'_, PyAny>>,
-        input_name: &str,
-        output_name: &str,
-        load_name: &str,
+        (input_name, output_name, load_name): (&str, &str, &str),
         simulated: bool,
     ) -> PyResult<Self> {
         let recording = hysteron::Recording {
-            time: optional(time, "time")?,
+            time: times(time)?,
             input: series(input, "input")?,
             output: series(output, "output")?,
             input_quantity: Quantity::from_column(input_name),
@@ -88,20 +86,51 @@ impl Recording {
         recording.check().raise()?;
         Ok(recording.into())
     }
+}
 
-    /// A recording from columns of a pandas frame, or of anything else that is indexed by their names.
+#[pymethods]
+impl Recording {
+    #[new]
+    #[pyo3(signature = (input, output, *, time=None, load=None, input_name="input", output_name="output", load_name="load", simulated=false, **unknown),
+        text_signature = "(input, output, *, time=None, load=None, input_name='input', output_name='output', load_name='load', simulated=False)")]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        input: &Bound<'_, PyAny>,
+        output: &Bound<'_, PyAny>,
+        time: Option<&Bound<'_, PyAny>>,
+        load: Option<&Bound<'_, PyAny>>,
+        input_name: &str,
+        output_name: &str,
+        load_name: &str,
+        simulated: bool,
+        unknown: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let names = [
+            "time",
+            "load",
+            "input_name",
+            "output_name",
+            "load_name",
+            "simulated",
+        ];
+        none_left("Recording", unknown, &names)?;
+        let names = (input_name, output_name, load_name);
+        Self::of_arrays(input, output, time, load, names, simulated)
+    }
+
+    /// A recording from columns of a pandas frame, or of any object indexed by column names.
     ///
     /// Parameters
     /// ----------
     /// frame : pandas.DataFrame
     /// input, output : hashable
-    ///     The columns: as a rule their names.
+    ///     The columns, by name.
     /// time : hashable, optional
-    ///     The column of time in seconds.
+    ///     The column of time: seconds, dates or durations.
     /// load : hashable, optional
     ///     The column of the load or stress.
     /// input_name, output_name, load_name : str, optional
-    ///     What they are, with their unit in brackets; by default the names of the columns.
+    ///     Names, with the unit in brackets. By default the names of the columns.
     ///
     /// Returns
     /// -------
@@ -110,7 +139,7 @@ impl Recording {
     /// Raises
     /// ------
     /// KeyError
-    ///     For a column that is not there.
+    ///     For a missing column.
     /// RecordingError
     ///     As `Recording`.
     ///
@@ -148,14 +177,16 @@ impl Recording {
             let column = column.map_or("load".into(), |column| column.to_string());
             name.map_or(column, str::to_owned)
         };
-        Self::new(
+        Self::of_arrays(
             &column(input)?,
             &column(output)?,
             time.map(column).transpose()?.as_ref(),
             load.map(column).transpose()?.as_ref(),
-            &name_of(input_name, Some(input)),
-            &name_of(output_name, Some(output)),
-            &name_of(load_name, load),
+            (
+                &name_of(input_name, Some(input)),
+                &name_of(output_name, Some(output)),
+                &name_of(load_name, load),
+            ),
             false,
         )
     }
@@ -186,19 +217,19 @@ impl Recording {
         load.map(|load| PyArray1::from_slice(py, load))
     }
 
-    /// What the input is, with its unit.
+    /// Name and unit of the input.
     #[getter]
     fn input_name(&self) -> String {
         self.inner.input_quantity.to_column()
     }
 
-    /// What the output is, with its unit.
+    /// Name and unit of the output.
     #[getter]
     fn output_name(&self) -> String {
         self.inner.output_quantity.to_column()
     }
 
-    /// What the load is, with its unit.
+    /// Name and unit of the load.
     #[getter]
     fn load_name(&self) -> String {
         self.inner.load_quantity.to_column()
@@ -210,13 +241,13 @@ impl Recording {
         self.inner.origin == Origin::Simulated
     }
 
-    /// The file that it was read from, or None.
+    /// The file that was read, or None.
     #[getter]
     fn path(&self) -> Option<PathBuf> {
         self.inner.source.as_ref().map(|source| source.path.clone())
     }
 
-    /// Write a CSV file with a header row, whole or not at all.
+    /// Write a CSV file with a header row. An existing file is replaced, in one step.
     ///
     /// Parameters
     /// ----------
@@ -237,29 +268,29 @@ impl Recording {
         py.detach(|| self.inner.write_csv(&path).raise())
     }
 
-    /// Ranges, reversals, sampling and gaps, and how many operators the input moves.
+    /// Ranges, reversals, sampling, gaps, and the number of operators that the input moves.
     ///
     /// Parameters
     /// ----------
     /// levels : int
-    ///     Of the plane that operators are counted on.
+    ///     Levels of the plane that operators are counted on.
     /// range : tuple of float, optional
-    ///     Its lowest and highest level; by default those that a fit takes.
+    ///     Its lowest and highest level. By default those of a fit.
     ///
     /// Returns
     /// -------
-    /// dict
+    /// results.RecordingSummary
     ///
     /// Examples
     /// --------
     /// >>> summary = pyhysteron.Recording([20, 80, 50], [0, 14, 11]).summary(levels=5)
-    /// >>> summary['samples'], summary['operators'], summary['excited']
+    /// >>> summary.samples, summary.operators, summary.excited
     /// (3, 15, 15)
     #[pyo3(signature = (*, levels=None, range=None), text_signature = "($self, *, levels=20, range=None)")]
     fn summary<'py>(
         &self,
         py: Python<'py>,
-        levels: Option<Whole>,
+        levels: Option<Integer>,
         range: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let levels = levels.map_or(Ok(FitOptions::default().levels), |n| n.of("levels"))?;
@@ -268,7 +299,12 @@ impl Recording {
             None => hysteron::plane_of(&self.inner, levels).raise()?,
         };
         let summary = detached(py, || hysteron::inspect_recording(&self.inner, plane)).raise()?;
-        told(py, &summary)
+        result_of(py, "RecordingSummary", &summary)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let half = slf.py().import("pyhysteron._html")?;
+        half.call_method1("recording", (slf,))
     }
 
     fn __len__(&self) -> usize {

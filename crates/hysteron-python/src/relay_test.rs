@@ -7,10 +7,11 @@ use hysteron::control;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop
+/// oscillate.
 ///
-/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the hysteresis,
-/// which a step test on one branch does not see.
+/// Once a sample: bring the input to `command`, read the output, `push` it. It crosses the
+/// hysteresis, which a step test on one branch does not see.
 ///
 /// Parameters
 /// ----------
@@ -18,8 +19,9 @@ use pyo3::prelude::*;
 ///     The relay's two commands, the lower one first.
 /// middle : float
 ///     Output at which it switches.
-/// band : float
-///     How far beyond, from 0 on: larger than the noise.
+/// hysteresis : float
+///     How far beyond `middle` the output has to go before it switches, from 0 on: more than the
+///     noise.
 ///
 /// Raises
 /// ------
@@ -28,7 +30,7 @@ use pyo3::prelude::*;
 /// Examples
 /// --------
 /// >>> plant = pyhysteron.PreisachPlant()
-/// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+/// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
 /// >>> while not test.done:
 /// ...     plant.write(test.command)
 /// ...     plant.advance(0.01)
@@ -44,9 +46,10 @@ pub(crate) struct RelayTest {
 #[pymethods]
 impl RelayTest {
     #[new]
-    #[pyo3(signature = (commands, middle, *, band=0.0))]
-    fn new(commands: (f64, f64), middle: f64, band: f64) -> PyResult<Self> {
-        let inner = Shared::new(control::RelayTest::new(commands, middle, band).raise()?);
+    #[pyo3(signature = (commands, middle, *, hysteresis=0.0))]
+    fn new(commands: (f64, f64), middle: f64, hysteresis: f64) -> PyResult<Self> {
+        let test = control::RelayTest::new(commands, middle, hysteresis);
+        let inner = Shared::new(test.raise()?);
         Ok(Self { inner })
     }
 
@@ -77,9 +80,9 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> test = pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
     /// >>> before = test.command
-    /// >>> test.push(40.0)  # beyond the middle and the band
+    /// >>> test.push(40.0)  # beyond middle and hysteresis
     /// >>> before, test.command
     /// (110.0, 40.0)
     fn push(&self, py: Python<'_>, output: f64) {
@@ -130,7 +133,7 @@ impl RelayTest {
     ///
     /// Examples
     /// --------
-    /// >>> plant, test = pyhysteron.PreisachPlant(), pyhysteron.control.RelayTest((40, 110), 36.0, band=0.5)
+    /// >>> plant, test = pyhysteron.PreisachPlant(), pyhysteron.control.RelayTest((40, 110), 36.0, hysteresis=0.5)
     /// >>> while not test.done:
     /// ...     plant.write(test.command)
     /// ...     plant.advance(0.01)

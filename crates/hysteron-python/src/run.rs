@@ -1,37 +1,38 @@
-//! A model that runs: `Model.simulate` and what it is judged, stepped and inverted by.
+//! `Model.simulate`, `band`, `evaluate`, `start` and `inverse`.
 
-use crate::array::samples;
+use crate::array::{like, optional, samples, times};
+use crate::choices::none_left;
 use crate::error::{Raise, number};
+use crate::evaluate;
 use crate::fit::start_of;
-use crate::given::{optional, recording_of};
+use crate::inputs::recording_of;
 use crate::inverse::Inverse;
-use crate::judge;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
 use hysteron::Surroundings;
-use numpy::{PyArray1, PyArray2};
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 #[pymethods]
 impl Model {
-    /// The outputs for `input`, from every operator off.
+    /// The outputs for `input`, starting with every operator off.
     ///
     /// Parameters
     /// ----------
     /// input : array_like, shape (n,)
-    ///     In the input's unit. What lies beyond the plane acts as its ends.
+    ///     In the input's unit. Values beyond the plane act as its ends.
     /// time : array_like, shape (n,), optional
-    ///     Seconds, for a model with a thermal body; without one they are not looked at.
+    ///     Needed for a model with a thermal body, ignored otherwise. As in `Recording`.
     /// load : array_like, shape (n,), optional
-    ///     For a model that depends on a load; for one load throughout see `at_load`.
+    ///     For a model that depends on a load. For a constant load see `at_load`.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape (n,)
-    ///     In the output's unit.
+    /// ndarray or pandas.Series, shape (n,)
+    ///     In the output's unit. A Series gives a Series with the same index.
     ///
     /// Raises
     /// ------
@@ -54,18 +55,18 @@ impl Model {
         input: &Bound<'py, PyAny>,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.inner;
         if model.thermal.is_none() && model.load.is_none() && load.is_none() {
             // Without a copy: straight into NumPy's array.
             return self.started(false).run(py, input);
         }
-        let predict = |input: &_, around: Surroundings<'_>| model.predict(input, around);
-        let output = surrounded(py, input, time, load, predict)?;
-        Ok(PyArray1::from_vec(py, output))
+        let run = |input: &_, around: Surroundings<'_>| model.simulate_in(input, around);
+        let output = surrounded(py, input, time, load, run)?;
+        like(input, output.into_pyarray(py), &self.output())
     }
 
-    /// The 95 % prediction band around `simulate`: how far off the weights may put the output, and the noise.
+    /// The 95 % band around `simulate`: uncertainty of the weights and noise.
     ///
     /// Parameters
     /// ----------
@@ -74,8 +75,8 @@ impl Model {
     ///
     /// Returns
     /// -------
-    /// lower, upper : ndarray, shape (n,)
-    ///     In the output's unit.
+    /// lower, upper : ndarray or pandas.Series, shape (n,)
+    ///     In the output's unit, as `simulate`.
     ///
     /// Raises
     /// ------
@@ -98,10 +99,13 @@ impl Model {
         input: &Bound<'py, PyAny>,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-        let predict = |input: &_, around: Surroundings<'_>| self.inner.predict_band(input, around);
-        let (low, high) = surrounded(py, input, time, load, predict)?;
-        Ok((PyArray1::from_vec(py, low), PyArray1::from_vec(py, high)))
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let run = |input: &_, around: Surroundings<'_>| self.inner.band_in(input, around);
+        let (low, high) = surrounded(py, input, time, load, run)?;
+        Ok((
+            like(input, low.into_pyarray(py), "lower")?,
+            like(input, high.into_pyarray(py), "upper")?,
+        ))
     }
 
     /// Forward and inverse tests on a recording.
@@ -109,21 +113,16 @@ impl Model {
     /// Parameters
     /// ----------
     /// recording : Recording, or array_like of shape (n,)
-    ///     Or the input, with the output beside it.
+    ///     An array is the input, and `output` is needed.
     /// output : array_like, shape (n,), optional
     /// start : {'off', 'on', 'unknown'}
-    ///     Where the operators stand before the first sample.
+    ///     State of the operators before the first sample.
     /// time, load : array_like, shape (n,), optional
-    ///     With an input and an output.
+    ///     For an input and an output given as arrays.
     ///
     /// Returns
     /// -------
-    /// dict
-    ///     'output_model' (ndarray, shape (n,)) and 'forward', its errors: 'rmse' and 'max_abs' in the output's unit, 'nrmse_percent' of the
-    ///     measured range, 'samples'; 'clipped', inputs outside the plane; 'band', None without confidence, with 'lower', 'upper' (ndarray,
-    ///     shape (n,)) and 'coverage_percent'; 'inverse' with 'moving' (ndarray of bool, shape (n,)), False in the dead band, and for each
-    ///     policy, 'hold' and 'anticipate', the 'input_model' (ndarray, shape (n,)), its errors over 'all' samples, over those
-    ///     'moving' and in the 'dead_band', and the targets 'out_of_reach'; or None, and 'inverse_refused' says why.
+    /// results.Evaluation
     ///
     /// Raises
     /// ------
@@ -133,9 +132,10 @@ impl Model {
     /// --------
     /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> found = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5])
-    /// >>> found['forward']['max_abs']
+    /// >>> found.forward.max_abs
     /// 0.5
-    #[pyo3(signature = (recording, output=None, *, start="off", time=None, load=None))]
+    #[pyo3(signature = (recording, output=None, *, start="off", time=None, load=None, **unknown),
+        text_signature = "($self, recording, output=None, *, start='off', time=None, load=None)")]
     #[allow(clippy::too_many_arguments)]
     fn evaluate<'py>(
         &self,
@@ -145,12 +145,14 @@ impl Model {
         start: &str,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+        unknown: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        none_left("Model.evaluate", unknown, &["start", "time", "load"])?;
         let recording = recording_of(recording, output, time, load)?;
-        judge::evaluate(py, &self.inner, &recording, start_of(start)?)
+        evaluate::evaluate(py, &self.inner, &recording, start_of(start)?)
     }
 
-    /// What an input, or several, say about each operator of this model's plane: `pyhysteron.excitation`.
+    /// How well inputs determine each operator of this model's plane.
     ///
     /// Parameters
     /// ----------
@@ -172,7 +174,7 @@ impl Model {
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        judge::excited(py, input, *self.inner.plane(), self.inner.operator())
+        evaluate::excited(py, input, *self.inner.plane(), self.inner.operator())
     }
 
     /// A state with every operator off, or on.
@@ -188,7 +190,7 @@ impl Model {
     /// Raises
     /// ------
     /// ThermalError, FitError
-    ///     For a model with a thermal body, and for one that depends on a load: take that at one, `at_load`.
+    ///     For a model with a thermal body, and for a model that depends on a load: use `at_load`.
     ///
     /// Examples
     /// --------
@@ -197,11 +199,11 @@ impl Model {
     /// 5.0
     #[pyo3(signature = (*, on=false))]
     fn start(&self, on: bool) -> PyResult<State> {
-        self.inner.runs_by_itself().raise()?;
+        self.inner.plain().raise()?;
         Ok(self.started(on))
     }
 
-    /// The state that `State.save` told of.
+    /// The state that `State.save` returned.
     ///
     /// Parameters
     /// ----------
@@ -228,7 +230,7 @@ impl Model {
     /// >>> again.step(0.4) == state.step(0.4)
     /// True
     fn restore(&self, saved: &Bound<'_, PyAny>) -> PyResult<State> {
-        self.inner.runs_by_itself().raise()?;
+        self.inner.plain().raise()?;
         let entry = |name| {
             saved.get_item(name).map_err(|_| {
                 PyTypeError::new_err(
@@ -315,7 +317,7 @@ fn surrounded<T: Send>(
 ) -> PyResult<T> {
     let input = samples(input, "input")?;
     let input = input.as_slice()?;
-    let (time, load) = (optional(time, "time")?, optional(load, "load")?);
+    let (time, load) = (times(time)?, optional(load, "load")?);
     let around = Surroundings {
         time: time.as_deref(),
         load: load.as_deref(),

@@ -1,10 +1,10 @@
-//! What several Python threads may use at once: each use is done before the next begins.
+//! Values that several Python threads share: each use ends before the next one begins.
 
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError, TryLockError};
 
-/// A value that one thread has at a time. No Python runs while it is had, nor is an exception made: either could run anything
-/// (the collector, a callback of its), and with that come back here.
+/// A value that one thread uses at a time. Meanwhile no Python code runs and no exception is made:
+/// either could run a callback, and that could use the value again.
 pub(crate) struct Shared<T>(Mutex<T>);
 
 impl<T: Send> Shared<T> {

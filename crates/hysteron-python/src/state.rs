@@ -1,6 +1,6 @@
 //! `State`.
 
-use crate::array::{filled, samples};
+use crate::array::{filled, like, samples};
 use crate::error::{Raise, number};
 use crate::model::Model;
 use crate::plane::on_plane;
@@ -9,9 +9,9 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// What a model remembers of its input, made by `Model.start`.
+/// The memory of a model, made by `Model.start`.
 ///
-/// Several threads may share one: each call is done before the next begins.
+/// Threads may share a state: each call ends before the next one begins.
 ///
 /// Examples
 /// --------
@@ -41,7 +41,7 @@ impl State {
         self.model.clone()
     }
 
-    /// Move to `input` and give the output.
+    /// Move to `input` and return the output.
     ///
     /// Parameters
     /// ----------
@@ -54,7 +54,7 @@ impl State {
     /// Raises
     /// ------
     /// CoreError
-    ///     For an input that is NaN or infinite; the state is then as it was.
+    ///     For an input that is NaN or infinite. The state is unchanged then.
     ///
     /// Examples
     /// --------
@@ -67,7 +67,7 @@ impl State {
         Ok(step.raise()?.output)
     }
 
-    /// Move through `input` and give the outputs.
+    /// Move through `input` and return the outputs.
     ///
     /// Parameters
     /// ----------
@@ -75,12 +75,13 @@ impl State {
     ///
     /// Returns
     /// -------
-    /// ndarray, shape (n,)
+    /// ndarray or pandas.Series, shape (n,)
+    ///     In the output's unit. A Series gives a Series with the same index.
     ///
     /// Raises
     /// ------
     /// CoreError
-    ///     For a sample that is NaN or infinite; the state is then as it was.
+    ///     For a sample that is NaN or infinite. The state is unchanged then.
     ///
     /// Examples
     /// --------
@@ -91,16 +92,17 @@ impl State {
         &self,
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let input = samples(input, "input")?;
-        let samples = input.as_slice()?;
-        filled(py, samples.len(), |output| {
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let array = samples(input, "input")?;
+        let samples = array.as_slice()?;
+        let output = filled(py, samples.len(), |output| {
             let run = |state: &mut _| self.model.inner.run(state, samples, output);
             self.inner
                 .with_detached(run)
                 .raise_of("input", samples)
                 .map(|_| ())
-        })
+        })?;
+        like(input, output, &self.model.output())
     }
 
     /// Every operator off, or on.
@@ -123,7 +125,7 @@ impl State {
         self.inner.with(py, |state| *state = begin);
     }
 
-    /// What `Model.restore` needs to make this state again, bit for bit.
+    /// The state as plain data. `Model.restore` makes the same state of it, bit for bit.
     ///
     /// Returns
     /// -------
@@ -143,14 +145,16 @@ impl State {
         Ok(saved)
     }
 
-    /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position last.
+    /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position
+    /// last.
     #[getter]
     fn turning_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let points = |state: &mut hysteron::State| state.turning_points().collect();
         PyArray1::from_vec(py, self.inner.with(py, points))
     }
 
-    /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the diagonal.
+    /// The operators' states ``γ_ij`` from 0 to 1, shape (K, K): ``[i-1, j-1]``, NaN below the
+    /// diagonal.
     #[getter]
     fn operators<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let model = &self.model.inner;
@@ -158,13 +162,13 @@ impl State {
         on_plane(py, &gamma.raise()?)
     }
 
-    /// The last input, as it was given.
+    /// The last input.
     #[getter]
     fn input(&self, py: Python<'_>) -> f64 {
         self.inner.with(py, |state| state.input())
     }
 
-    /// A state of its own that has seen the same.
+    /// An independent copy.
     ///
     /// Returns
     /// -------
@@ -198,7 +202,9 @@ impl State {
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
-        let (input, points) = self.inner.with(py, |state| (state.input(), state.held()));
+        let (input, points) = self
+            .inner
+            .with(py, |state| (state.input(), state.turning_points().count()));
         format!("<State at {input}, {points} turning points>")
     }
 }

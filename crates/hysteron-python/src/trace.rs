@@ -1,5 +1,6 @@
 //! `control.Trace`.
 
+use crate::convert::result;
 use crate::error::Raise;
 use crate::plane::on_plane;
 use hysteron::control::{self, LoopStatus};
@@ -60,13 +61,13 @@ impl Trace {
         PyArray1::from_slice(py, &self.inner.measured)
     }
 
-    /// The input of the hysteresis, true or measured; where neither is known, the one asked for.
+    /// The input of the hysteresis, true or measured; where neither is known, the command.
     #[getter]
     fn input<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.input)
     }
 
-    /// The input that the controller asked for.
+    /// The input that the controller commanded.
     #[getter]
     fn command<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.command)
@@ -78,7 +79,8 @@ impl Trace {
         PyArray1::from_slice(py, &self.inner.drive)
     }
 
-    /// The output that the controller's model expected before it learned from the reading; NaN without a model.
+    /// The output that the controller's model expected before it learned from the reading; NaN
+    /// without a model.
     #[getter]
     fn prediction<'py>(&self, py: Python<'py>) -> Series<'py> {
         PyArray1::from_slice(py, &self.inner.prediction)
@@ -116,7 +118,7 @@ impl Trace {
 
     /// The weights over time, of a controller that adapts.
     ///
-    /// Dictionaries with 'time' (s), 'offset' and 'weights' (shape (K, K), NaN below the diagonal).
+    /// A list of `results.Snapshot`.
     #[getter]
     fn snapshots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
@@ -125,7 +127,7 @@ impl Trace {
             entry.set_item("time", snapshot.time)?;
             entry.set_item("offset", snapshot.offset)?;
             entry.set_item("weights", on_plane(py, &snapshot.weights)?)?;
-            list.append(entry)?;
+            list.append(result(py, "Snapshot", entry)?)?;
         }
         Ok(list)
     }

@@ -1,18 +1,19 @@
 //! `track`.
 
+use crate::convert::result_of;
 use crate::error::Raise;
+use crate::integer::Integer;
 use crate::model::Model;
 use crate::pid::Pid;
 use crate::pool::detached;
-use crate::said::told;
+use crate::progress::with_progress;
 use crate::trace::Trace;
-use crate::watched::watched;
-use crate::whole::Whole;
 use hysteron_sim::track::{Comparison as Found, Scenario, Score};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Controllers compared on a simulated plant: what `track` found.
@@ -47,9 +48,10 @@ impl Comparison {
 
     /// A table, as pandas takes it: a row for each controller, seed and window.
     ///
-    /// Lists 'controller' and 'window', arrays 'seed', 'from_s', 'to_s', 'rmse', 'max_abs', 'prediction_rmse' (the model against
-    /// the output, before it learned), 'frozen_rmse' (the same without learning from the window on), 'lag_s' (after
-    /// reversals), 'drive_travel', 'saturated' and 'faults' (shares). NaN where there is none.
+    /// Lists: 'controller' and 'window'. Arrays: 'seed', 'from_s', 'to_s', 'rmse', 'max_abs',
+    /// 'prediction_rmse' (model against output, before it learned), 'frozen_rmse' (the same without
+    /// learning in the window), 'lag_s' (after reversals), 'drive_travel', 'saturated' and 'faults'
+    /// (shares). NaN where a value does not exist.
     #[getter]
     fn scores<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inner = &self.inner;
@@ -98,16 +100,17 @@ impl Comparison {
         Ok(table)
     }
 
-    /// Medians over the seeds, a dictionary for each window and controller, whose 'name' is that in `controllers`; None where there is none.
+    /// Medians over the seeds: a `results.Median` for each window and controller.
     #[getter]
-    fn medians<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        told(py, &self.inner.medians())
+    fn medians<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        results(py, "Median", &self.inner.medians())
     }
 
-    /// Inverse and PID against PID, and adaptive against fixed inverse: medians of the ratios, for each window that has settled.
+    /// Inverse and PID against PID, and adaptive against fixed inverse: a `results.Ratio` for each
+    /// settled window.
     #[getter]
-    fn ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        told(py, &self.inner.ratios())
+    fn ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        results(py, "Ratio", &self.inner.ratios())
     }
 
     /// Each controller's run of the first seed, by its name.
@@ -159,13 +162,15 @@ impl Comparison {
 
 /// Compare controllers on a simulated plant, as ``hysteron track`` does.
 ///
-/// For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with
-/// the same disturbances. The gains of all PIDs come from one test on the same plant. Ctrl-C ends it.
+/// For each seed a model is identified from an experiment of its own, and every controller runs
+/// over the same reference with the same disturbances. The gains of all PIDs come from one test on
+/// the same plant. Ctrl-C ends it.
 ///
 /// Parameters
 /// ----------
 /// scenario : str or path-like
-///     Name of a built-in scenario (`scenarios`), a TOML file, or the text of one (which has more than one line).
+///     Name of a built-in scenario (`scenarios`), a TOML file, or the text of one (which has more
+///     than one line).
 /// seeds : int, optional
 ///     How many runs, each with its own noise, instead of what the scenario says.
 /// progress : callable or bool, optional
@@ -178,7 +183,7 @@ impl Comparison {
 /// Raises
 /// ------
 /// ScenarioError
-///     Names the line or the field that cannot be.
+///     For an invalid scenario, with line or field.
 /// FileError, RigError, FitError
 ///
 /// Examples
@@ -207,17 +212,15 @@ impl Comparison {
 pub(crate) fn track(
     py: Python<'_>,
     scenario: &Bound<'_, PyAny>,
-    seeds: Option<Whole>,
+    seeds: Option<Integer>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Comparison> {
     let mut scenario = scenario_of(scenario)?;
     if let Some(seeds) = seeds {
         scenario.seeds = seeds.of("seeds")?;
     }
-    let inner = watched(py, progress, |watch| {
-        hysteron_sim::track::track(&scenario, &|done, all| {
-            watch("runs", done as f64 / all as f64)
-        })
+    let inner = with_progress(py, progress, |progress| {
+        hysteron_sim::track::track(&scenario, progress)
     })?;
     Ok(Comparison { inner })
 }
@@ -239,7 +242,7 @@ pub(crate) fn track(
 /// Raises
 /// ------
 /// ScenarioError
-///     Names the line or the field that cannot be; or the plant does not answer the test.
+///     For an invalid scenario, with line or field, and for a plant that does not answer the test.
 /// FileError, RigError
 ///
 /// Examples
@@ -277,6 +280,18 @@ pub(crate) fn scenarios(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         all.set_item(name, Scenario::text(name))?;
     }
     Ok(all)
+}
+
+fn results<'py>(
+    py: Python<'py>,
+    class: &str,
+    values: &[impl Serialize],
+) -> PyResult<Bound<'py, PyList>> {
+    let list = PyList::empty(py);
+    for value in values {
+        list.append(result_of(py, class, value)?)?;
+    }
+    Ok(list)
 }
 
 fn scenario_of(scenario: &Bound<'_, PyAny>) -> PyResult<Scenario> {

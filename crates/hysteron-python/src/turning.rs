@@ -1,20 +1,22 @@
-//! Where a series turns: `branches`, `remembered` and `control.headings`.
+//! Turning points: `branches`, `remembered` and `control.headings`.
 
 use crate::array::samples;
+use crate::choices::{direction_name, size};
 use crate::error::finite;
-use crate::word::{direction_name, width};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-/// For each sample of an input the branch that it lies on.
+/// The branch of each sample of an input.
 ///
-/// A branch ends where the input turns by more than `band`; the turning point belongs to the branch before it.
+/// A branch ends where the input turns by more than `dead_band`; the turning point belongs to the
+/// branch before it.
 ///
 /// Parameters
 /// ----------
 /// input : array_like, shape (n,)
-/// band : float, optional
-///     Reversals up to this are noise, in the input's unit; by default 1 % of its range, as in a fit.
+/// dead_band : float, optional
+///     Reversals up to this size are noise, in the input's unit. By default 1 % of its range, as
+///     in a fit.
 ///
 /// Returns
 /// -------
@@ -26,33 +28,34 @@ use pyo3::prelude::*;
 /// CoreError
 ///     For a sample that is NaN or infinite.
 /// ValueError
-///     For a band below zero.
+///     For a dead band below zero.
 ///
 /// Examples
 /// --------
 /// >>> pyhysteron.branches([0, 2, 4, 3.99, 4, 1, 3])
 /// array([0, 0, 0, 1, 1, 1, 2])
 #[pyfunction]
-#[pyo3(signature = (input, *, band=None))]
+#[pyo3(signature = (input, *, dead_band=None))]
 pub(crate) fn branches<'py>(
     py: Python<'py>,
     input: &Bound<'py, PyAny>,
-    band: Option<f64>,
+    dead_band: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let input = samples(input, "input")?;
     let input = input.as_slice()?;
     finite("input", input)?;
-    let band = match band {
-        Some(band) => width(band)?,
+    let dead_band = match dead_band {
+        Some(dead_band) => size("dead_band", dead_band)?,
         None => hysteron::usual_tolerance(input),
     };
-    let found = hysteron::branches(input, band);
+    let found = hysteron::branches(input, dead_band);
     Ok(PyArray1::from_iter(py, found.iter().map(|b| *b as i64)))
 }
 
 /// The samples of an input that the operators still remember at its end, ascending.
 ///
-/// These alone leave every operator where the whole input leaves it, from all off or all on (return-point memory).
+/// These samples alone leave every operator in the same state as the whole input does, from all off
+/// or all on (return-point memory).
 ///
 /// Parameters
 /// ----------
@@ -89,7 +92,7 @@ pub(crate) fn remembered<'py>(
 /// Parameters
 /// ----------
 /// series : array_like, shape (n,)
-/// band : float
+/// tolerance : float
 ///     Reversals up to this size are noise.
 ///
 /// Returns
@@ -101,22 +104,22 @@ pub(crate) fn remembered<'py>(
 /// CoreError
 ///     For a sample that is NaN or infinite.
 /// ValueError
-///     For a band below zero.
+///     For a tolerance below zero.
 ///
 /// Examples
 /// --------
 /// >>> pyhysteron.control.headings([0, 1, 2, 1])
 /// ['rising', 'rising', 'rising', 'falling']
 #[pyfunction]
-#[pyo3(signature = (series, band=0.0))]
+#[pyo3(signature = (series, tolerance=0.0))]
 pub(crate) fn headings(
     series: &Bound<'_, PyAny>,
-    band: f64,
+    tolerance: f64,
 ) -> PyResult<Vec<Option<&'static str>>> {
     let series = samples(series, "series")?;
     let series = series.as_slice()?;
     finite("series", series)?;
-    let headings = hysteron::headings(series, width(band)?);
+    let headings = hysteron::headings(series, size("tolerance", tolerance)?);
     let names = headings
         .into_iter()
         .map(|heading| heading.map(direction_name));

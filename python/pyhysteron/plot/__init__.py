@@ -1,7 +1,8 @@
 """Figures of recordings and models with matplotlib, one call each.
 
-Each function draws into axes of a new figure, or into those it is given, and returns them. Lines differ in lightness and dash as
-well as in colour, so that they can be told apart in grey. Where a recording comes from a simulation, the legend says so.
+Each function draws into axes of a new figure, or into those it is given, and returns them. Lines
+differ in lightness and dash as well as in colour, so that they differ in grey too. Where a
+recording comes from a simulation, the legend says so.
 
 >>> import numpy as np
 >>> import pyhysteron

@@ -1,13 +1,23 @@
 """Output over input."""
 
+from typing import Any, Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
+from .._hysteron import Model, Recording
 from ._style import DASHED, DOTTED, MODELLED, RECORDED, figure, label, single, source, without_body
 
 
 @figure
-def loops(recording, model=None, *, start="off", ax=None):
+def loops(
+    recording: Recording,
+    model: Model | None = None,
+    *,
+    start: Literal["off", "on", "unknown"] = "off",
+    ax: Axes | None = None,
+) -> Axes:
     """Output over input, measured and modelled (Figs. 1 and 11).
 
     Parameters
@@ -38,7 +48,7 @@ def loops(recording, model=None, *, start="off", ax=None):
     >>> [line.get_label() for line in ax.get_lines()]
     ['measured', 'modelled']
     """
-    modelled = None if model is None else model.evaluate(recording, start=start)["output_model"]
+    modelled = None if model is None else model.evaluate(recording, start=start).output_model
     ax = single(ax)
     ax.plot(recording.input, recording.output, label=source(recording), **RECORDED)
     if modelled is not None:
@@ -49,14 +59,15 @@ def loops(recording, model=None, *, start="off", ax=None):
 
 
 @figure
-def major_loops(model, loads=None, *, ax=None):
+def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> Axes:
     """The loop between the ends of the plane, for a model that depends on a load at several loads (Fig. 2).
 
     Parameters
     ----------
     model : Model
     loads : float or array_like of shape (n,), optional
-        In the load's unit; by default the ends of the range that the model was fitted on, and its middle.
+        In the load's unit; by default the ends of the range that the model was fitted on, and its
+        middle.
     ax : matplotlib.axes.Axes, optional
 
     Returns
@@ -90,7 +101,11 @@ def major_loops(model, loads=None, *, ax=None):
         ax = single(ax)
         ax.plot(path, model.simulate(path), **MODELLED)
     else:
-        loads = np.linspace(*model.load_range, 3) if loads is None else _numbers(loads)
+        if loads is None:
+            lowest, highest = model.load_range
+            loads = np.linspace(lowest, highest, 3)
+        else:
+            loads = _numbers(loads)
         outputs = [model.at_load(load).simulate(path) for load in loads]
         ax = single(ax)
         lines = ("-", DASHED, DOTTED, "-.")

@@ -1,18 +1,23 @@
 """The elementary operators, and the model as a sum of them."""
 
+from typing import Any, Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 
 from .._hysteron import Model
 from ._style import BLUE, CONTRAST, DASHED, DOTTED, MODELLED, figure, label, several, single, without_body
 
 
-def operators(*, axes=None):
+def operators(*, axes: Any = None) -> NDArray[Any]:
     """Output over input of one relay, one KP and one MKP operator (Fig. 5).
 
-    Models with one weight, simulated: between the two bounding curves, the ridge functions of equation (4), the relay jumps, and KP and MKP
-    operators keep their output where the input turns back.
+    Models with one weight, simulated: between the two bounding curves, the ridge functions of
+    equation (4), the relay jumps, and KP and MKP operators keep their output where the input turns
+    back.
 
     Parameters
     ----------
@@ -41,8 +46,9 @@ def operators(*, axes=None):
     weights = np.zeros((5, 5))
     weights[1, 3] = 1  # s_24 on the levels 0, 1, …, 4: ΔT = 1
     rising = np.linspace(-0.8, 3.8, 461)
-    for ax, name in zip(axes, ("relay", "KP", "MKP")):
-        one = Model(weights, (0, 4), operator=name.lower())
+    names: list[tuple[Literal["mkp", "kp", "relay"], str]] = [("relay", "relay"), ("kp", "KP"), ("mkp", "MKP")]
+    for ax, (operator, name) in zip(axes, names):
+        one = Model(weights, (0, 4), operator=operator)
         there, back = np.split(one.simulate(np.concatenate([rising, rising[::-1]])), 2)
         for input, output, text, dash in ((rising, there, "rising", "-"), (rising[::-1], back, "falling", DASHED)):
             ax.plot(input, output, label=text, **dict(MODELLED, linewidth=1.4, linestyle=dash))
@@ -67,7 +73,7 @@ def _head(ax, input, output):
 
 
 @figure
-def structure(model, *, ax=None):
+def structure(model: Model, *, ax: Axes | None = None) -> Axes:
     """The model as a parallel connection of operators, weighted and summed (Fig. 4, equation 2).
 
     Parameters

@@ -1,13 +1,17 @@
-"""The Preisach plane: its operators, where they stand, and what an input says of them."""
+"""The Preisach plane: its operators, their states, and how well an input determines them."""
 
 import operator
+from collections.abc import Sequence
+from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
+from numpy.typing import ArrayLike, NDArray
 
-from .._hysteron import branches
+from .._hysteron import Model, Recording, branches
 from ._style import BLUE, ORANGE, amount, figure, one_of, several, single, unit, without_body
 
 _COLUMNS = 3
@@ -16,7 +20,7 @@ _ROUNDING = 1e-9
 
 
 @figure
-def grid(model, *, ax=None):
+def grid(model: Model, *, ax: Axes | None = None) -> Axes:
     """The discretised plane: a grid point s_ij = (α_i, β_j), i ≤ j, for each operator, and the levels (Fig. 3).
 
     Parameters
@@ -65,7 +69,9 @@ def grid(model, *, ax=None):
 
 
 @figure
-def excitation(model, input, *, ax=None):
+def excitation(
+    model: Model, input: ArrayLike | Recording | Sequence[ArrayLike | Recording], *, ax: Axes | None = None
+) -> Axes:
     """What an input, or several, say about each operator of a model's plane.
 
     Parameters
@@ -108,11 +114,19 @@ def excitation(model, input, *, ax=None):
 
 
 @figure
-def plane(model, input, *, at=None, start="off", axes=None):
+def plane(
+    model: Model,
+    input: ArrayLike,
+    *,
+    at: ArrayLike | None = None,
+    start: Literal["off", "on"] = "off",
+    axes: Any = None,
+) -> NDArray[Any]:
     """Evolution of the plane: the operators' states at a few moments of a history (Figs. 6 and 7).
 
-    ○ for an operator at 0, a filled square for one between 0 and 1, ● for one at 1. The dashed line is the present input: rising, it
-    switches operators on below it; falling, it switches them off to its right.
+    ○ for an operator at 0, a filled square for one between 0 and 1, ● for one at 1. The dashed line
+    is the present input: rising, it switches operators on below it; falling, it switches them off
+    to its right.
 
     Parameters
     ----------
@@ -133,7 +147,8 @@ def plane(model, input, *, at=None, start="off", axes=None):
     Raises
     ------
     ValueError
-        For a model with a thermal body, an input without samples or one that is NaN or infinite, `at` without samples, or fewer axes.
+        For a model with a thermal body, an input without samples or one that is NaN or infinite,
+        `at` without samples, or fewer axes.
     IndexError
         For a sample that the input does not have.
     TypeError

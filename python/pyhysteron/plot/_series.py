@@ -1,13 +1,25 @@
 """Series over time."""
 
+from typing import Any, Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
+from .._hysteron import Model, Recording
 from ._style import CONTRAST, MODELLED, RECORDED, figure, label, one_of, several, single, source, unit
 
 
 @figure
-def over_time(recording, model, *, of="output", start="off", axes=None):
+def over_time(
+    recording: Recording,
+    model: Model,
+    *,
+    of: Literal["output", "input"] = "output",
+    start: Literal["off", "on", "unknown"] = "off",
+    axes: Any = None,
+) -> NDArray[Any]:
     """Measured and modelled series over time, with the discrepancy below (Figs. 10 and 12, or 13 and 14).
 
     Parameters
@@ -15,8 +27,8 @@ def over_time(recording, model, *, of="output", start="off", axes=None):
     recording : Recording
     model : Model
     of : {'output', 'input'}
-        The output of the model for the recorded input; or the input of the inverse model for the recorded output, in which
-        samples of a dead band, where the output stands still, are shaded.
+        The output of the model for the recorded input; or the input of the inverse model for the
+        recorded output, in which samples of a dead band, where the output stands still, are shaded.
     start : {'off', 'on', 'unknown'}
         Where the operators stand before the first sample.
     axes : sequence of two matplotlib.axes.Axes, optional
@@ -48,12 +60,12 @@ def over_time(recording, model, *, of="output", start="off", axes=None):
     series, difference = _stack(axes, (3, 1.6))
     if inverse is None:
         name, measured = recording.output_name, recording.output
-        modelled = {"modelled": (found["output_model"], MODELLED)}
+        modelled = {"modelled": (found.output_model, MODELLED)}
     else:
         name, measured = recording.input_name, recording.input
         modelled = _policies(inverse)
         for ax in (series, difference):
-            _shade(ax, time, inverse["moving"])
+            _shade(ax, time, inverse.moving)
     series.plot(time, measured, label=source(recording), **RECORDED)
     difference.axhline(0, color="0.3", linewidth=0.8, zorder=1)
     for text, (values, style) in modelled.items():
@@ -66,7 +78,7 @@ def over_time(recording, model, *, of="output", start="off", axes=None):
 
 
 @figure
-def band(recording, model, *, ax=None):
+def band(recording: Recording, model: Model, *, ax: Axes | None = None) -> Axes:
     """The recorded output and the model's 95 % prediction band over time.
 
     Parameters
@@ -112,11 +124,18 @@ def band(recording, model, *, ax=None):
 
 
 @figure
-def dead_band(recording, model, *, start="off", axes=None):
+def dead_band(
+    recording: Recording,
+    model: Model,
+    *,
+    start: Literal["off", "on", "unknown"] = "off",
+    axes: Any = None,
+) -> NDArray[Any]:
     """The dead band with the largest error of the inverse, close up (Fig. 15).
 
-    After a turn the output stands still while the input travels, so that the inverse cannot follow: 'hold' rests
-    until the output moves; 'anticipate', told where the output goes next, crosses the dead band at once. Shaded where the output stands still.
+    After a turn the output rests while the input moves, so the inverse cannot follow. 'hold' rests
+    until the output moves. 'anticipate' knows where the output goes next, and crosses the dead band
+    at once. The shaded stretches are those where the output rests.
 
     Parameters
     ----------
@@ -148,10 +167,10 @@ def dead_band(recording, model, *, start="off", axes=None):
     ['measured', 'inverse, hold', 'inverse, anticipate']
     """
     inverse = _inverse(model.evaluate(recording, start=start))
-    moving = inverse["moving"]
+    moving = inverse.moving
     if moving.all():
         raise ValueError("the output never stands still: there is no dead band to show")
-    error = np.abs(inverse["hold"]["input_model"] - recording.input)
+    error = np.abs(inverse.hold.input_model - recording.input)
     worst = int(np.argmax(np.where(moving, -1, error)))
     first, last = next(stretch for stretch in _stretches(moving) if stretch[0] <= worst <= stretch[1])
     length = last - first + 1
@@ -190,15 +209,15 @@ def _above(ax, *legend):
 
 
 def _inverse(found):
-    if found["inverse"] is None:
-        raise ValueError(f"the model has no inverse: {found['inverse_refused']}")
-    return found["inverse"]
+    if found.inverse is None:
+        raise ValueError(f"the model has no inverse: {found.inverse_refused}")
+    return found.inverse
 
 
 def _policies(inverse):
     return {
-        "inverse, hold": (inverse["hold"]["input_model"], MODELLED),
-        "inverse, anticipate": (inverse["anticipate"]["input_model"], CONTRAST),
+        "inverse, hold": (inverse.hold.input_model, MODELLED),
+        "inverse, anticipate": (inverse.anticipate.input_model, CONTRAST),
     }
 
 

@@ -3,18 +3,22 @@
 import functools
 import inspect
 import re
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
+from .._convert import did_you_mean
+from .._convert import one_of as one_of
 from .._hysteron import Model, Recording
 
 BLUE, ORANGE = "#12355b", "#c8501e"  # apart in grey too
 DASHED, DOTTED = (0, (5, 2)), (0, (1, 1.2))
-RECORDED = dict(color="0.68", linewidth=3.2, solid_capstyle="round", zorder=2)
-MODELLED = dict(color=BLUE, linewidth=1.1, zorder=3)
-CONTRAST = dict(color=ORANGE, linewidth=1.1, linestyle=DASHED, zorder=4)
+RECORDED: dict[str, Any] = dict(color="0.68", linewidth=3.2, solid_capstyle="round", zorder=2)
+MODELLED: dict[str, Any] = dict(color=BLUE, linewidth=1.1, zorder=3)
+CONTRAST: dict[str, Any] = dict(color=ORANGE, linewidth=1.1, linestyle=DASHED, zorder=4)
 
 _SIGNS = {"degC": "°C", "degF": "°F", "deg": "°", "um": "µm", "uC/cm2": "µC/cm²"}
 _KINDS = {
@@ -24,28 +28,30 @@ _KINDS = {
 }
 
 
-def figure(draw):
-    """Refuses what is no recording, model or axes, by the name of the argument."""
+_Draw = TypeVar("_Draw", bound=Callable[..., Any])
+
+
+def figure(draw: _Draw) -> _Draw:
+    """Refuses what is no recording, model or axes, and unknown options, by the name of the argument."""
     signature = inspect.signature(draw)
 
     @functools.wraps(draw)
     def checked(*args, **kwargs):
+        for name in kwargs:
+            if name not in signature.parameters:
+                meant = did_you_mean(name, signature.parameters, "`")
+                raise TypeError(f"{draw.__name__}: there is no argument `{name}`{meant}")
         for name, value in signature.bind(*args, **kwargs).arguments.items():
             if name in _KINDS and not (value is None and signature.parameters[name].default is None):
                 of_kind(name, value, *_KINDS[name])
         return draw(*args, **kwargs)
 
-    return checked
+    return cast(_Draw, checked)
 
 
 def of_kind(name, value, kind, needed):
     if not isinstance(value, kind):
         raise TypeError(f"`{name}` is of type {type(value).__name__}: {needed} is needed")
-
-
-def one_of(name, value, *words):
-    if value not in words:
-        raise ValueError(f"`{name}` is {value!r}: one of {', '.join(map(repr, words))} is needed")
 
 
 def without_body(model):

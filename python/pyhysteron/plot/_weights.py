@@ -1,22 +1,26 @@
 """The weights over the plane."""
 
+from typing import Literal
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
+from .._hysteron import Model
 from ._plane import colour_map, marker_size, plane_axes
 from ._style import figure, one_of, single, unit
 
 
 @figure
-def weights(model, *, kind="marks", ax=None):
+def weights(model: Model, *, kind: Literal["marks", "map", "bars"] = "marks", ax: Axes | None = None) -> Axes:
     """The weights on the plane: where they are not zero (Fig. 8a), or how large they are (Fig. 8b).
 
     Parameters
     ----------
     model : Model
     kind : {'marks', 'map', 'bars'}
-        ○ for a weight that is zero and × for one that is not; a map, the darker the larger, in which negative weights,
-        where there are any, bear a dash; or bars in three dimensions.
+        ○ for a weight that is zero and × for one that is not; a map, the darker the larger, in
+        which negative weights, where there are any, bear a dash; or bars in three dimensions.
     ax : matplotlib.axes.Axes, optional
         For bars with ``projection='3d'``.
 

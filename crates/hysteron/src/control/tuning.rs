@@ -30,7 +30,7 @@ const ANSWER: f64 = 3.0;
 pub struct RelayTest {
     commands: (f64, f64),
     middle: f64,
-    band: f64,
+    hysteresis: f64,
     high: bool,
     count: usize,
     /// Outputs since the last period began, and all.
@@ -41,23 +41,23 @@ pub struct RelayTest {
 }
 
 impl RelayTest {
-    /// A relay between two `commands`, which switches where the output is `band` beyond `middle`.
+    /// A relay between two `commands`, which switches where the output is `hysteresis` beyond `middle`.
     ///
     /// # Errors
     /// [`Error::Control`] for commands that do not differ and for numbers that are not finite.
-    pub fn new(commands: (f64, f64), middle: f64, band: f64) -> Result<Self> {
+    pub fn new(commands: (f64, f64), middle: f64, hysteresis: f64) -> Result<Self> {
         let (low, high) = commands;
         let fine = low < high && (high - low).is_finite() && middle.is_finite();
-        if !(fine && band >= 0.0 && band.is_finite()) {
+        if !(fine && hysteresis >= 0.0 && hysteresis.is_finite()) {
             return Err(Error::Control(format!(
-                "`commands` {low} to {high}, `middle` {middle}, `band` {band}: finite numbers are needed, the lower command first and the band from 0 on"
+                "`commands` {low} to {high}, `middle` {middle}, `hysteresis` {hysteresis}: finite numbers are needed, the lower command first and the hysteresis from 0 on"
             )));
         }
         let none = (f64::INFINITY, f64::NEG_INFINITY);
         Ok(Self {
             commands,
             middle,
-            band,
+            hysteresis,
             high: true,
             count: 0,
             range: none,
@@ -79,9 +79,9 @@ impl RelayTest {
     pub fn push(&mut self, output: f64) {
         let widened = |(low, high): (f64, f64)| (low.min(output), high.max(output));
         (self.range, self.all) = (widened(self.range), widened(self.all));
-        if self.high && output > self.middle + self.band {
+        if self.high && output > self.middle + self.hysteresis {
             self.high = false;
-        } else if !self.high && output < self.middle - self.band {
+        } else if !self.high && output < self.middle - self.hysteresis {
             self.high = true;
             let half = 0.5 * (self.range.1 - self.range.0);
             self.periods.push((self.count, half));

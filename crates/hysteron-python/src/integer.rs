@@ -1,11 +1,11 @@
-//! Whole numbers from Python, of any size: what is none, or does not fit, is refused by the argument's name.
+//! Integers from Python, of any size. What is no integer, or does not fit, is refused by name.
 
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// An argument that should be a whole number, as it was given.
+/// An argument that should be an integer.
 #[derive(Clone)]
-pub(crate) struct Whole {
+pub(crate) struct Integer {
     kind: Kind,
     text: String,
 }
@@ -15,15 +15,15 @@ enum Kind {
     Number(i64),
     /// Of more bits than any count.
     Large,
-    /// No whole number at all.
+    /// No integer.
     Other,
 }
 
-impl Whole {
+impl Integer {
     /// As the number type that is needed.
     ///
     /// # Errors
-    /// `TypeError` for what is no whole number, `ValueError` for one that does not fit.
+    /// `TypeError` for what is no integer, `ValueError` for one that does not fit.
     pub(crate) fn of<T: TryFrom<i64>>(&self, argument: &str) -> PyResult<T> {
         let fits = match self.kind {
             Kind::Number(number) => T::try_from(number).ok(),
@@ -61,13 +61,13 @@ impl Whole {
     }
 }
 
-impl<'py> FromPyObject<'_, 'py> for Whole {
+impl<'py> FromPyObject<'_, 'py> for Integer {
     type Error = PyErr;
 
-    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let py = given.py();
-        let Ok(index) = py.import("operator")?.call_method1("index", (given,)) else {
-            let (kind, text) = (Kind::Other, given.repr()?.to_string());
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let py = value.py();
+        let Ok(index) = py.import("operator")?.call_method1("index", (value,)) else {
+            let (kind, text) = (Kind::Other, value.repr()?.to_string());
             return Ok(Self { kind, text });
         };
         let kind = match index.extract::<i64>() {

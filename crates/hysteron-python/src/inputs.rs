@@ -1,6 +1,6 @@
 //! Recordings and inputs as calls take them: as such, or as arrays.
 
-use crate::array::samples;
+use crate::array::series;
 use crate::error::finite;
 use crate::recording::Recording;
 use pyo3::exceptions::PyTypeError;
@@ -21,7 +21,8 @@ pub(crate) fn recording_of(
             "a Recording has its own output, time and load: leave these out",
         )),
         (Err(_), Some(output)) => {
-            Recording::new(value, output, time, load, "input", "output", "load", false)
+            let names = ("input", "output", "load");
+            Recording::of_arrays(value, output, time, load, names, false)
         }
         (Err(_), None) => Err(PyTypeError::new_err(
             "a Recording is needed, or an input and its output",
@@ -70,15 +71,4 @@ pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Ve
         }
         _ => Ok(vec![input_of(value, argument)?]),
     }
-}
-
-pub(crate) fn series(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<f64>> {
-    Ok(samples(value, argument)?.as_slice()?.to_vec())
-}
-
-pub(crate) fn optional(
-    value: Option<&Bound<'_, PyAny>>,
-    argument: &str,
-) -> PyResult<Option<Vec<f64>>> {
-    value.map(|value| series(value, argument)).transpose()
 }

@@ -1,9 +1,9 @@
-//! Long work on a thread of its own, while this one hears Ctrl-C and tells of the progress.
+//! Long work on its own thread, while this one handles Ctrl-C and reports progress.
 
+use crate::choices::another_kind;
 use crate::error::Raise;
 use crate::pool::in_pool;
-use crate::word::another_kind;
-use hysteron::{Error, Watch};
+use hysteron::{Error, Progress};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 use std::panic::resume_unwind;
@@ -12,30 +12,32 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often signals are looked for and progress is told: nobody sees more.
+/// How often signals are checked and progress is reported.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Does `work` without the interpreter's lock. When a signal or the callback raises, the work ends and that is raised.
+/// Does `work` without the interpreter's lock. What a signal or the callback raises ends the work
+/// and is raised here.
 ///
-/// `progress` is `None`, `True` for tqdm, or called with what is being done and the share of it, `None` where that is not known.
+/// `progress` is `None`, `True` for tqdm, or called with the stage and the share done, `None` where
+/// unknown.
 ///
-/// The watch is called from the threads that work, which never take the interpreter's lock: the thread that was called does all of that.
-pub(crate) fn watched<T: Send>(
+/// The working threads never take the interpreter's lock. Only the calling thread runs Python.
+pub(crate) fn with_progress<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(Watch<'_>) -> hysteron::Result<T> + Send,
+    work: impl FnOnce(Progress<'_>) -> hysteron::Result<T> + Send,
 ) -> PyResult<T> {
     let bar = callback(py, progress)?;
     let stop = AtomicBool::new(false);
     let news = Mutex::new(None);
-    let watch = |what: &'static str, share: f64| {
+    let told = |what: &'static str, share: f64| {
         *news.lock().unwrap_or_else(PoisonError::into_inner) = Some((what, share));
         match stop.load(Relaxed) {
             true => Err(Error::Fit("interrupted".into())),
             false => Ok(()),
         }
     };
-    let tell = || -> PyResult<()> {
+    let report = || -> PyResult<()> {
         py.check_signals()?;
         let news = news.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let (Some(call), Some((what, share))) = (&bar, news) {
@@ -48,7 +50,7 @@ pub(crate) fn watched<T: Send>(
         let worker = scope.spawn(|| {
             // Dropped in a panic too, which ends the waiting.
             let done = done;
-            let result = in_pool(|| work(&watch));
+            let result = in_pool(|| work(Progress::new(&told)));
             drop(done);
             result
         });
@@ -61,7 +63,7 @@ pub(crate) fn watched<T: Send>(
         };
         while py.detach(pause) == Err(RecvTimeoutError::Timeout) {
             if raised.is_none() {
-                raised = tell().err();
+                raised = report().err();
                 stop.store(raised.is_some(), Relaxed);
             }
         }

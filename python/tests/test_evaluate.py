@@ -12,13 +12,13 @@ def test_confidence(model):
     found = model.confidence
     below = np.tril(np.ones((12, 12), bool), -1)
     for name in ("standard_error", "excitation"):
-        assert found[name].shape == (12, 12)
-        np.testing.assert_array_equal(np.isnan(found[name]), below)
-    np.testing.assert_array_equal(found["levels"], model.plane)
-    assert found["noise"] == pytest.approx(0.01, rel=0.3)
-    assert 0 < found["rank"] <= found["unknowns"] == 78
+        assert getattr(found, name).shape == (12, 12)
+        np.testing.assert_array_equal(np.isnan(getattr(found, name)), below)
+    np.testing.assert_array_equal(found.levels, model.plane)
+    assert found.noise == pytest.approx(0.01, rel=0.3)
+    assert 0 < found.rank <= found.unknowns == 78
     again = pickle.loads(pickle.dumps(model))
-    np.testing.assert_array_equal(again.confidence["standard_error"], found["standard_error"])
+    np.testing.assert_array_equal(again.confidence.standard_error, found.standard_error)
     assert pyhysteron.Model([1, 2, 4], (0, 1)).confidence is None
 
 
@@ -33,23 +33,23 @@ def test_band_holds_95_percent(model, recording):
 
 def test_evaluate(model, recording):
     found = model.evaluate(recording)
-    np.testing.assert_array_equal(found["output_model"], model.simulate(recording.input))
-    error = found["output_model"] - recording.output
-    assert found["forward"]["rmse"] == pytest.approx(np.sqrt(np.mean(error**2)))
-    assert found["band"]["coverage_percent"] > 90
-    assert found["band"]["lower"].shape == error.shape
-    inverse = found["inverse"]
-    assert inverse["moving"].dtype == bool
+    np.testing.assert_array_equal(found.output_model, model.simulate(recording.input))
+    error = found.output_model - recording.output
+    assert found.forward.rmse == pytest.approx(np.sqrt(np.mean(error**2)))
+    assert found.band.coverage_percent > 90
+    assert found.band.lower.shape == error.shape
+    inverse = found.inverse
+    assert inverse.moving.dtype == bool
     for policy in ("hold", "anticipate"):
-        missed = inverse[policy]["input_model"] - recording.input
-        assert inverse[policy]["all"]["rmse"] == pytest.approx(np.sqrt(np.mean(missed**2)))
-    assert model.evaluate(recording, start="on")["band"] is None
+        missed = getattr(inverse, policy).input_model - recording.input
+        assert getattr(inverse, policy).all.rmse == pytest.approx(np.sqrt(np.mean(missed**2)))
+    assert model.evaluate(recording, start="on").band is None
 
 
 def test_evaluate_says_why_there_is_no_inverse(recording):
     model = pyhysteron.Model([1.0, -2.0, 4.0], (30, 80))
     found = model.evaluate(recording)
-    assert found["inverse"] is None and "not negative" in found["inverse_refused"]
+    assert found.inverse is None and "not negative" in found.inverse_refused
 
 
 def test_excitation(model, recording):
@@ -64,8 +64,8 @@ def test_excitation(model, recording):
 
 def test_model_summary(model):
     summary = model.summary()
-    assert summary["levels"] == 12
-    assert sum(summary["confidence"]["excitation"].values()) == 78
+    assert summary.levels == 12
+    assert sum(summary.confidence.excitation.values()) == 78
 
 
 @pytest.mark.parametrize("on", [False, True])
@@ -88,5 +88,5 @@ def test_branches_are_numbered_from_turn_to_turn(swings):
     turns = np.flatnonzero(np.diff(np.sign(np.diff(swings)))) + 1
     # The last turn is within the band of noise.
     np.testing.assert_array_equal(ends, turns[:-1])
-    with pytest.raises(ValueError, match="band"):
-        pyhysteron.branches(swings, band=-1)
+    with pytest.raises(ValueError, match="dead_band"):
+        pyhysteron.branches(swings, dead_band=-1)

@@ -1,12 +1,12 @@
-//! What is known of a model: `Model.confidence`, `Model.evaluate`; and `excitation`.
+//! `Model.confidence`, `Model.evaluate` and `excitation`.
 
+use crate::convert::{result, to_python};
 use crate::error::Raise;
-use crate::given::inputs_of;
+use crate::inputs::inputs_of;
+use crate::integer::Integer;
 use crate::plane::on_plane;
 use crate::pool::detached;
 use crate::recording::Recording;
-use crate::said::told;
-use crate::whole::Whole;
 use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -49,12 +49,12 @@ pub(crate) fn classes<'py>(
     on_plane(py, &classes.iter().map(number).collect::<Vec<_>>())
 }
 
-/// What inputs say about each operator of a plane, whatever the output was.
+/// How well inputs determine each operator of a plane, whatever the output was.
 ///
 /// Parameters
 /// ----------
 /// input : array_like of shape (n,), Recording, or list of these
-///     Each sets out with every operator off.
+///     Each starts with every operator off.
 /// range : tuple of float
 ///     Lowest and highest level of the plane, in the input's unit.
 /// levels : int
@@ -63,13 +63,14 @@ pub(crate) fn classes<'py>(
 /// Returns
 /// -------
 /// ndarray, shape (K, K)
-///     ``[i-1, j-1]``, NaN below the diagonal: 0 for an operator that never moves, 1 for one that moves on one branch only,
-///     2 for one that moves more often but never so that it can be told from others, 3 for one whose weight follows from the output.
+///     ``[i-1, j-1]``, NaN below the diagonal. 0: the operator never moves. 1: it moves on one
+///     branch only. 2: it moves on several branches, but cannot be separated from others. 3: its
+///     weight follows from the output.
 ///
 /// Raises
 /// ------
 /// CoreError
-///     For a sample that is NaN or infinite, or a plane that cannot be.
+///     For a sample that is NaN or infinite, or an invalid plane.
 ///
 /// Examples
 /// --------
@@ -85,11 +86,11 @@ pub(crate) fn excitation<'py>(
     py: Python<'py>,
     input: &Bound<'py, PyAny>,
     range: (f64, f64),
-    levels: Whole,
+    levels: Integer,
     operator: &str,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
-    excited(py, input, plane, crate::word::operator(operator)?)
+    excited(py, input, plane, crate::choices::operator(operator)?)
 }
 
 pub(crate) fn excited<'py>(
@@ -109,13 +110,13 @@ pub(crate) fn evaluate<'py>(
     model: &Model,
     recording: &Recording,
     start: Start,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Bound<'py, PyAny>> {
     let found = detached(py, || {
         hysteron::evaluate_from(model, &recording.inner, start)
     })
     .raise()?;
     let dict = PyDict::new(py);
-    dict.set_item("forward", told(py, &found.forward)?)?;
+    dict.set_item("forward", to_python(py, &found.forward)?)?;
     dict.set_item("clipped", found.clipped)?;
     let band = match &found.band {
         None => None,
@@ -143,14 +144,14 @@ pub(crate) fn evaluate<'py>(
     dict.set_item("inverse", inverse)?;
     dict.set_item("inverse_refused", refused)?;
     dict.set_item("output_model", PyArray1::from_vec(py, found.output_model))?;
-    Ok(dict)
+    result(py, "Evaluation", dict)
 }
 
 fn run<'py>(py: Python<'py>, run: &InverseRun) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    dict.set_item("all", told(py, &run.all)?)?;
-    dict.set_item("moving", told(py, &run.moving)?)?;
-    dict.set_item("dead_band", told(py, &run.dead_band)?)?;
+    dict.set_item("all", to_python(py, &run.all)?)?;
+    dict.set_item("moving", to_python(py, &run.moving)?)?;
+    dict.set_item("dead_band", to_python(py, &run.dead_band)?)?;
     dict.set_item("out_of_reach", run.out_of_reach)?;
     dict.set_item("input_model", PyArray1::from_slice(py, &run.input_model))?;
     Ok(dict)

@@ -1,0 +1,1280 @@
+"""Results as frozen dataclasses: what `fit`, `evaluate`, `prepare` and others return.
+
+Nobody makes these objects by hand. ``to_dict()`` gives plain dictionaries, as `dataclasses.asdict`
+does. Two results are equal if all their fields are; NaN equals NaN.
+
+>>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
+>>> errors = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5]).forward
+>>> errors.max_abs, errors.samples
+(0.5, 3)
+>>> errors.to_dict()["max_abs"]
+0.5
+"""
+
+import dataclasses
+import types
+import typing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeAlias, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "AdaptedComparison",
+    "AdaptedTable",
+    "BandTest",
+    "CExport",
+    "Candidate",
+    "Compared",
+    "Confidence",
+    "ConfidenceSummary",
+    "DeadBand",
+    "Drift",
+    "Errors",
+    "Evaluation",
+    "Event",
+    "FitSummary",
+    "FmuExport",
+    "InverseRun",
+    "InverseTest",
+    "LearningTable",
+    "LeftOut",
+    "LoadSummary",
+    "LowPass",
+    "Median",
+    "ModelSummary",
+    "OutcomeCounts",
+    "Preparation",
+    "RateDependence",
+    "Ratio",
+    "RecordingSummary",
+    "Repairs",
+    "Sampling",
+    "SavedState",
+    "ScoreTable",
+    "SensorLag",
+    "SeriesSummary",
+    "Smoothed",
+    "Snapshot",
+    "Spikes",
+    "ThermalBody",
+    "TraceTable",
+    "Uncertain",
+    "Validation",
+]
+
+_Array = NDArray[np.float64]
+#: For type checkers what may be None, but is not where it is used as a rule: they do not ask for a check.
+_MaybeNone: TypeAlias = Any
+
+
+class _Result:
+    """What the dataclasses share."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(_same(getattr(self, name), getattr(other, name)) for name in _names(self))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        fields = (f"{name}={_short(getattr(self, name))}" for name in _names(self))
+        return f"{type(self).__name__}({', '.join(fields)})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as a dictionary, nested ones too."""
+        return dataclasses.asdict(self)  # type: ignore[call-overload, no-any-return]
+
+
+def _names(result: _Result) -> list[str]:
+    return [field.name for field in dataclasses.fields(result)]  # type: ignore[arg-type]
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        numbers = getattr(one, "dtype", None) == np.float64
+        return bool(np.array_equal(one, other, equal_nan=numbers))
+    return one is other or bool(one == other) or (one != one and other != other)
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, np.ndarray) and value.size > 6:
+        return f"<array of {value.dtype}, shape {value.shape}>"
+    return repr(value)
+
+
+_HINTS: dict[type, dict[str, Any]] = {}
+
+
+def _hints(cls: type) -> dict[str, Any]:
+    """The types of the fields. They are worked out once: that takes longer than the rest."""
+    if cls not in _HINTS:
+        _HINTS[cls] = typing.get_type_hints(cls)
+    return _HINTS[cls]
+
+
+def _make(cls: Any, data: dict[str, Any]) -> Any:
+    """A dataclass from plain data. Entries that it does not know go to its field `other`."""
+    hints = _hints(cls)
+    fields = {name: _convert(hints[name], value) for name, value in data.items() if name in hints}
+    unknown = {name: value for name, value in data.items() if name not in hints}
+    if unknown:
+        fields["other"] = unknown  # a TypeError where there is no such field
+    return cls(**fields)
+
+
+def _convert(hint: Any, value: Any) -> Any:
+    """`value` with lists made tuples and dictionaries made dataclasses where `hint` says so."""
+    origin, arguments = typing.get_origin(hint), typing.get_args(hint)
+    if value is None:
+        return None
+    if origin in (types.UnionType, typing.Union):
+        return _convert(next(part for part in arguments if part is not type(None)), value)
+    if origin is tuple:
+        variable = arguments[-1] is Ellipsis
+        parts = [arguments[0]] * len(value) if variable else arguments
+        return tuple(_convert(part, entry) for part, entry in zip(parts, value, strict=True))
+    if dataclasses.is_dataclass(hint):
+        return _make(hint, value) if isinstance(value, dict) else value
+    return value
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Errors(_Result):
+    """How far a modelled series is from a measured one.
+
+    Attributes
+    ----------
+    rmse : float
+        Root mean squared difference, in the unit of the series.
+    max_abs : float
+        Largest absolute difference, in the unit of the series.
+    nrmse_percent : float or None
+        `rmse` in percent of the measured range of the whole series; None where that range is zero.
+    samples : int
+        Number of samples compared.
+    """
+
+    rmse: float
+    max_abs: float
+    nrmse_percent: float | _MaybeNone
+    samples: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Candidate(_Result):
+    """The cross-validation error of one number of levels and one smoothness.
+
+    Attributes
+    ----------
+    levels : int
+        Number of levels.
+    smooth : float
+        Strength of the smoothness.
+    rmse : float
+        Root mean squared error over all samples, each left out once, in the output's unit.
+    """
+
+    levels: int
+    smooth: float
+    rmse: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Validation(_Result):
+    """The cross-validation that chose levels or smoothness.
+
+    Attributes
+    ----------
+    folds : int
+        Number of groups of branches, each left out once.
+    whole_branches : bool
+        Whether whole branches were left out. With fewer than six branches, parts of them are.
+    rmse : float
+        Error of the chosen candidate on what was left out, in the output's unit.
+    nrmse_percent : float
+        The same in percent of the measured range.
+    scores : tuple of Candidate
+        All candidates.
+    """
+
+    folds: int
+    whole_branches: bool
+    rmse: float
+    nrmse_percent: float
+    scores: tuple[Candidate, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FitSummary(_Result):
+    """How a model was identified: `Model.fit`.
+
+    Attributes
+    ----------
+    solver : {'nnls', 'ols'}
+        How the weights were found.
+    smooth : float
+        Strength of the smoothness.
+    start : {'off', 'on', 'unknown'}
+        State of the operators before each recording.
+    open_at_start : int
+        Number of operators whose state the first sample of a recording does not determine.
+    samples : int
+        Number of samples fitted.
+    rmse : float
+        Root mean squared error over them, in the output's unit.
+    max_abs : float
+        Largest absolute error, in the output's unit.
+    nrmse_percent : float
+        `rmse` in percent of the measured range.
+    weights_not_zero : int
+        Number of weights that are not zero.
+    simulated : bool
+        Whether the recordings came from a simulation.
+    file : str or None
+        The file fitted, the first of several; None for arrays.
+    sha256 : str or None
+        Checksum of its bytes.
+    other_files : tuple of str
+        The other files fitted.
+    validation : Validation or None
+        The cross-validation; None where nothing was 'auto'.
+    other : dict
+        Further entries of the model file.
+    """
+
+    solver: Literal["nnls", "ols"]
+    smooth: float
+    start: Literal["off", "on", "unknown"]
+    open_at_start: int
+    samples: int
+    rmse: float
+    max_abs: float
+    nrmse_percent: float
+    weights_not_zero: int
+    simulated: bool
+    file: str | None = None
+    sha256: str | None = None
+    other_files: tuple[str, ...] = ()
+    validation: Validation | None = None
+    other: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+    def _repr_html_(self) -> str:
+        from . import _html
+
+        return _html.fit(self)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Confidence(_Result):
+    """How well the data determine the weights: `Model.confidence`.
+
+    Attributes
+    ----------
+    levels : ndarray, shape (K,)
+        Levels of the plane, in the input's unit.
+    standard_error : ndarray, shape (K, K)
+        Standard error of each weight, in the output's unit; NaN below the diagonal.
+    offset_error : float
+        Standard error of the offset, in the output's unit.
+    excitation : ndarray, shape (K, K)
+        What the input says about each operator, 0 to 3, as `pyhysteron.excitation` returns it.
+    rank : int
+        Number of combinations of weights that the data determine.
+    unknowns : int
+        Number of weights, and of initial states where these are unknown.
+    condition : float
+        Ratio of the best to the worst determined combination.
+    noise : float
+        Standard deviation of the residuals, in the output's unit.
+    branches : int
+        Branches of the input.
+    replicates : int
+        Replicates of the bootstrap.
+    """
+
+    levels: _Array
+    standard_error: _Array
+    offset_error: float
+    excitation: _Array
+    rank: int
+    unknowns: int
+    condition: float
+    noise: float
+    branches: int
+    replicates: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ThermalBody(_Result):
+    """A thermal body of first order in front of the operators: `Model.thermal`.
+
+    Attributes
+    ----------
+    gain : float
+        Temperature at rest for a drive of 1.
+    tau_heating : float
+        Time constant of heating, s.
+    tau_cooling : float
+        Time constant of cooling, s.
+    """
+
+    gain: float
+    tau_heating: float
+    tau_cooling: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadSummary(_Result):
+    """The load that the weights of a model depend on.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    unit : str or None
+        Its unit.
+    min : float
+        Smallest load of the fit.
+    max : float
+        Largest load of the fit.
+    order : int
+        Order of the weights as a function of the load.
+    """
+
+    name: str
+    unit: str | None
+    min: float
+    max: float
+    order: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Uncertain(_Result):
+    """A weight with a large standard error.
+
+    Attributes
+    ----------
+    i : int
+        Level of α, from 1.
+    j : int
+        Level of β, from `i`.
+    weight : float
+        The weight ``μ_ij``, in the output's unit.
+    standard_error : float
+        Its standard error, in the output's unit.
+    """
+
+    i: int
+    j: int
+    weight: float
+    standard_error: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConfidenceSummary(_Result):
+    """`Confidence` in short.
+
+    Attributes
+    ----------
+    excitation : dict of int
+        Number of operators in each class: 'never', 'once', 'ambiguous', 'determined'.
+    rank : int
+        Number of combinations of weights that the data determine.
+    unknowns : int
+        Number of weights, and of initial states where these are unknown.
+    condition : float or None
+        Ratio of the best to the worst determined combination; None where it is infinite.
+    noise : float
+        Standard deviation of the residuals, in the output's unit.
+    replicates : int
+        Replicates of the bootstrap.
+    offset_error : float
+        Standard error of the offset, in the output's unit.
+    least_certain : tuple of Uncertain
+        The weights with the largest standard errors, the largest first.
+    """
+
+    excitation: dict[str, int]
+    rank: int
+    unknowns: int
+    condition: float | None
+    noise: float
+    replicates: int
+    offset_error: float
+    least_certain: tuple[Uncertain, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelSummary(_Result):
+    """A model in short: `Model.summary`.
+
+    Attributes
+    ----------
+    levels : int
+        Levels of the plane.
+    plane : tuple of float
+        Lowest and highest level, in the input's unit.
+    step : float
+        Distance between levels, in the input's unit.
+    operators : int
+        Number of operators.
+    weights_not_zero : int
+        Number of weights that are not zero.
+    weights_below_zero : int
+        Number of weights below zero. With any, there is no inverse.
+    output : tuple of float
+        Outputs with every operator off and with every operator on.
+    widest_loop : float
+        Largest difference between the falling and the rising major branch, in the output's unit.
+    widest_loop_at : float
+        The input there.
+    load : LoadSummary or None
+        The load that the weights depend on.
+    confidence : ConfidenceSummary or None
+        None for a model that was fitted without bootstrap.
+    """
+
+    levels: int
+    plane: tuple[float, float]
+    step: float
+    operators: int
+    weights_not_zero: int
+    weights_below_zero: int
+    output: tuple[float, float]
+    widest_loop: float
+    widest_loop_at: float
+    load: LoadSummary | None
+    confidence: ConfidenceSummary | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BandTest(_Result):
+    """The 95 % band over a recording.
+
+    Attributes
+    ----------
+    lower : ndarray, shape (n,)
+        Lower end, in the output's unit.
+    upper : ndarray, shape (n,)
+        Upper end, in the output's unit.
+    coverage_percent : float
+        Share of the measured samples inside, in percent.
+    """
+
+    lower: _Array
+    upper: _Array
+    coverage_percent: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class InverseRun(_Result):
+    """The inverse over the measured output, with one policy.
+
+    Attributes
+    ----------
+    input_model : ndarray, shape (n,)
+        Modelled input, in the input's unit.
+    all : Errors
+        Over all samples.
+    moving : Errors or None
+        Over the samples where the output moves; None where it never does.
+    dead_band : Errors or None
+        Over the samples in the dead band; None where there are none.
+    out_of_reach : int
+        Number of targets that the model cannot reach.
+    """
+
+    input_model: _Array
+    all: Errors
+    moving: Errors | _MaybeNone
+    dead_band: Errors | _MaybeNone
+    out_of_reach: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class InverseTest(_Result):
+    """The inverse test on a recording.
+
+    Attributes
+    ----------
+    moving : ndarray of bool, shape (n,)
+        Whether the measured output moves; False in the dead band.
+    hold : InverseRun
+        With the policy 'hold'.
+    anticipate : InverseRun
+        With the policy 'anticipate'.
+    """
+
+    moving: NDArray[np.bool_]
+    hold: InverseRun
+    anticipate: InverseRun
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Evaluation(_Result):
+    """Forward and inverse tests on a recording: `Model.evaluate`.
+
+    Attributes
+    ----------
+    output_model : ndarray, shape (n,)
+        Modelled output, in the output's unit.
+    forward : Errors
+        Of the modelled output.
+    clipped : int
+        Number of inputs outside the plane.
+    band : BandTest or None
+        The 95 % band; None for a model without confidence.
+    inverse : InverseTest or None
+        The inverse test; None where the model has no inverse.
+    inverse_refused : str or None
+        Why there is no inverse test.
+    """
+
+    output_model: _Array
+    forward: Errors
+    clipped: int
+    band: BandTest | _MaybeNone
+    inverse: InverseTest | _MaybeNone
+    inverse_refused: str | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LeftOut(_Result):
+    """The error on branches that were left out: `left_out`.
+
+    Attributes
+    ----------
+    predicted : ndarray, shape (n,)
+        Output at each sample, from the fit that did not see it, in the output's unit.
+    fold : ndarray of int64, shape (n,)
+        The group of branches that the sample was left out with.
+    nrmse_percent : float
+        Error on what was left out, in percent of the measured range.
+    training_nrmse_percent : float
+        Error over the samples fitted, in percent of the measured range.
+    branches : int
+        Number of branches of the input.
+    chosen : tuple of (int, float)
+        Levels and smoothness of each fold.
+    """
+
+    predicted: _Array
+    fold: NDArray[np.int64]
+    nrmse_percent: float
+    training_nrmse_percent: float
+    branches: int
+    chosen: tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SeriesSummary(_Result):
+    """One series of a recording.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    unit : str or None
+        Its unit.
+    min : float
+        Smallest value.
+    max : float
+        Largest value.
+    reversals : int
+        Reversals larger than 1 % of its range.
+    reversals_of_any_size : int
+        All reversals. Many more than `reversals` mean noise.
+    """
+
+    name: str
+    unit: str | None
+    min: float
+    max: float
+    reversals: int
+    reversals_of_any_size: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sampling(_Result):
+    """How a recording was sampled.
+
+    Attributes
+    ----------
+    start : float
+        Time of the first sample, s.
+    end : float
+        Time of the last sample, s.
+    median_step : float
+        Median time between samples, s.
+    longest_step : float
+        Longest time between samples, s.
+    longest_step_before_sample : int
+        The sample at its end, counted from 1.
+    gaps : int
+        Number of steps of more than three times the median.
+    repeated : int
+        Number of samples at the time of the one before.
+    """
+
+    start: float
+    end: float
+    median_step: float
+    longest_step: float
+    longest_step_before_sample: int
+    gaps: int
+    repeated: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordingSummary(_Result):
+    """A recording in short: `Recording.summary`.
+
+    Attributes
+    ----------
+    samples : int
+        Number of samples.
+    input : SeriesSummary
+        The input.
+    output : SeriesSummary
+        The output.
+    time : Sampling or None
+        The sampling; None without time.
+    levels : int
+        Levels of the plane that `excited` is counted on.
+    plane : tuple of float
+        Its lowest and highest level, in the input's unit.
+    operators : int
+        Number of operators of that plane.
+    excited : int
+        Number of operators that the input moves. Nothing can be learned of the others.
+    """
+
+    samples: int
+    input: SeriesSummary
+    output: SeriesSummary
+    time: Sampling | None
+    levels: int
+    plane: tuple[float, float]
+    operators: int
+    excited: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Repairs(_Result):
+    """Repaired samples of one series.
+
+    Attributes
+    ----------
+    signs : int
+        Number of samples whose sign was restored.
+    spikes : int
+        Number of samples replaced by the line between their neighbours.
+    first : tuple of int
+        The first ten of both, counted from 1 in the original recording.
+    """
+
+    signs: int
+    spikes: int
+    first: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Spikes(_Result):
+    """Lost signs and isolated spikes.
+
+    Attributes
+    ----------
+    deviations : float
+        Median absolute deviations that make a spike.
+    input : Repairs
+        Of the input.
+    output : Repairs
+        Of the output.
+    """
+
+    deviations: float
+    input: Repairs
+    output: Repairs
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Smoothed(_Result):
+    """The low-pass of one series.
+
+    Attributes
+    ----------
+    cutoff : float
+        Where its gain is ½: Hz, or cycles per sample without time.
+    removed : float
+        Root mean square of what it removed, in the unit of the series.
+    """
+
+    cutoff: float
+    removed: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LowPass(_Result):
+    """The zero-phase low-pass.
+
+    Attributes
+    ----------
+    input : Smoothed or None
+        Of the input; None where there was too little noise.
+    output : Smoothed or None
+        Of the output.
+    in_hertz : bool
+        Whether the cut-offs are in Hz; otherwise they are in cycles per sample.
+    """
+
+    input: Smoothed | None
+    output: Smoothed | None
+    in_hertz: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SensorLag(_Result):
+    """The lag of the input's sensor.
+
+    Attributes
+    ----------
+    undone : float or None
+        Time constant that was undone, s; None where none was worth undoing.
+    estimate : float or None
+        Time constant with which a static model fits best, s.
+    rmse_before : float or None
+        Error of the static model before, in the output's unit.
+    rmse_after : float or None
+        Error with the estimated lag undone, in the output's unit.
+    """
+
+    undone: float | None
+    estimate: float | None
+    rmse_before: float | None
+    rmse_after: float | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeadBand(_Result):
+    """The dead band for reversals of the input.
+
+    Attributes
+    ----------
+    size : float
+        Reversals up to this size are noise, in the input's unit.
+    false_reversals : int
+        Number of reversals removed.
+    samples_changed : int
+        Number of samples changed.
+    largest_change : float
+        Largest change of a sample, in the input's unit.
+    """
+
+    size: float
+    false_reversals: int
+    samples_changed: int
+    largest_change: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RateDependence(_Result):
+    """How much the output depends on the rate of the input.
+
+    Attributes
+    ----------
+    percent : float
+        Root mean square of what rate alone explains, in percent of the output's range.
+    r2_time : float
+        R² of the static model's residuals, explained by lags in time.
+    r2_path : float
+        The same with the path of the input instead of time.
+    time_constant : float
+        The time constant that explains most, s.
+    nrmse_percent : float
+        Error of the static model (20 levels), in percent of the output's range.
+    """
+
+    percent: float
+    r2_time: float
+    r2_path: float
+    time_constant: float
+    nrmse_percent: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Preparation(_Result):
+    """What `prepare` did. A step that was off, or not needed, is None.
+
+    Attributes
+    ----------
+    samples_before : int
+        Samples of the original recording.
+    samples : int
+        Samples of the result.
+    input_noise : float
+        Standard deviation of the input's noise, in its unit.
+    output_noise : float
+        Standard deviation of the output's noise, in its unit.
+    spikes : Spikes or None
+        Lost signs and isolated spikes.
+    resampled : float or None
+        The time step, s.
+    low_pass : LowPass or None
+        The low-pass.
+    lag : SensorLag or None
+        The sensor's lag.
+    dead_band : DeadBand or None
+        The dead band for reversals of the input.
+    rate : RateDependence or None
+        How much the output depends on the rate of the input; None without time.
+    rate_dependent : bool or None
+        Whether that is more than a static model can follow.
+    """
+
+    samples_before: int
+    samples: int
+    input_noise: float
+    output_noise: float
+    spikes: Spikes | _MaybeNone
+    resampled: float | None
+    low_pass: LowPass | _MaybeNone
+    lag: SensorLag | _MaybeNone
+    dead_band: DeadBand | _MaybeNone
+    rate: RateDependence | _MaybeNone
+    rate_dependent: bool | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Compared(_Result):
+    """Errors of the model that learned beside those of the fixed model.
+
+    Attributes
+    ----------
+    adapting : Errors
+        Of the model that learned, before it learned from the samples compared.
+    fixed : Errors
+        Of the model as it was.
+    """
+
+    adapting: Errors
+    fixed: Errors
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutcomeCounts(_Result):
+    """How often each outcome of `Learning` was.
+
+    Attributes
+    ----------
+    learned : int
+        Samples learned from.
+    waiting : int
+        Errors within the dead zone, and unfinished increments.
+    at_rest : int
+        Samples at which the input did not move.
+    rolled_back : int
+        Times that the weights returned to the last good ones.
+    rejected : int
+        Readings rejected.
+    outside : int
+        Inputs outside the plane; they are counted among the others too.
+    """
+
+    learned: int
+    waiting: int
+    at_rest: int
+    rolled_back: int
+    rejected: int
+    outside: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drift(_Result):
+    """How far a model moved while it learned.
+
+    Attributes
+    ----------
+    weights : tuple of float
+        Sum of the weights before and after, in the output's unit.
+    offset : tuple of float
+        Offset before and after, in the output's unit.
+    moved : float or None
+        Sum of the absolute changes over the sum before; None where that sum is zero.
+    """
+
+    weights: tuple[float, float]
+    offset: tuple[float, float]
+    moved: float | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AdaptedComparison(_Result):
+    """Errors with and without learning: `Adapted.comparison`.
+
+    Attributes
+    ----------
+    whole : Compared
+        Over the whole recording.
+    thirds : tuple of Compared
+        Over each third.
+    late : Compared or None
+        Over the last third, without readings that were rejected.
+    worse : bool
+        Whether the model that learned ended worse than the fixed one.
+    probation : int
+        Samples at the end that the model did not take over, since no later samples confirm them.
+    again : Errors
+        Of the last weights, over the whole recording.
+    counts : OutcomeCounts
+        How often each outcome was.
+    drift : Drift
+        How far weights and offset moved.
+    """
+
+    whole: Compared
+    thirds: tuple[Compared, ...]
+    late: Compared | None
+    worse: bool
+    probation: int
+    again: Errors
+    counts: OutcomeCounts
+    drift: Drift
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Snapshot(_Result):
+    """The weights of a controller that adapts: an entry of `control.Trace.snapshots`.
+
+    Attributes
+    ----------
+    time : float
+        Time, s.
+    offset : float
+        Offset, in the output's unit.
+    weights : ndarray, shape (K, K)
+        Weights, in the output's unit; NaN below the diagonal.
+    """
+
+    time: float
+    offset: float
+    weights: _Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Median(_Result):
+    """Medians over the seeds, of one controller in one window. None where a value does not exist.
+
+    Attributes
+    ----------
+    window : str
+        The window.
+    controller : str
+        The controller, in words.
+    name : str
+        Its name in `Comparison.controllers`.
+    rmse : float or None
+        Root mean square of output less reference, in the output's unit.
+    max_abs : float or None
+        Its largest value, in the output's unit.
+    prediction_rmse : float or None
+        Root mean square of the model's output, before it learned, less the output.
+    frozen_rmse : float or None
+        The same without learning in the window.
+    lag_s : float or None
+        Lag after reversals of the reference, s.
+    drive_travel : float or None
+        Mean change of the drive from sample to sample, as a share of its range.
+    saturated : float or None
+        Share of samples with the drive at a limit.
+    faults : float or None
+        Share of samples without a valid reading.
+    """
+
+    window: str
+    controller: str
+    name: str
+    rmse: float | None
+    max_abs: float | None
+    prediction_rmse: float | None
+    frozen_rmse: float | None
+    lag_s: float | None
+    drive_travel: float | None
+    saturated: float | None
+    faults: float | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ratio(_Result):
+    """A controller beside the one that it has to beat: medians over the seeds.
+
+    Attributes
+    ----------
+    window : str
+        The window.
+    controller : str
+        The controller, in words.
+    name : str
+        Its name in `Comparison.controllers`.
+    compared_with : str
+        The other controller.
+    rmse : float or None
+        Ratio of the tracking errors.
+    prediction_rmse : float or None
+        Ratio of the models' errors; None where one of the controllers has no model.
+    """
+
+    window: str
+    controller: str
+    name: str
+    compared_with: str
+    rmse: float | None
+    prediction_rmse: float | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CExport(_Result):
+    """What `Model.export_c` wrote.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        The files.
+    name : str
+        The model's name in C.
+    inverse : bool
+        Whether there is an inverse.
+    flash_bytes : int
+        Constants, bytes.
+    ram_bytes : int
+        Memory of each state, bytes.
+    step_loop : int
+        Loop iterations of one step at most.
+    inverse_halvings : int
+        Halvings of one inverse step at most.
+    """
+
+    files: tuple[Path, ...]
+    name: str
+    inverse: bool
+    flash_bytes: int
+    ram_bytes: int
+    step_loop: int
+    inverse_halvings: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FmuExport(_Result):
+    """What `Model.export_fmu` wrote.
+
+    Attributes
+    ----------
+    name : str
+        The block's name.
+    token : str
+        The token that identifies the model in the FMU.
+    bytes : int
+        Size of the file.
+    inputs : tuple of str
+        Names of the inputs.
+    outputs : tuple of str
+        Names of the outputs.
+    parameters : tuple of str
+        Names of the parameters.
+    """
+
+    name: str
+    token: str
+    bytes: int
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    parameters: tuple[str, ...]
+
+
+class SavedState(TypedDict):
+    """A state as plain data: `State.save`, `Model.restore`.
+
+    Attributes
+    ----------
+    turning_points : ndarray, shape (m,)
+        Turning points as positions in ``[0, K]``.
+    input : float
+        The last input, in its unit.
+    """
+
+    turning_points: _Array
+    input: float
+
+
+class _At(TypedDict):
+    at_s: float
+
+
+class Event(_At, total=False):
+    """What happens to a simulated plant in `control.Controller.run`. Only 'at_s' is needed.
+
+    Attributes
+    ----------
+    at_s : float
+        When, s.
+    load_n : float
+        Load, N.
+    room_degc : float
+        Room temperature, °C.
+    predeformation_mm : float
+        Pre-deformation, mm.
+    stuck : bool
+        Whether the output's sensor stands still.
+    lost : bool
+        Whether the output's sensor reads nothing.
+    """
+
+    load_n: float
+    room_degc: float
+    predeformation_mm: float
+    stuck: bool
+    lost: bool
+
+
+class LearningTable(TypedDict):
+    """`Adaptive.run` as a table: arrays of shape (n,).
+
+    Attributes
+    ----------
+    output : ndarray
+        Output expected before learning, in its unit.
+    error : ndarray
+        Measured less expected, in the output's unit.
+    outcome : ndarray of str
+        As in `Learning`.
+    clipped : ndarray of int8
+        -1 or 1 where the input lay below or above the plane, else 0.
+    """
+
+    output: _Array
+    error: _Array
+    outcome: NDArray[np.str_]
+    clipped: NDArray[np.int8]
+
+
+class AdaptedTable(TypedDict):
+    """`Adapted.table`: arrays of shape (n,).
+
+    Attributes
+    ----------
+    input : ndarray
+        Input, in its unit.
+    output : ndarray
+        Measured output, in its unit.
+    output_model : ndarray
+        Output expected before learning, in its unit.
+    error : ndarray
+        Measured less expected, in the output's unit.
+    outcome : ndarray of str
+        As in `Learning`.
+    """
+
+    input: _Array
+    output: _Array
+    output_model: _Array
+    error: _Array
+    outcome: NDArray[np.str_]
+
+
+class ScoreTable(TypedDict):
+    """`Comparison.scores`: a row for each controller, seed and window. NaN where a value does not exist.
+
+    Attributes
+    ----------
+    controller : list of str
+        Name of the controller.
+    window : list of str
+        The window.
+    seed : ndarray of int64
+        The seed, from 1.
+    from_s : ndarray
+        Begin of the window, s.
+    to_s : ndarray
+        End of the window, s.
+    rmse : ndarray
+        As in `Median`, as are the following.
+    max_abs : ndarray
+        As in `Median`.
+    prediction_rmse : ndarray
+        As in `Median`.
+    frozen_rmse : ndarray
+        As in `Median`.
+    lag_s : ndarray
+        As in `Median`.
+    drive_travel : ndarray
+        As in `Median`.
+    saturated : ndarray
+        As in `Median`.
+    faults : ndarray
+        As in `Median`.
+    """
+
+    controller: list[str]
+    window: list[str]
+    seed: NDArray[np.int64]
+    from_s: _Array
+    to_s: _Array
+    rmse: _Array
+    max_abs: _Array
+    prediction_rmse: _Array
+    frozen_rmse: _Array
+    lag_s: _Array
+    drive_travel: _Array
+    saturated: _Array
+    faults: _Array
+
+
+class TraceTable(TypedDict):
+    """`control.Trace.to_dict`: arrays of shape (n,), with the meaning of the attributes of `control.Trace`.
+
+    Attributes
+    ----------
+    time : ndarray
+        Time, s.
+    reference : ndarray
+        In the output's unit.
+    output : ndarray
+        In its unit.
+    measured : ndarray
+        In the output's unit.
+    input : ndarray
+        In its unit.
+    command : ndarray
+        In the input's unit.
+    drive : ndarray
+        In its unit.
+    prediction : ndarray
+        In the output's unit.
+    saturated : ndarray of bool
+        As in `control.Trace`.
+    out_of_reach : ndarray of bool
+        As in `control.Trace`.
+    sensor_fault : ndarray of bool
+        As in `control.Trace`.
+    adapted : ndarray of bool
+        As in `control.Trace`.
+    rejected : ndarray of bool
+        As in `control.Trace`.
+    """
+
+    time: _Array
+    reference: _Array
+    output: _Array
+    measured: _Array
+    input: _Array
+    command: _Array
+    drive: _Array
+    prediction: _Array
+    saturated: NDArray[np.bool_]
+    out_of_reach: NDArray[np.bool_]
+    sensor_fault: NDArray[np.bool_]
+    adapted: NDArray[np.bool_]
+    rejected: NDArray[np.bool_]
