@@ -415,7 +415,7 @@ typedef struct HysteronModelInfo {
   /**
    * Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
    */
-  double noise_band;
+  double usual_tolerance;
 } HysteronModelInfo;
 
 #ifdef __cplusplus
@@ -754,11 +754,11 @@ int32_t hysteron_inverse_run(uint64_t state,
 
 /**
  * Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
- * the series never moves. Reversals of up to `band` are noise.
+ * the series never moves. Reversals of up to `tolerance` are noise.
  */
 int32_t hysteron_headings(const double *target,
                           size_t count,
-                          double band,
+                          double tolerance,
                           int32_t *heading);
 
 /**

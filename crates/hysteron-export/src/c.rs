@@ -154,7 +154,7 @@ pub fn c<'a>(
     options: &COptions<'_>,
 ) -> Result<CExport> {
     let target = target.into();
-    crate::refusal::check(model)?;
+    model.plain()?;
     let name = name::choose(options.name, options.source)?;
     match options.real {
         CReal::Float => write::<f32>(model, target, options, name),

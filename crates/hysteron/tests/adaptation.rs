@@ -170,7 +170,7 @@ fn a_load_is_found_from_the_output_alone() {
     assert!(adapted.model.load.is_none());
     let refused = adapt(&model, &target, &by(Learner::LeastSquares), Progress::NONE).unwrap_err();
     assert!(
-        refused.to_string().contains("depends on a load"),
+        refused.to_string().contains("depends on the load"),
         "{refused}"
     );
     let far = AdaptOptions {

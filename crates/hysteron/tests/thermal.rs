@@ -47,6 +47,7 @@ fn recorded(samples: usize) -> (Recording, Vec<f64>) {
     let (time, input) = drive();
     let (time, input) = (time[..samples].to_vec(), input[..samples].to_vec());
     let clean = truth()
+        .operators()
         .simulate(&BODY.respond(&time, &input).unwrap())
         .unwrap();
     let range = clean.iter().copied().fold(f64::MIN, f64::max) - clean[0]; // it starts lowest
@@ -215,6 +216,7 @@ fn a_body_has_no_inverse_and_needs_time() {
     assert!(evaluation.inverse.unwrap_err().contains("not the drive"));
     // At 1 s the drive has only just come on; at 5 s the body has warmed for 4 s.
     let warmed = model
+        .operators()
         .simulate(&[0.0, 0.0, 1.0 - (-4.0 / 3.0_f64).exp()])
         .unwrap();
     assert_eq!(evaluation.output_model, warmed);
@@ -242,6 +244,7 @@ fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
     let mut model = truth();
     model.thermal = Some(body);
     let output = model
+        .operators()
         .simulate(&body.respond(&time, &input).unwrap())
         .unwrap();
     let mut recording = Recording::new(input, output).unwrap();

@@ -207,7 +207,7 @@ fn controller(
             model,
             scenario.adaptation.into(),
         )?)),
-        _ => Some(Compensator::fixed(&model)?),
+        _ => Some(Compensator::fixed(model)?),
     };
     Controller::new(Scheme {
         compensator,

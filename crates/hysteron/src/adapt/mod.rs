@@ -94,7 +94,7 @@ impl Adapted {
 /// Runs an estimator over a recording, which predicts each sample before it learns from it.
 ///
 /// ```
-/// use hysteron::{AdaptOptions, Model, Operator, Plane, Recording, Sign, adapt};
+/// use hysteron::{AdaptOptions, Model, Operator, Plane, Progress, Recording, Sign, adapt};
 /// let plane = Plane::new(20.0, 80.0, 5)?;
 /// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
 /// let input: Vec<f64> = (0..1000).map(|n| 50.0 - 40.0 * (0.05 * f64::from(n)).cos()).collect();

@@ -123,10 +123,11 @@ pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
     let levels = plane.levels();
     // The major branches bend only at the levels.
     let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
-    let rising = model.simulate(&ladder)?;
+    let operators = model.operators();
+    let rising = operators.simulate(&ladder)?;
     let mut falling = vec![0.0; ladder.len()];
     let down: Vec<f64> = ladder.iter().rev().copied().collect();
-    model.run(&mut model.saturated(), &down, &mut falling)?;
+    operators.run(&mut operators.saturated(), &down, &mut falling)?;
     falling.reverse();
     let gap = |k: &usize| (falling[*k] - rising[*k]).abs();
     let widest = (0..=levels)

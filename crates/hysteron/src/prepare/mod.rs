@@ -116,7 +116,7 @@ impl PrepareOptions {
 /// A clean recording comes through unchanged, a prepared one almost so. All series of the result have the same length, which only resampling changes.
 ///
 /// ```
-/// use hysteron::{PrepareOptions, Recording, prepare};
+/// use hysteron::{PrepareOptions, Progress, Recording, prepare};
 /// let mut input: Vec<f64> = (0..300).map(|n| 40.0 * (f64::from(n) * 0.05).sin()).collect();
 /// let output = input.iter().map(|t| 0.5 * t).collect();
 /// input[100] = 0.0; // a reading that was lost
