@@ -56,7 +56,8 @@ fn graph_of(source: &Path) -> Result<Graph, Box<dyn Error>> {
     }
     for path in sorted(source)? {
         let module = path.file_stem().unwrap_or_default().to_string_lossy();
-        if !["lib", "main", "bin"].contains(&&*module) {
+        let rust = path.is_dir() || path.extension().is_some_and(|extension| extension == "rs");
+        if rust && !["lib", "main", "bin"].contains(&&*module) {
             let imports = graph.entry(module.into_owned()).or_default();
             gather(&path, imports)?;
         }
@@ -124,6 +125,18 @@ impl<'ast> Visit<'ast> for Imports<'_> {
                 .for_each(|tree| self.visit_use_tree(tree)),
             _ => {}
         }
+    }
+
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        // What a macro is given need not be Rust; paths in it are spelt out by their tokens.
+        let tokens = call.tokens.to_string();
+        let after = tokens.split("crate :: ").skip(1);
+        let names = after.filter_map(|rest| {
+            rest.split(|c: char| !(c.is_alphanumeric() || c == '_'))
+                .next()
+        });
+        self.0.extend(names.map(str::to_owned));
+        visit::visit_macro(self, call);
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
