@@ -129,7 +129,8 @@ impl Error {
         }
     }
 
-    /// What is wrong, and what helps where that is known: for a surface that spells options in its own way.
+    /// What is wrong, and what helps where that is known: for a surface that spells options in its
+    /// own way.
     #[must_use]
     pub fn parts(&self) -> (&Error, Option<&Remedy>) {
         match self {

@@ -10,8 +10,8 @@ use crate::series::range;
 use crate::series::{NOISE, Turning};
 use hysteron_core::Solution;
 
-/// Around a turning point the output stands still as far as it is within this part of its range. Twice
-/// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
+/// Around a turning point the output stands still as far as it is within this part of its range.
+/// Twice the noise, for the inverse is back on the branch only when a reversal has got beyond that.
 const STILL: f64 = 2.0 * NOISE;
 
 /// Forward and inverse tests of a model on one recording.
@@ -34,7 +34,8 @@ pub struct Evaluation {
 pub struct InverseEvaluation {
     /// Whether the measured output moves at each sample (false: dead band).
     pub moving: Vec<bool>,
-    /// The chapter's policy, equation (14): the input rests while the target rests, or goes back by no more than [`NOISE`].
+    /// The chapter's policy, equation (14): the input rests while the target rests, or goes back by
+    /// no more than [`NOISE`].
     pub hold: InverseRun,
     /// The dead band is crossed as soon as the target is known to reverse.
     pub anticipate: InverseRun,
@@ -55,18 +56,20 @@ pub struct InverseRun {
     pub dead_band: Option<Errors>,
 }
 
-/// Runs `model` forward over the measured input, and its inverse over the measured output, from every operator off.
-/// A model that depends on a load follows that of the recording; its inverse is that of a fixed load, [`Model::at_load`].
+/// Runs `model` forward over the measured input, and its inverse over the measured output, from
+/// every operator off. A model that depends on a load follows that of the recording; its inverse is
+/// that of a fixed load, [`Model::at_load`].
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with; [`crate::Error::Thermal`] for one without time
-/// where the model has a thermal body.
+/// [`crate::Error::Recording`] for a recording that cannot be worked with;
+/// [`crate::Error::Thermal`] for one without time where the model has a thermal body.
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     evaluate_from(model, recording, Start::Off)
 }
 
-/// As [`evaluate`], from another start. With one that is unknown, the forward test takes the start that explains the
-/// recording best; the inverse sets out from all off or all on, whichever is nearer.
+/// As [`evaluate`], from another start. With one that is unknown, the forward test takes the start
+/// that explains the recording best; the inverse sets out from all off or all on, whichever is
+/// nearer.
 ///
 /// # Errors
 /// As [`evaluate`]; [`crate::Error::Fit`] for a start that is not off with a load.

@@ -1,12 +1,14 @@
-//! hysteron: from a recording of input and output to a calibrated hysteresis model and its exact inverse.
+//! hysteron: from a recording of input and output to a calibrated hysteresis model and its exact
+//! inverse.
 //!
 //! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
 //! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
-//! [`fit`] ([`prepare()`] it before where it is noisy), simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
-//! [`Model::inverse`], judge with [`evaluate`]. Where the plant changes, [`adapt()`] lets a model learn from a recording
-//! and [`Adaptive`] sample by sample; [`control`] puts models and inverses into loops, [`plant`] simulates devices to try them on,
-//! and [`track`](mod@track) compares controllers. *The chapter*, whose equations the docs number, is named in
-//! `hysteron-core`. The real-time core below, `hysteron-core`, runs without
+//! [`fit`] ([`prepare()`] it before where it is noisy), simulate with [`Model::simulate`] or step
+//! by step with [`Model::step`], compensate with [`Model::inverse`], judge with [`evaluate`]. Where
+//! the plant changes, [`adapt()`] lets a model learn from a recording and [`Adaptive`] sample by
+//! sample; [`control`] puts models and inverses into loops, [`plant`] simulates devices to try them
+//! on, and [`track`](mod@track) compares controllers. *The chapter*, whose equations the docs
+//! number, is named in `hysteron-core`. The real-time core below, `hysteron-core`, runs without
 //! allocation.
 #![forbid(unsafe_code)]
 

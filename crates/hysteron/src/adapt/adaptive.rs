@@ -52,8 +52,8 @@ impl Adaptive {
         Self::from_parts(model, core, estimator, Vec::new())
     }
 
-    /// Adapts the shares of `parts` (each `N` weights) and the offset; `shares` are those of the model. Far fewer unknowns than
-    /// weights, where the ways are known in which these can change.
+    /// Adapts the shares of `parts` (each `N` weights) and the offset; `shares` are those of the
+    /// model. Far fewer unknowns than weights, where the ways are known in which these can change.
     ///
     /// # Errors
     /// As [`Adaptive::new`].
@@ -109,8 +109,8 @@ impl Adaptive {
     /// [`Adaptive::step`] through samples, as many as the shorter series has.
     ///
     /// # Errors
-    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What `progress` returns; what was learned until
-    /// then stays.
+    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What
+    /// `progress` returns; what was learned until then stays.
     pub fn run(
         &mut self,
         input: &[f64],
@@ -146,8 +146,9 @@ impl Adaptive {
         self.sign().factor() * (self.core.output(&self.state) + self.estimator.offset())
     }
 
-    /// Finds the input that gives `target`, by the weights as they are now. The inverse moves there from where it stood: it has a
-    /// state of its own, as reference and plant are not in the same place.
+    /// Finds the input that gives `target`, by the weights as they are now. The inverse moves there
+    /// from where it stood: it has a state of its own, as reference and plant are not in the same
+    /// place.
     ///
     /// # Errors
     /// [`Error::Core`] for a target that is not finite; nothing is changed then.
@@ -157,13 +158,15 @@ impl Adaptive {
         invert(core, self.offline.sign(), offset, &mut self.wanted, target)
     }
 
-    /// Lets the inverse set out from where the measured input is. Turning points that were asked for by weights long changed
-    /// stay in its memory until they are wiped out; a loop may call this wherever its target turns.
+    /// Lets the inverse set out from where the measured input is. Turning points that were asked
+    /// for by weights long changed stay in its memory until they are wiped out; a loop may call
+    /// this wherever its target turns.
     pub fn align(&mut self) {
         self.wanted.clone_from(&self.state);
     }
 
-    /// As [`Adaptive::solve`], from a `state` of the caller's: one of this model, which may have had other weights since.
+    /// As [`Adaptive::solve`], from a `state` of the caller's: one of this model, which may have
+    /// had other weights since.
     ///
     /// # Errors
     /// As [`Adaptive::solve`].
@@ -233,7 +236,8 @@ impl Adaptive {
         Ok(())
     }
 
-    /// Turns every operator on, as at the top of the plane, those of the inverse too; the weights stay.
+    /// Turns every operator on, as at the top of the plane, those of the inverse too; the weights
+    /// stay.
     ///
     /// # Errors
     /// None that a caller can cause.
@@ -254,7 +258,8 @@ impl Adaptive {
         self.estimator.keep();
     }
 
-    /// Goes back to the last good weights and offset: those last kept, or that stood a trial since ([`Adaptation::trial`]).
+    /// Goes back to the last good weights and offset: those last kept, or that stood a trial since
+    /// ([`Adaptation::trial`]).
     ///
     /// # Errors
     /// None that a caller can cause.

@@ -37,7 +37,8 @@ pub struct Adapted {
     pub counts: OutcomeCounts,
     /// Errors over the whole recording.
     pub whole: Compared,
-    /// Errors over its first, second and last third, by the number of samples; none of fewer than three samples.
+    /// Errors over its first, second and last third, by the number of samples; none of fewer than
+    /// three samples.
     pub thirds: Vec<Compared>,
     /// Errors over the last third without the readings refused: what [`Adapted::worse`] goes by.
     /// None where there are no such samples.
@@ -54,7 +55,8 @@ pub struct Adapted {
     pub options: Adaptation<f64>,
 }
 
-/// Errors of the model that learned, before it learned from the samples compared, beside those of the model left as it was.
+/// Errors of the model that learned, before it learned from the samples compared, beside those of
+/// the model left as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compared {
     /// Of the model that learned.
@@ -74,7 +76,8 @@ impl Compared {
 /// How far a model has gone from the one that it was.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drift {
-    /// Sum of the weights before and after: the stroke from all operators off to all on, of MKP once and of KP and relay twice.
+    /// Sum of the weights before and after: the stroke from all operators off to all on, of MKP
+    /// once and of KP and relay twice.
     pub weights: (f64, f64),
     /// Offset before and after.
     pub offset: (f64, f64),
@@ -106,9 +109,9 @@ impl Adapted {
 /// ```
 ///
 /// # Errors
-/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Fit`] for a model with a thermal body, for one that
-/// depends on a load with another learner than [`Learner::Drift`], and for options that are of no use; [`Error::Core`] for
-/// options out of range and negative weights.
+/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Fit`] for a model with
+/// a thermal body, for one that depends on a load with another learner than [`Learner::Drift`], and
+/// for options that are of no use; [`Error::Core`] for options out of range and negative weights.
 pub fn adapt(
     model: &Model,
     recording: &Recording,
@@ -182,7 +185,8 @@ fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
     }
 }
 
-/// Weights whose squares are no numbers leave errors that are none, and without any there is nothing to take shares of.
+/// Weights whose squares are no numbers leave errors that are none, and without any there is
+/// nothing to take shares of.
 fn refuse_unusable(model: &Model) -> Result<()> {
     let size: f64 = model.weights().iter().map(|mu| mu * mu).sum();
     match size.is_finite() && size > 0.0 {

@@ -16,8 +16,8 @@ const GAIN: f64 = 0.3;
 const SPAN: f64 = 1.0;
 /// Forgetting factor of least squares, for weights and for shares.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err more, and alike from sample to
-/// sample.
+/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err
+/// more, and alike from sample to sample.
 const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
 const OFFSET: f64 = 0.2;
@@ -38,14 +38,15 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one that errs least on measured recordings.
+    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one
+    /// that errs least on measured recordings.
     #[default]
     Drift,
 }
 
-/// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording. `Y` is the range of the
-/// recording's output or that of the model, whichever is larger; single readings far from all
-/// others are not of the recording's.
+/// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording.
+/// `Y` is the range of the recording's output or that of the model, whichever is larger; single
+/// readings far from all others are not of the recording's.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
@@ -105,15 +106,15 @@ impl AdaptOptions {
     /// The estimator's options for `model` on `recording`.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of range is refused
-    /// when an estimator is made.
+    /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of
+    /// range is refused when an estimator is made.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The estimator's options for `model` before anything was measured: `Y` is the model's range, and the output is taken to
-    /// have no noise.
+    /// The estimator's options for `model` before anything was measured: `Y` is the model's range,
+    /// and the output is taken to have no noise.
     ///
     /// # Errors
     /// As [`AdaptOptions::adaptation`].
@@ -121,7 +122,8 @@ impl AdaptOptions {
         self.resolved(model, 0.0, 0.0)
     }
 
-    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown start is off.
+    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
+    /// start is off.
     ///
     /// ```
     /// use hysteron::{AdaptOptions, Model, Operator, Plane, Sign};
@@ -239,10 +241,11 @@ fn usual_range(values: &[f64]) -> f64 {
     high - low
 }
 
-/// The variance of the sum of all weights, for a variance of one of each and the estimator's correlation between them.
+/// The variance of the sum of all weights, for a variance of one of each and the estimator's
+/// correlation between them.
 fn together(levels: usize, correlation: f64) -> f64 {
-    // Pairs of operators that are `along` and `across` apart: as many as places for one of them from which the other is
-    // on the triangle too.
+    // Pairs of operators that are `along` and `across` apart: as many as places for one of them
+    // from which the other is on the triangle too.
     let levels = levels as isize;
     let mut sum = 0.0;
     for along in -levels..=levels {

@@ -9,13 +9,15 @@ use hysteron_core::operator_index;
 /// Levels by which the weights are shifted along the diagonal of the plane.
 const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
 
-/// Sets of weights, and the share of each, that make up a model: what an estimator with few unknowns adapts.
+/// Sets of weights, and the share of each, that make up a model: what an estimator with few
+/// unknowns adapts.
 ///
-/// A model that depends on a load has its load parts. For any other one, the parts are the off-line weights shifted along the
-/// diagonal of the plane by −3, −1, 0, 1, 3 and 5 levels: a stress shifts all transformation temperatures alike (the relation of
-/// Clausius and Clapeyron), so that shares from zero on follow a larger stroke, a shift, and a transformation that is spread
-/// wider. An operator shifted beyond the plane is left out: above, it never switches, and below it is always on, as the offset is. One
-/// that would switch off below the plane does so at its lowest level.
+/// A model that depends on a load has its load parts. For any other one, the parts are the off-line
+/// weights shifted along the diagonal of the plane by −3, −1, 0, 1, 3 and 5 levels: a stress shifts
+/// all transformation temperatures alike (the relation of Clausius and Clapeyron), so that shares
+/// from zero on follow a larger stroke, a shift, and a transformation that is spread wider. An
+/// operator shifted beyond the plane is left out: above, it never switches, and below it is always
+/// on, as the offset is. One that would switch off below the plane does so at its lowest level.
 ///
 /// ```
 /// use hysteron::{DriftParts, Model, Operator, Plane, Sign};
@@ -36,7 +38,8 @@ pub struct DriftParts {
 }
 
 impl DriftParts {
-    /// The parts of `model`; one that depends on a load starts at `load`, or at the middle of its range.
+    /// The parts of `model`; one that depends on a load starts at `load`, or at the middle of its
+    /// range.
     ///
     /// # Errors
     /// [`crate::Error::Fit`] for a load outside the model's range, or of a model without one.

@@ -1,10 +1,13 @@
-//! The model in a loop: what it expects at the input that it is told of, and the input that it wants.
+//! The model in a loop: what it expects at the input that it is told of, and the input that it
+//! wants.
 //!
-//! These are two states of one model. The first follows the input as measured, for prediction and learning. The second
-//! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
-//! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
-//! But a turning point that was asked for by weights long changed stays in that memory until it is wiped out. So with weights that
-//! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
+//! These are two states of one model. The first follows the input as measured, for prediction and
+//! learning. The second follows the inputs that the inverse asked for, as in the chapter's
+//! compensator: were the inverse to set out from the measured input, each overshoot of the loop
+//! behind it would send it back across the dead band. But a turning point that was asked for by
+//! weights long changed stays in that memory until it is wiped out. So with weights that learn the
+//! inverse sets out again from the measured input wherever the target turns, when it has to cross
+//! the dead band anyway.
 
 use crate::adapt::Adaptive;
 use crate::error::Result;
@@ -12,8 +15,9 @@ use crate::model::{Model, OperatorState, Operators, Sign};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
-/// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
-/// inverse goes back across the dead band only for a difference of this many tolerances.
+/// Weights that learn move the output that they expect a little to and fro. While the target itself
+/// has not turned, the inverse goes back across the dead band only for a difference of this many
+/// tolerances.
 const NOT_TURNED: f64 = 8.0;
 
 /// Samples after a jump of the input from which nothing is learned.
@@ -101,8 +105,8 @@ impl Compensator {
         }
     }
 
-    /// The input that gives `target`, on the way from the last one asked for. Where the target goes next is for
-    /// *anticipate*; a target that goes back by up to the `tolerance` is not followed.
+    /// The input that gives `target`, on the way from the last one asked for. Where the target goes
+    /// next is for *anticipate*; a target that goes back by up to the `tolerance` is not followed.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite.
@@ -139,8 +143,8 @@ impl Compensator {
         }
     }
 
-    /// Lets the inverse set out from where the input was last seen. After a time without seeing it, the input may have been
-    /// anywhere, and what was asked for in the meantime was not done.
+    /// Lets the inverse set out from where the input was last seen. After a time without seeing it,
+    /// the input may have been anywhere, and what was asked for in the meantime was not done.
     pub(super) fn set_out_again(&mut self) {
         self.wanted = None;
     }

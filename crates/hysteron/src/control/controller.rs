@@ -1,4 +1,5 @@
-//! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
+//! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input
+//! inside.
 
 use super::pid::limited;
 use super::watch::{Sight, Watch};
@@ -23,7 +24,8 @@ pub struct Action {
     pub command: f64,
     /// The drive to write to the device.
     pub drive: f64,
-    /// The output that the model expected before it learned, at the input that was seen last; NaN without a model.
+    /// The output that the model expected before it learned, at the input that was seen last; NaN
+    /// without a model.
     pub prediction: f64,
     /// The readings as filtered; NaN where there is nothing new to be believed.
     pub filtered: Reading,
@@ -31,10 +33,12 @@ pub struct Action {
     pub status: LoopStatus,
 }
 
-/// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the drive.
+/// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the
+/// drive.
 ///
-/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and nothing is learned. Without news
-/// from the input's sensor the loop inside holds the drive for [`Scheme::stuck_s`] and then goes to the lowest one.
+/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and
+/// nothing is learned. Without news from the input's sensor the loop inside holds the drive for
+/// [`Scheme::stuck_s`] and then goes to the lowest one.
 ///
 /// ```
 /// use hysteron::control::{Controller, Device, Gains, Reading, Scheme, Reference};
@@ -78,7 +82,8 @@ pub struct Controller {
     held: (bool, bool),
     /// What the model expected when it last saw the input.
     prediction: f64,
-    /// Whether the input's sensor was taken as broken, so that it is not known how the input came to where it is.
+    /// Whether the input's sensor was taken as broken, so that it is not known how the input came
+    /// to where it is.
     lost: bool,
 }
 
@@ -103,8 +108,8 @@ impl Controller {
         })
     }
 
-    /// One sample: from what is wanted and what was read to what is to be written. The drive is finite and within its
-    /// limits whatever the readings are.
+    /// One sample: from what is wanted and what was read to what is to be written. The drive is
+    /// finite and within its limits whatever the readings are.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
@@ -128,7 +133,8 @@ impl Controller {
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings and step tests.
+    /// One sample that brings the input to `command`, whatever the output is: for recordings and
+    /// step tests.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
@@ -150,7 +156,8 @@ impl Controller {
         self.scheme.compensator.as_ref()
     }
 
-    /// Output and input. Where no sensor measures the input, it is the one that was asked for, but not for a loop around it.
+    /// Output and input. Where no sensor measures the input, it is the one that was asked for, but
+    /// not for a loop around it.
     fn read(&mut self, reading: Reading) -> (Sight, Option<Sight>) {
         let output = self.output.read(reading.output);
         let input = match (reading.input, self.scheme.inner) {

@@ -1,9 +1,11 @@
 //! Control loops on a hysteresis model and its inverse.
 //!
-//! A [`Controller`] is a [`Scheme`] in motion; it runs on whatever implements [`Device`], real or simulated, and [`run`] does so
-//! on a [`SimulatedPlant`]. Times are in seconds, inputs and outputs in the model's units.
+//! A [`Controller`] is a [`Scheme`] in motion; it runs on whatever implements [`Device`], real or
+//! simulated, and [`run`] does so on a [`SimulatedPlant`]. Times are in seconds, inputs and outputs
+//! in the model's units.
 //!
-//! An inverse in front of an actuator that it was identified from, and a PID that takes what is left:
+//! An inverse in front of an actuator that it was identified from, and a PID that takes what is
+//! left:
 //!
 //! ```
 //! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run};

@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Gains of a PID controller in its ideal form, `u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)`.
+/// Gains of a PID controller in its ideal form,
+/// `u = gain · (e + ∫e dt / integral_s + derivative_s · de/dt)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gains {
@@ -34,14 +35,15 @@ impl Gains {
     }
 }
 
-/// Filter of the derivative: its time constant is the derivative time over this (Åström & Hägglund 2006, section 3.3: 2 to 20).
+/// Filter of the derivative: its time constant is the derivative time over this (Åström & Hägglund
+/// 2006, section 3.3: 2 to 20).
 const DERIVATIVE_FILTER: f64 = 8.0;
 
 /// A PID controller in motion.
 ///
-/// It stays within limits by conditional integration: while the output stands at a limit, or the actuator behind it does, the
-/// integral does not grow any further in that direction (Åström & Hägglund 2006, section 3.5), so that it leaves the limit as
-/// soon as the error changes its sign.
+/// It stays within limits by conditional integration: while the output stands at a limit, or the
+/// actuator behind it does, the integral does not grow any further in that direction (Åström &
+/// Hägglund 2006, section 3.5), so that it leaves the limit as soon as the error changes its sign.
 ///
 /// ```
 /// use hysteron::control::{Gains, Pid};
@@ -74,8 +76,9 @@ impl Pid {
         }
     }
 
-    /// The output for `error` after `dt` s: `bias` and the three terms, within `limits` whatever the numbers are. `held` tells
-    /// whether the actuator behind stands at its lower and its upper limit.
+    /// The output for `error` after `dt` s: `bias` and the three terms, within `limits` whatever
+    /// the numbers are. `held` tells whether the actuator behind stands at its lower and its upper
+    /// limit.
     pub fn step(
         &mut self,
         error: f64,
@@ -96,7 +99,8 @@ impl Pid {
             }
             _ => 0.0,
         };
-        // Errors near the largest number overflow in the difference; the derivative starts again then.
+        // Errors near the largest number overflow in the difference; the derivative starts again
+        // then.
         self.last = (error - slope).is_finite().then_some((error, slope));
         let fixed = bias + gain * (error + derivative_s * slope);
         if integral_s > 0.0 {
@@ -115,15 +119,17 @@ impl Pid {
         out
     }
 
-    /// The output without a reading: what the terms came to stays, so that nothing jumps when the reading goes. When it is
-    /// back, the output moves by what the error has changed in between and no more. The derivative starts again.
+    /// The output without a reading: what the terms came to stays, so that nothing jumps when the
+    /// reading goes. When it is back, the output moves by what the error has changed in between and
+    /// no more. The derivative starts again.
     pub fn hold(&mut self, bias: f64, (low, high): (f64, f64)) -> f64 {
         self.last = None;
         limited(bias + self.correction, low, high)
     }
 }
 
-/// Like [`f64::clamp`], but without its panic for limits in the wrong order; NaN comes out as `low`.
+/// Like [`f64::clamp`], but without its panic for limits in the wrong order; NaN comes out as
+/// `low`.
 pub(super) fn limited(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)
 }

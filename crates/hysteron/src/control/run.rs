@@ -6,12 +6,14 @@ use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::Direction;
 
-/// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
+/// What happens in a run: the reference, and what acts on the plant. The run takes as many samples
+/// as the reference has.
 #[derive(Debug, Clone)]
 pub struct Course<'a> {
     /// The reference at each sample, in the output's unit.
     pub reference: &'a [f64],
-    /// Where it goes next at each sample ([`crate::headings`]), for *anticipate*; none where it is shorter than the reference.
+    /// Where it goes next at each sample ([`crate::headings`]), for *anticipate*; none where it is
+    /// shorter than the reference.
     pub headings: &'a [Option<Direction>],
     /// What happens before which sample, counted from 0, in order.
     pub events: &'a [(usize, Disturbance)],
@@ -20,8 +22,8 @@ pub struct Course<'a> {
 /// Runs `controller` on `plant`. The trace holds the plant's true output and input.
 ///
 /// # Errors
-/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite;
-/// what `progress` returns.
+/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for
+/// a reference that is not finite; what `progress` returns.
 pub fn run(
     plant: &mut dyn SimulatedPlant,
     controller: &mut Controller,

@@ -9,7 +9,8 @@ use crate::model::Policy;
 pub struct InnerLoop {
     /// Its gains: power for each degree.
     pub gains: Gains,
-    /// The drive is the square root of what the gains give: a current, whose heat goes with its square.
+    /// The drive is the square root of what the gains give: a current, whose heat goes with its
+    /// square.
     pub square_root: bool,
 }
 
@@ -22,7 +23,8 @@ pub struct Scheme {
     pub compensator: Option<Compensator>,
     /// What the inverse does where the target rests.
     pub policy: Policy,
-    /// Reversals of the target up to this size are not followed by the inverse, in the output's unit.
+    /// Reversals of the target up to this size are not followed by the inverse, in the output's
+    /// unit.
     pub tolerance: f64,
     /// Feedback of the output, added to the feedforward.
     pub pid: Option<Gains>,
@@ -36,9 +38,10 @@ pub struct Scheme {
     pub inner: Option<InnerLoop>,
     /// Time constant of the filter on both readings, s; 0 for none.
     pub filter_s: f64,
-    /// Time without news (readings missing, or the same to the last bit) after which a sensor is taken as broken, s; until then
-    /// the loop inside holds the drive. `None` where a sensor has no noise to tell a broken one from one at
-    /// rest: then equal readings are believed, and a missing one counts at once.
+    /// Time without news (readings missing, or the same to the last bit) after which a sensor is
+    /// taken as broken, s; until then the loop inside holds the drive. `None` where a sensor has no
+    /// noise to tell a broken one from one at rest: then equal readings are believed, and a missing
+    /// one counts at once.
     pub stuck_s: Option<f64>,
 }
 

@@ -49,7 +49,8 @@ pub struct Trace {
     pub command: Vec<f64>,
     /// The drive that was written to the device.
     pub drive: Vec<f64>,
-    /// The output that the controller's model expected before it learned from the reading; NaN for a controller without a model.
+    /// The output that the controller's model expected before it learned from the reading; NaN for
+    /// a controller without a model.
     pub prediction: Vec<f64>,
     /// What the loop had to say.
     pub status: Vec<LoopStatus>,
@@ -58,8 +59,9 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Adds the next of `count` samples: what was wanted, what was read and, of a simulated plant, what was true, and what the
-    /// controller did. Now and then also its weights, where these adapt.
+    /// Adds the next of `count` samples: what was wanted, what was read and, of a simulated plant,
+    /// what was true, and what the controller did. Now and then also its weights, where these
+    /// adapt.
     pub fn record(
         &mut self,
         count: usize,

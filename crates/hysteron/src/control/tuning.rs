@@ -12,7 +12,8 @@ const LEVEL: usize = 50;
 /// What tells an answer from the noise, in standard deviations.
 const ANSWER: f64 = 3.0;
 
-/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop
+/// oscillate.
 ///
 /// ```
 /// use hysteron::control::RelayTest;
@@ -41,7 +42,8 @@ pub struct RelayTest {
 }
 
 impl RelayTest {
-    /// A relay between two `commands`, which switches where the output is `hysteresis` beyond `middle`.
+    /// A relay between two `commands`, which switches where the output is `hysteresis` beyond
+    /// `middle`.
     ///
     /// # Errors
     /// [`Error::Control`] for commands that do not differ and for numbers that are not finite.
@@ -102,8 +104,8 @@ impl RelayTest {
         (self.all.0 <= self.all.1).then_some(self.all)
     }
 
-    /// The ultimate gain, by the describing function of a relay, and the period in samples, of the periods that count; none before
-    /// the test is done.
+    /// The ultimate gain, by the describing function of a relay, and the period in samples, of the
+    /// periods that count; none before the test is done.
     #[must_use]
     pub fn oscillation(&self) -> Option<(f64, f64)> {
         let counted = self.periods.get(SETTLED..=SETTLED + COUNTED)?;
@@ -120,8 +122,9 @@ impl RelayTest {
 }
 
 impl Gains {
-    /// Proportional and integral gain by Tyreus & Luyben 1992, from the ultimate gain and the period, s. The rule for three terms is
-    /// not used: with noisy sensors the derivative throws the drive from limit to limit.
+    /// Proportional and integral gain by Tyreus & Luyben 1992, from the ultimate gain and the
+    /// period, s. The rule for three terms is not used: with noisy sensors the derivative throws
+    /// the drive from limit to limit.
     #[must_use]
     pub fn from_oscillation(ultimate_gain: f64, period_s: f64) -> Self {
         Self {
@@ -131,9 +134,10 @@ impl Gains {
         }
     }
 
-    /// Gains by SIMC (Skogestad 2003) from the `output` of a step test: before the sample `begin` the command rests, from there on it is
-    /// larger by `step`. The output is taken as a first-order lag with a delay, from the times at which it has gone 28.3 % and 63.2 %
-    /// of its way. None where it does not answer by more than its noise.
+    /// Gains by SIMC (Skogestad 2003) from the `output` of a step test: before the sample `begin`
+    /// the command rests, from there on it is larger by `step`. The output is taken as a
+    /// first-order lag with a delay, from the times at which it has gone 28.3 % and 63.2 % of its
+    /// way. None where it does not answer by more than its noise.
     ///
     /// ```
     /// use hysteron::control::Gains;

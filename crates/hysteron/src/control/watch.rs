@@ -28,13 +28,14 @@ impl Sight {
 
 /// Filters a sensor's readings and tells when there is none to be believed.
 ///
-/// A repeated reading is held back at once, long before it is called stuck: until then the loop would integrate an error that
-/// is none and a model would learn from it.
+/// A repeated reading is held back at once, long before it is called stuck: until then the loop
+/// would integrate an error that is none and a model would learn from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Watch {
     interval_s: f64,
     filter_s: f64,
-    /// Samples without news that a sensor at work does not give; none where equal readings are believed.
+    /// Samples without news that a sensor at work does not give; none where equal readings are
+    /// believed.
     patience: Option<u32>,
     filtered: f64,
     last: f64,
@@ -43,7 +44,8 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// A filter with the time constant `filter_s`; without news for `stuck_s` the sensor is taken as broken.
+    /// A filter with the time constant `filter_s`; without news for `stuck_s` the sensor is taken
+    /// as broken.
     pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
         Self {
             interval_s,
@@ -72,7 +74,8 @@ impl Watch {
         }
     }
 
-    /// Filters a value that is beyond doubt. After a gap it counts for the whole time that has passed.
+    /// Filters a value that is beyond doubt. After a gap it counts for the whole time that has
+    /// passed.
     pub(super) fn filter(&mut self, value: f64) -> f64 {
         let passed = self.interval_s * (f64::from(self.gap) + 1.0);
         self.gap = 0;
@@ -96,7 +99,8 @@ mod tests {
     fn the_filter_is_that_of_a_first_order_body_whatever_is_lost() {
         let mut whole = Watch::new(0.1, 0.5, Some(1.0));
         let mut lossy = whole.clone();
-        // Of a constant after a start elsewhere both readings say the same, and the filter has come as far at the end.
+        // Of a constant after a start elsewhere both readings say the same, and the filter has come
+        // as far at the end.
         for n in 0..20 {
             let reading = if n == 0 {
                 0.0

@@ -6,12 +6,13 @@ use crate::error::{Error, Result};
 use crate::recording::Recording;
 
 impl Adapted {
-    /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
-    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`,
-    /// `frozen`, `rolled-back`, `rejected`).
+    /// Writes the recording as a table with the columns `output_model` (predicted before the sample
+    /// was learned from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`,
+    /// `at-rest`, `frozen`, `rolled-back`, `rejected`).
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
+    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far
+    /// as its length tells.
     pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
         if recording.len() != self.outcomes.len() {
             return Err(Error::Recording {

@@ -6,7 +6,8 @@ use crate::error::Result;
 use std::path::Path;
 
 impl Design {
-    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is replaced.
+    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is
+    /// replaced.
     ///
     /// # Errors
     /// [`Error::File`].

@@ -28,7 +28,8 @@ impl Model {
         })
     }
 
-    /// Writes this model's file, beside its place first. A path alone replaces whatever file is there.
+    /// Writes this model's file, beside its place first. A path alone replaces whatever file is
+    /// there.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -36,7 +37,8 @@ impl Model {
         Self::file(target)?.commit_with(self.to_json().as_bytes())
     }
 
-    /// Starts the file of a model that is not there yet: a place that cannot be is refused before the work.
+    /// Starts the file of a model that is not there yet: a place that cannot be is refused before
+    /// the work.
     ///
     /// # Errors
     /// [`Error::File`].

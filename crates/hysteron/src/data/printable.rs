@@ -5,8 +5,8 @@ use std::borrow::Cow;
 /// The text without what changes a terminal, or the order in which it is read: control characters
 /// but line feed and tab, and marks of direction, are written as `\u` and four hexadecimal digits.
 ///
-/// The result is valid within JSON too. What is written for programs, such as a CSV table, keeps its
-/// bytes.
+/// The result is valid within JSON too. What is written for programs, such as a CSV table, keeps
+/// its bytes.
 ///
 /// ```
 /// assert_eq!(hysteron::printable("a\u{1b}[31m\u{202e}b"), "a\\u001b[31m\\u202eb");

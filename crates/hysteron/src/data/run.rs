@@ -37,12 +37,14 @@ pub struct Simulate<'a> {
     pub band: Option<&'a Band>,
 }
 
-/// Copies `table` to `out`, which is ended, with a column `output_model`, the model's output, from every operator off;
-/// with a band, with `output_low` and `output_high` too. `progress` is told the bytes read.
+/// Copies `table` to `out`, which is ended, with a column `output_model`, the model's output, from
+/// every operator off; with a band, with `output_low` and `output_high` too. `progress` is told the
+/// bytes read.
 ///
 /// # Errors
-/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column; [`crate::Error::Thermal`] for a model with a
-/// thermal body without time, [`crate::Error::Fit`] for one that depends on a load without its column.
+/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column;
+/// [`crate::Error::Thermal`] for a model with a thermal body without time, [`crate::Error::Fit`]
+/// for one that depends on a load without its column.
 pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
@@ -113,8 +115,8 @@ pub struct Invert<'a> {
     pub look_ahead: usize,
 }
 
-/// Copies `table` to `out`, which is ended, with the columns `input_model` and `status`, the input that gives the
-/// wanted output, from every operator off. `progress` is told the bytes read.
+/// Copies `table` to `out`, which is ended, with the columns `input_model` and `status`, the input
+/// that gives the wanted output, from every operator off. `progress` is told the bytes read.
 ///
 /// # Errors
 /// As [`simulate_table`], and [`crate::Error::Core`] for a model with weights below zero.

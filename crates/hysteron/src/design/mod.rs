@@ -17,7 +17,8 @@ use spiral::Corners;
 /// Most samples of a profile.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// Samples a level at the faster rate, where the step is not given: enough to average some noise away.
+/// Samples a level at the faster rate, where the step is not given: enough to average some noise
+/// away.
 const SAMPLES_PER_LEVEL: f64 = 10.0;
 
 /// What an experiment is for.
@@ -64,7 +65,8 @@ pub struct Leg {
     pub from: f64,
     /// Input at its end.
     pub to: f64,
-    /// Everett corners that neither recordings nor earlier legs show: 0 where the leg only leads on to the next.
+    /// Everett corners that neither recordings nor earlier legs show: 0 where the leg only leads on
+    /// to the next.
     pub new_corners: usize,
 }
 
@@ -83,7 +85,8 @@ pub struct Design {
     pub recorded: Option<Vec<Excitation>>,
     /// What recordings and profile say of each operator together.
     pub excitation: Vec<Excitation>,
-    /// Everett corners `C[p][q]`, `q < p`, known then; with all `N` of them every operator is determined.
+    /// Everett corners `C[p][q]`, `q < p`, known then; with all `N` of them every operator is
+    /// determined.
     pub corners: usize,
     /// Duration in seconds without a budget.
     pub full_duration_s: f64,
@@ -103,12 +106,13 @@ impl Design {
     }
 }
 
-/// The shortest input profile that determines every operator: a spiral that shrinks from the whole plane to its middle, with
-/// one step of a level for each operator. What the inputs `recorded` so far determine already is left out. With a budget that is too short for it all, as
-/// many rings of the spiral stay as fit, the outermost first and the others evenly spread.
+/// The shortest input profile that determines every operator: a spiral that shrinks from the whole
+/// plane to its middle, with one step of a level for each operator. What the inputs `recorded` so
+/// far determine already is left out. With a budget that is too short for it all, as many rings of
+/// the spiral stay as fit, the outermost first and the others evenly spread.
 ///
-/// The proof that no profile turning at levels is shorter stands in `design/spiral.rs`; what completes recordings is short, not
-/// proven to be the shortest. Relays are passed half a step
+/// The proof that no profile turning at levels is shorter stands in `design/spiral.rs`; what
+/// completes recordings is short, not proven to be the shortest. Relays are passed half a step
 /// beyond their levels, so that they switch whatever the rounding.
 ///
 /// ```
@@ -124,8 +128,8 @@ impl Design {
 /// ```
 ///
 /// # Errors
-/// [`Error::Design`] for rates, a budget or a step that cannot be, a budget too short for one ring, and recordings outside
-/// the plane; as [`excitation`] otherwise.
+/// [`Error::Design`] for rates, a budget or a step that cannot be, a budget too short for one ring,
+/// and recordings outside the plane; as [`excitation`] otherwise.
 pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let step_s = check(options, recorded)?;
     let levels = options.plane.levels();

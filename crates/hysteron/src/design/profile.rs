@@ -45,8 +45,8 @@ impl Rates {
     }
 }
 
-/// Straight ramps through the inputs `turns`, as time in seconds from 0 and input. Each turning point is a sample, and those between two
-/// are evenly spread, at most `step_s` apart.
+/// Straight ramps through the inputs `turns`, as time in seconds from 0 and input. Each turning
+/// point is a sample, and those between two are evenly spread, at most `step_s` apart.
 #[must_use]
 pub fn ramps(turns: &[f64], rates: Rates, step_s: f64) -> (Vec<f64>, Vec<f64>) {
     let mut time: Vec<f64> = turns.first().map(|_| 0.0).into_iter().collect();

@@ -1,20 +1,27 @@
-//! The shrinking spiral, as turning points in grid positions: `0` is the bottom of the plane, `k` its level `k`.
+//! The shrinking spiral, as turning points in grid positions: `0` is the bottom of the plane, `k`
+//! its level `k`.
 //!
-//! With every operator off at the start, a rise from `q` past the levels up to `p` shows the Everett corners `C[q+1][q] … C[p][q]`, and
-//! a fall from `p` to `q` shows `C[p][p−1] … C[p][q]`, one for each step of a level. The corners with `q < p` are `N`
-//! numbers from which all weights follow as second differences.
+//! With every operator off at the start, a rise from `q` past the levels up to `p` shows the
+//! Everett corners `C[q+1][q] … C[p][q]`, and a fall from `p` to `q` shows `C[p][p−1] … C[p][q]`,
+//! one for each step of a level. The corners with `q < p` are `N` numbers from which all weights
+//! follow as second differences.
 //!
-//! **No profile that turns at levels is shorter.** Along one step between neighbouring levels the output is linear, so a step adds at most one equation,
-//! and `N` unknown weights need `N` steps, a travel of `N ΔT`. The spiral `0, K, 1, K−1, 2, …` needs no more, because its legs have
-//! `K, K−1, …, 1` steps and a step never repeats a corner: `C[p][q]` belongs to the rise from `q` where `p + q ≤ K`, and to the fall from `p` otherwise.
+//! **No profile that turns at levels is shorter.** Along one step between neighbouring levels the
+//! output is linear, so a step adds at most one equation, and `N` unknown weights need `N` steps, a
+//! travel of `N ΔT`. The spiral `0, K, 1, K−1, 2, …` needs no more, because its legs have
+//! `K, K−1, …, 1` steps and a step never repeats a corner: `C[p][q]` belongs to the rise from `q`
+//! where `p + q ≤ K`, and to the fall from `p` otherwise.
 //!
-//! A path that repeats no corner never closes a loop, for the step that closes it shows what the fall before has shown; so it is this very
-//! spiral, and ends at `⌈K/2⌉`. Since rises minus falls are where it ends, its time `R/heating + F/cooling` has
-//! `R = (N + ⌈K/2⌉)/2`, `F = (N − ⌈K/2⌉)/2`. With slow cooling an end at `K` would save at most `K/4` of some `K²/4` falls; a search over all paths up to
-//! `K = 5`, for ratios of the rates from 1/10 to 100, found nothing faster than the spiral.
+//! A path that repeats no corner never closes a loop, for the step that closes it shows what the
+//! fall before has shown; so it is this very spiral, and ends at `⌈K/2⌉`. Since rises minus falls
+//! are where it ends, its time `R/heating + F/cooling` has `R = (N + ⌈K/2⌉)/2`,
+//! `F = (N − ⌈K/2⌉)/2`. With slow cooling an end at `K` would save at most `K/4` of some `K²/4`
+//! falls; a search over all paths up to `K = 5`, for ratios of the rates from 1/10 to 100, found
+//! nothing faster than the spiral.
 //!
-//! Turning between levels would let one step show two combinations of corners, each at a part of its size: fewer steps in
-//! principle, at the cost of noise. A full set of first-order reversal curves travels `K(K + 1)`, twice as much.
+//! Turning between levels would let one step show two combinations of corners, each at a part of
+//! its size: fewer steps in principle, at the cost of noise. A full set of first-order reversal
+//! curves travels `K(K + 1)`, twice as much.
 
 use hysteron_core::{operator_count, operator_index};
 
@@ -33,8 +40,9 @@ fn between(max: usize, min: usize) -> Vec<usize> {
     (0..max + 2 - min).map(turn).collect()
 }
 
-/// Turning points that show all corners that are not `known`: of the full spiral and the smallest that is enough the
-/// one that is shorter once what is known is left out. Short, not proven to be the shortest.
+/// Turning points that show all corners that are not `known`: of the full spiral and the smallest
+/// that is enough the one that is shorter once what is known is left out. Short, not proven to be
+/// the shortest.
 pub(super) fn completing(levels: usize, known: &Corners) -> Vec<usize> {
     let all = operator_count(levels);
     let mut spirals: Vec<Vec<usize>> = (1..=levels)
@@ -64,7 +72,8 @@ impl Corners {
         self.0.iter().filter(|known| **known).count()
     }
 
-    /// Adds what a leg shows, on a path that closes no loop, and says how many of these corners were new.
+    /// Adds what a leg shows, on a path that closes no loop, and says how many of these corners
+    /// were new.
     pub(super) fn add(&mut self, from: usize, to: usize) -> usize {
         let mut new = 0;
         for step in from.min(to)..from.max(to) {
@@ -88,9 +97,11 @@ impl Corners {
     }
 }
 
-/// `turns` without what shows nothing beyond `known`: whole rings are left out, and what stays is shortened.
+/// `turns` without what shows nothing beyond `known`: whole rings are left out, and what stays is
+/// shortened.
 ///
-/// What nested turning points show only shrinks as some are taken out, so one pair at a time finds all that can go.
+/// What nested turning points show only shrinks as some are taken out, so one pair at a time finds
+/// all that can go.
 fn prune(mut turns: Vec<usize>, known: &Corners) -> Vec<usize> {
     let wanted = known.with(&turns);
     while let Some(shorter) = without_a_pair(&turns)
@@ -146,8 +157,9 @@ fn travel(turns: &[usize]) -> usize {
     turns.windows(2).map(|leg| leg[0].abs_diff(leg[1])).sum()
 }
 
-/// The `count` rings (a maximum and the minimum after it) of `turns` that are spread most evenly, the outermost first:
-/// in bit-reversed order (van der Corput 1935), so that more rings never leave one out and show all that fewer do.
+/// The `count` rings (a maximum and the minimum after it) of `turns` that are spread most evenly,
+/// the outermost first: in bit-reversed order (van der Corput 1935), so that more rings never leave
+/// one out and show all that fewer do.
 pub(super) fn evenly(turns: &[usize], count: usize) -> Vec<usize> {
     let Some((&start, rest)) = turns.split_first() else {
         return Vec::new();

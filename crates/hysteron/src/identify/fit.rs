@@ -192,8 +192,8 @@ impl<'a> Fit<'a> {
     /// Whether a thermal body stands in front of the operators and is identified with the weights.
     ///
     /// The recordings need time. Their input is a drive that heats (current squared, voltage
-    /// squared, duty). For given time constants the weights are a closed problem; the search is over
-    /// the time constants only (separable least squares, Golub and Pereyra 1973).
+    /// squared, duty). For given time constants the weights are a closed problem; the search is
+    /// over the time constants only (separable least squares, Golub and Pereyra 1973).
     #[must_use]
     pub fn thermal(mut self, body: bool) -> Self {
         self.body = body;
@@ -207,13 +207,13 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Identifies the model. Several recordings are one experiment, each from its own initial state;
-    /// with a load in them, the weights depend on it.
+    /// Identifies the model. Several recordings are one experiment, each from its own initial
+    /// state; with a load in them, the weights depend on it.
     ///
     /// # Errors
-    /// [`Error::Recording`] for a recording that cannot be worked with or whose input never changes;
-    /// [`Error::Core`] for a plane that cannot be; [`Error::Fit`] for options that contradict each
-    /// other, and for levels or smoothness left to the data behind a thermal body;
+    /// [`Error::Recording`] for a recording that cannot be worked with or whose input never
+    /// changes; [`Error::Core`] for a plane that cannot be; [`Error::Fit`] for options that
+    /// contradict each other, and for levels or smoothness left to the data behind a thermal body;
     /// [`Error::Thermal`] for a thermal body without time; what `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();

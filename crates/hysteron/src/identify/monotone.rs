@@ -7,12 +7,12 @@ use crate::series::headings;
 use crate::series::usual_tolerance;
 use hysteron_core::Direction;
 
-/// From here on the output goes against the input on so much of its way that no monotone model can follow: an
-/// ideal loop has nothing of it, a symmetric butterfly a half.
+/// From here on the output goes against the input on so much of its way that no monotone model can
+/// follow: an ideal loop has nothing of it, a symmetric butterfly a half.
 pub const AGAINST_INPUT: f64 = 0.1;
 
-/// The part of the output's way, from 0 to 1, on which it moves against the input, for outputs of that `sign`. Movements
-/// of up to 1 % of the range are noise on both.
+/// The part of the output's way, from 0 to 1, on which it moves against the input, for outputs of
+/// that `sign`. Movements of up to 1 % of the range are noise on both.
 ///
 /// Butterfly loops, loads that change and rate make it large; hysteresis does not.
 ///

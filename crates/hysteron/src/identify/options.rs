@@ -32,8 +32,8 @@ pub struct FitOptions {
     pub sign: Option<Sign>,
     /// Output with every operator off; `None` to identify it.
     pub offset: Option<f64>,
-    /// Strength `λ` of the smoothness of the weights' density across the plane, against the mean squared
-    /// error; it means the same whatever the number of levels.
+    /// Strength `λ` of the smoothness of the weights' density across the plane, against the mean
+    /// squared error; it means the same whatever the number of levels.
     pub smooth: f64,
     /// Where the operators stand before the first sample of each recording.
     pub start: Start,
@@ -44,7 +44,8 @@ pub struct FitOptions {
 }
 
 impl FitOptions {
-    /// Replicates that standard errors of two digits take, and none from 45 levels on, where they take long.
+    /// Replicates that standard errors of two digits take, and none from 45 levels on, where they
+    /// take long.
     #[must_use]
     pub fn usual_bootstrap(levels: usize) -> usize {
         if levels < 45 { 200 } else { 0 }

@@ -107,7 +107,8 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
 
 /// How many MKP operators have different states at different samples.
 ///
-/// After the first sample, from off, `γ = r_j(x)`; it changes once some `r_j` lies above or some `r_i` below.
+/// After the first sample, from off, `γ = r_j(x)`; it changes once some `r_j` lies above or some
+/// `r_i` below.
 fn excited(input: &[f64], plane: Plane) -> usize {
     let (low, high) = range(input);
     let [first, low, high] = [input[0], low, high].map(|t| plane.normalise(t));

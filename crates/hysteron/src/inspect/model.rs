@@ -22,7 +22,8 @@ pub struct ModelSummary {
     pub weights_below_zero: usize,
     /// Output with every operator off, and with every operator on.
     pub output: (f64, f64),
-    /// Widest loop: the largest difference between the falling and the rising major branch, in the output's unit.
+    /// Widest loop: the largest difference between the falling and the rising major branch, in the
+    /// output's unit.
     pub widest_loop: f64,
     /// The input at which it is.
     pub widest_loop_at: f64,

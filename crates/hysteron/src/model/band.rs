@@ -8,9 +8,10 @@ use serde::Serialize;
 
 /// The 95 % prediction band of a model whose file says how certain its weights are.
 ///
-/// A factor `f` of the confidence is a joint deviation of offset and weights by one standard deviation; the
-/// output deviates by its own forward run, so that a sample takes `O(1)` for each factor. Independent factors and
-/// the noise `ν` add as squares: half the width is `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
+/// A factor `f` of the confidence is a joint deviation of offset and weights by one standard
+/// deviation; the output deviates by its own forward run, so that a sample takes `O(1)` for each
+/// factor. Independent factors and the noise `ν` add as squares: half the width is
+/// `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
 ///
 /// ```
 /// use hysteron::{FitOptions, Recording, Fit};
@@ -30,8 +31,8 @@ pub struct Band {
 }
 
 impl Model {
-    /// The prediction band; `None` for a model without confidence or one without factors. With a load it is that of the
-    /// middle of its range.
+    /// The prediction band; `None` for a model without confidence or one without factors. With a
+    /// load it is that of the middle of its range.
     ///
     /// # Errors
     /// [`Error::ModelFile`] for factors that do not have as many weights as the model.
@@ -75,7 +76,8 @@ impl Band {
         self.factors.iter().map(Operators::start).collect()
     }
 
-    /// Moves `states` to `input` and returns half the width of the band there, in the output's unit.
+    /// Moves `states` to `input` and returns half the width of the band there, in the output's
+    /// unit.
     ///
     /// # Errors
     /// As [`Model::step`].
@@ -116,7 +118,8 @@ pub(crate) fn ends(output_model: &[f64], half_width: &[f64]) -> (Vec<f64>, Vec<f
 pub struct BandEvaluation {
     /// Half the width at each sample, in the output's unit.
     pub half_width: Vec<f64>,
-    /// Share of the measured samples inside, in percent; about 95 where the recording is like those fitted.
+    /// Share of the measured samples inside, in percent; about 95 where the recording is like those
+    /// fitted.
     pub coverage_percent: f64,
 }
 

@@ -1,4 +1,5 @@
-//! A thermal body in front of the operators: a drive goes in, the temperature that moves the operators comes out.
+//! A thermal body in front of the operators: a drive goes in, the temperature that moves the
+//! operators comes out.
 
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -7,11 +8,13 @@ use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and one for cooling.
+/// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and
+/// one for cooling.
 ///
 /// `θ` is the temperature above the surroundings. Where no temperature was measured the gain cannot
-/// be identified: it is 1, and `θ` is in units of the drive that holds it at rest. The drive is taken as proportional to the heating
-/// power, as a duty cycle is; of a current or a voltage give the square.
+/// be identified: it is 1, and `θ` is in units of the drive that holds it at rest. The drive is
+/// taken as proportional to the heating power, as a duty cycle is; of a current or a voltage give
+/// the square.
 ///
 /// ```
 /// let body = hysteron::FirstOrder { gain: 1.0, tau_heating: 2.0, tau_cooling: 4.0 };
@@ -58,11 +61,12 @@ impl FirstOrder {
     /// The temperature `dt` seconds after the last sample, when the drive changes to `drive`.
     ///
     /// Exact for a drive that is held between samples, however far apart they are: the temperature
-    /// goes towards the drive and never past it, so that one time constant holds for the whole step.
+    /// goes towards the drive and never past it, so that one time constant holds for the whole
+    /// step.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for numbers that are not finite, a `dt` below zero, or a body whose numbers
-    /// are not above zero; the state is then as it was.
+    /// [`Error::Thermal`] for numbers that are not finite, a `dt` below zero, or a body whose
+    /// numbers are not above zero; the state is then as it was.
     pub fn step(&self, state: &mut ThermalState, dt: f64, drive: f64) -> Result<f64> {
         if let Some((name, value)) = self.fault() {
             return Err(Error::Thermal(format!(
@@ -84,7 +88,8 @@ impl FirstOrder {
         Ok(temperature)
     }
 
-    /// The temperature at each time (seconds) under `drive`, as many samples, from rest with the first of them.
+    /// The temperature at each time (seconds) under `drive`, as many samples, from rest with the
+    /// first of them.
     ///
     /// # Errors
     /// As [`FirstOrder::step`], and for series of different length.

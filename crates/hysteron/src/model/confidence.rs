@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Confidence {
     /// Branches of the input.
     pub branches: usize,
-    /// How many combinations of weights (and initial states, where these are unknown) the data determine at all.
+    /// How many combinations of weights (and initial states, where these are unknown) the data
+    /// determine at all.
     pub rank: usize,
     /// How many there are.
     pub unknowns: usize,
@@ -22,7 +23,8 @@ pub struct Confidence {
     pub replicates: usize,
     /// What the input says of each operator, in the order of the weights.
     pub excitation: Vec<Excitation>,
-    /// Standard error of each weight, in the output's unit; with a load, at the middle of its range.
+    /// Standard error of each weight, in the output's unit; with a load, at the middle of its
+    /// range.
     pub standard_error: Vec<f64>,
     /// Standard error of the offset.
     pub offset_error: f64,

@@ -77,7 +77,8 @@ struct OutputEntry {
     sign: i64,
 }
 
-/// Weights that depend on a load: `weights` and `offset` above are then those at the middle of its range.
+/// Weights that depend on a load: `weights` and `offset` above are then those at the middle of its
+/// range.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 struct LoadEntry {

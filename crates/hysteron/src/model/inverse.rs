@@ -10,8 +10,8 @@ impl Model {
     /// The inverse of a plain model.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) naming the first weights below zero,
-    /// if there are any.
+    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) naming the first weights below
+    /// zero, if there are any.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
         self.plain()?.inverse()
     }
@@ -21,7 +21,8 @@ impl Operators {
     /// The inverse of these operators.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core)(crate::Error::Core) naming the first weights below zero, if there are any.
+    /// [`Error::Core`](crate::Error::Core)(crate::Error::Core) naming the first weights below zero,
+    /// if there are any.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
         Ok(Inverse {
             operators: self,
@@ -65,11 +66,12 @@ pub struct Inverse<'m> {
 impl Inverse<'_> {
     /// Finds the input for `target` and moves `state` there. `O(log K)`.
     ///
-    /// Status and heading speak of the target as given: with a negative sign, [`Low`](crate::Status::Low) needs an
-    /// input above the plane.
+    /// Status and heading speak of the target as given: with a negative sign,
+    /// [`Low`](crate::Status::Low) needs an input above the plane.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another model; the state is then as it was.
+    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another
+    /// model; the state is then as it was.
     pub fn step(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
         self.step_operators(&mut state.operators, target)
     }
@@ -93,8 +95,8 @@ impl Inverse<'_> {
     /// them. Reversals of the target up to `tolerance` are not followed.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) with the place of a target that is not finite, or for a state of another
-    /// model; the state is then as it was.
+    /// [`Error::Core`](crate::Error::Core) with the place of a target that is not finite, or for a
+    /// state of another model; the state is then as it was.
     ///
     /// ```
     /// use hysteron::{Model, Operator, Plane, Policy, Sign};

@@ -37,8 +37,9 @@ impl LoadPart {
     }
 }
 
-/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein polynomials of the load
-/// scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those between, and the largest.
+/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein
+/// polynomials of the load scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those
+/// between, and the largest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadDependence {
     /// What the load is.
@@ -157,12 +158,15 @@ impl Model {
         Ok(model)
     }
 
-    /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
+    /// The outputs for `input` under a `load` that may change from sample to sample, as many, from
+    /// every operator off.
     ///
-    /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
+    /// The operators move with the input alone, so that each part of the load dependence is a run
+    /// of its own.
     ///
     /// # Errors
-    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads as inputs.
+    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads
+    /// as inputs.
     pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
         let Some(dependence) = &self.load else {
             return Err(no_load());
@@ -190,8 +194,9 @@ pub(crate) fn no_load() -> Error {
     Error::Fit("this model does not depend on a load: leave the load out".into())
 }
 
-/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
-/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one,
+/// so that coefficients from zero on make weights from zero on at every load in the range (Farouki
+/// 2012).
 pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
     // De Casteljau's scheme.
     let mut values = vec![1.0];

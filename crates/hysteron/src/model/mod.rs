@@ -64,8 +64,8 @@ pub struct Model {
     /// How offset and weights depend on a load, where they do; the operators are then those of the
     /// middle of its range.
     pub load: Option<LoadDependence>,
-    /// The thermal body in front of the operators, where there is one. The input is then what drives
-    /// the body, and the operators follow its temperature, of which the plane speaks.
+    /// The thermal body in front of the operators, where there is one. The input is then what
+    /// drives the body, and the operators follow its temperature, of which the plane speaks.
     pub thermal: Option<FirstOrder>,
     /// How the model was obtained, where it was identified.
     pub fit: Option<FitSummary>,
@@ -177,12 +177,12 @@ impl Model {
         State::new(self, Operators::saturated)
     }
 
-    /// The state of a plain model that gave `turning_points` ([`State::turning_points`]) and `input`
-    /// ([`State::input`]), bit for bit.
+    /// The state of a plain model that gave `turning_points` ([`State::turning_points`]) and
+    /// `input` ([`State::input`]), bit for bit.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`] for turning points that do not nest and for an input that
-    /// is not finite.
+    /// As [`Model::plain`]; [`Error::Core`] for turning points that do not nest and for an input
+    /// that is not finite.
     ///
     /// ```
     /// # use hysteron::{Model, Operator, Plane, Sign};
@@ -198,9 +198,9 @@ impl Model {
         Ok(self.plain()?.restore(turning_points, input)?.into())
     }
 
-    /// Moves `state` by a sample and returns the output, and whether the operators' input was outside
-    /// the plane. A plain model takes a number; one with a thermal body or a load needs the time step
-    /// or the load too.
+    /// Moves `state` by a sample and returns the output, and whether the operators' input was
+    /// outside the plane. A plain model takes a number; one with a thermal body or a load needs the
+    /// time step or the load too.
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};

@@ -9,10 +9,11 @@ use hysteron_core::{Operator, Turn, table_len, turn_capacity};
 /// The state of operators: their turning points.
 pub type OperatorState = hysteron_core::State<f64, Vec<Turn<f64>>>;
 
-/// Weighted operators, offset and sign: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation (2).
+/// Weighted operators, offset and sign: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation
+/// (2).
 ///
-/// A [`Model`](crate::Model) without a thermal body and a load is no more than this; what needs such
-/// a plain model takes this type ([`Model::plain`](crate::Model::plain)).
+/// A [`Model`](crate::Model) without a thermal body and a load is no more than this; what needs
+/// such a plain model takes this type ([`Model::plain`](crate::Model::plain)).
 ///
 /// ```
 /// use hysteron::{Operator, Operators, Plane, Sign};
@@ -35,8 +36,8 @@ impl Operators {
     /// `j = 1…K` and within a row `i = 1…j`, in the unit of the output.
     ///
     /// # Errors
-    /// [`Error::Core`] for a wrong number of weights or one that is not finite; [`Error::ModelFile`]
-    /// for an offset that is not finite.
+    /// [`Error::Core`] for a wrong number of weights or one that is not finite;
+    /// [`Error::ModelFile`] for an offset that is not finite.
     pub fn new(
         operator: Operator,
         plane: Plane,
@@ -111,7 +112,8 @@ impl Operators {
         (self.outward(off), self.outward(on))
     }
 
-    /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of the output's range.
+    /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of
+    /// the output's range.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
         let (off, on) = self.output_range();
@@ -137,7 +139,8 @@ impl Operators {
         state
     }
 
-    /// The state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]), bit for bit.
+    /// The state that gave `turning_points` ([`State::turning_points`]) and `input`
+    /// ([`State::input`]), bit for bit.
     ///
     /// # Errors
     /// [`Error::Core`] for turning points that do not nest and for an input that is not finite.
@@ -158,10 +161,12 @@ impl Operators {
         Ok(state)
     }
 
-    /// Moves `state` to `input` and returns the output, and whether the input was outside the plane.
+    /// Moves `state` to `input` and returns the output, and whether the input was outside the
+    /// plane.
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite or a state of another model; the state is then as it was.
+    /// [`Error::Core`] for an input that is not finite or a state of another model; the state is
+    /// then as it was.
     pub fn step(
         &self,
         state: &mut OperatorState,
@@ -174,7 +179,8 @@ impl Operators {
         })
     }
 
-    /// Moves `state` through `input` and writes the outputs, and returns how many inputs were clipped.
+    /// Moves `state` through `input` and writes the outputs, and returns how many inputs were
+    /// clipped.
     ///
     /// # Errors
     /// As [`Operators::step`], with the index of the sample.

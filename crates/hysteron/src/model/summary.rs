@@ -10,8 +10,8 @@ pub enum Solver {
     /// Non-negative least squares: a monotone model, which has an inverse.
     #[default]
     Nnls,
-    /// Plain least squares, the chapter's; of all solutions that of smallest norm. Weights of either
-    /// sign, which a material with a butterfly loop needs; as a rule without an inverse.
+    /// Plain least squares, the chapter's; of all solutions that of smallest norm. Weights of
+    /// either sign, which a material with a butterfly loop needs; as a rule without an inverse.
     Ols,
 }
 
@@ -24,7 +24,8 @@ pub enum Start {
     Off,
     /// All on, as after the highest input.
     On,
-    /// Not known: what the operators that the input has not reached yet contribute is estimated with the weights.
+    /// Not known: what the operators that the input has not reached yet contribute is estimated
+    /// with the weights.
     Unknown,
 }
 
@@ -38,7 +39,8 @@ pub struct FitSummary {
     pub smooth: f64,
     /// Where the operators were taken to stand before each recording.
     pub start: Start,
-    /// Operators that the first sample of a recording leaves open: on or off there by `start` alone.
+    /// Operators that the first sample of a recording leaves open: on or off there by `start`
+    /// alone.
     pub open_at_start: usize,
     /// Samples fitted.
     pub samples: usize,

@@ -1,4 +1,5 @@
-//! The output of an actuator for what it is driven with: through its thermal body, under its load, with its band.
+//! The output of an actuator for what it is driven with: through its thermal body, under its load,
+//! with its band.
 
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -17,8 +18,9 @@ pub struct Surroundings<'a> {
 }
 
 impl Model {
-    /// The outputs for `input`, from every operator off, whatever the model is made of: an input that drives a thermal
-    /// body goes through it, and a load is followed. For a plain model the same as [`Model::simulate`].
+    /// The outputs for `input`, from every operator off, whatever the model is made of: an input
+    /// that drives a thermal body goes through it, and a load is followed. For a plain model the
+    /// same as [`Model::simulate`].
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Surroundings};
@@ -32,8 +34,9 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// As [`Model::run`]; [`Error::Thermal`] for a model with a thermal body without time, and for times that go back;
-    /// [`Error::Fit`] for a model that depends on a load without it, and the other way round.
+    /// As [`Model::run`]; [`Error::Thermal`] for a model with a thermal body without time, and for
+    /// times that go back; [`Error::Fit`] for a model that depends on a load without it, and the
+    /// other way round.
     pub fn simulate_in(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
         self.at(&self.seen(input, surroundings)?, surroundings)
     }

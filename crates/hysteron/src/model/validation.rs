@@ -29,8 +29,9 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// The scores as a table: the numbers of levels and the strengths of the smoothness tried, each ascending, and for
-    /// each number of levels the error at each strength, `None` where it was not tried.
+    /// The scores as a table: the numbers of levels and the strengths of the smoothness tried, each
+    /// ascending, and for each number of levels the error at each strength, `None` where it was not
+    /// tried.
     #[must_use]
     pub fn table(&self) -> (Vec<usize>, Vec<f64>, Vec<Vec<Option<f64>>>) {
         let mut levels: Vec<usize> = self.scores.iter().map(|score| score.levels).collect();

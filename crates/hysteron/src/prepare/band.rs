@@ -1,14 +1,15 @@
 //! A dead band for reversals, without lag.
 //!
-//! Noise on the input makes turning points that never were, and each of them moves operators. A reversal counts only when it goes
-//! beyond a band; between two that count, the input is made monotone: half-way between the largest value so far and the
-//! smallest still to come.
+//! Noise on the input makes turning points that never were, and each of them moves operators. A
+//! reversal counts only when it goes beyond a band; between two that count, the input is made
+//! monotone: half-way between the largest value so far and the smallest still to come.
 
 use super::noise::resolution;
 use crate::series::Turning;
 use hysteron_core::Direction;
 
-/// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by more than half the band.
+/// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by
+/// more than half the band.
 pub(super) fn settle(values: &mut [f64], band: f64) {
     let mut turning = Turning::new(band);
     let turns: Vec<(usize, Direction)> = values.iter().filter_map(|&v| turning.push(v)).collect();
@@ -23,7 +24,8 @@ pub(super) fn settle(values: &mut [f64], band: f64) {
     }
 }
 
-/// The mean of the running extreme from the front, by `ahead`, and of that from the back, by `behind`.
+/// The mean of the running extreme from the front, by `ahead`, and of that from the back, by
+/// `behind`.
 fn monotone(branch: &mut [f64], ahead: fn(f64, f64) -> f64, behind: fn(f64, f64) -> f64) {
     let mut from_back = branch.to_vec();
     for n in (1..from_back.len()).rev() {

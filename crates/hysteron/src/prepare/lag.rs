@@ -1,7 +1,8 @@
 //! The lag of the input's sensor.
 //!
-//! A thermocouple behind the wire follows it as `τ dT/dt + T = T_wire`. With `τ` known the lag is undone; it
-//! can be estimated where the material itself does not depend on rate, for then a static model fits best when the lag is gone.
+//! A thermocouple behind the wire follows it as `τ dT/dt + T = T_wire`. With `τ` known the lag is
+//! undone; it can be estimated where the material itself does not depend on rate, for then a static
+//! model fits best when the lag is gone.
 
 use crate::error::{Error, Result};
 use crate::identify::{FitOptions, fit_weights};
@@ -9,7 +10,8 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::filter::low_pass;
 
-/// Levels of the models that compare lags: enough to tell loops apart, few enough to be fitted forty times.
+/// Levels of the models that compare lags: enough to tell loops apart, few enough to be fitted
+/// forty times.
 const LEVELS: usize = 12;
 
 /// The longest lag tried, as a part of the duration.
@@ -34,8 +36,9 @@ pub(super) struct Estimate {
 
 /// The input before a sensor of time constant `tau` (s), from readings at every `step` (s).
 ///
-/// `x + τ dx/dt`, with the derivative of the zero-phase low-passed input: cut off at `1/τ`, where the sensor leaves a sixth of the
-/// signal, so that noise grows about three times and not without bound.
+/// `x + τ dx/dt`, with the derivative of the zero-phase low-passed input: cut off at `1/τ`, where
+/// the sensor leaves a sixth of the signal, so that noise grows about three times and not without
+/// bound.
 pub(super) fn undo(values: &[f64], step: f64, tau: f64) -> Result<Vec<f64>> {
     let (rate, cutoff) = (1.0 / step, 1.0 / tau);
     let smooth = match cutoff < 0.45 * rate {
@@ -50,14 +53,16 @@ pub(super) fn undo(values: &[f64], step: f64, tau: f64) -> Result<Vec<f64>> {
     Ok((0..).zip(values).map(|(n, x)| x + tau * slope(n)).collect())
 }
 
-/// By how many times white noise below `cutoff` (cycles a sample; 0.5 for all of it) grows when a lag is undone.
+/// By how many times white noise below `cutoff` (cycles a sample; 0.5 for all of it) grows when a
+/// lag is undone.
 pub(super) fn growth(step: f64, tau: f64, cutoff: f64) -> f64 {
     let edge = (cutoff / step).min(1.0 / tau);
     // The mean of (2π f τ)² up to the edge is a third of that at the edge.
     (1.0 + (std::f64::consts::TAU * tau * edge).powi(2) / 3.0).sqrt()
 }
 
-/// The lag whose undoing lets a static model fit best: tried on a grid of ratios, then narrowed by golden section (Kiefer 1953).
+/// The lag whose undoing lets a static model fit best: tried on a grid of ratios, then narrowed by
+/// golden section (Kiefer 1953).
 pub(super) fn estimate(
     recording: &Recording,
     step: f64,
@@ -155,7 +160,8 @@ mod tests {
         let mut recording = two_rates(step);
         recording.input = behind_sensor(&recording.input, step, tau);
         let found = estimate(&recording, step, Progress::NONE).unwrap();
-        // Grid and golden section end within 1 %; the filter of the derivative and 12 levels cost more.
+        // Grid and golden section end within 1 %; the filter of the derivative and 12 levels cost
+        // more.
         assert!((found.tau / tau - 1.0).abs() < 0.15, "{}", found.tau);
         assert!(found.rmse_after < 0.5 * found.rmse_before);
     }

@@ -110,10 +110,12 @@ impl PrepareOptions {
     }
 }
 
-/// Prepares a recording for [`crate::fit`]: restores lost signs and removes spikes, resamples and smooths where noise asks for it, undoes a sensor's lag
-/// if told to, and takes false reversals from the input. Says what it did.
+/// Prepares a recording for [`crate::fit`]: restores lost signs and removes spikes, resamples and
+/// smooths where noise asks for it, undoes a sensor's lag if told to, and takes false reversals
+/// from the input. Says what it did.
 ///
-/// A clean recording comes through unchanged, a prepared one almost so. All series of the result have the same length, which only resampling changes.
+/// A clean recording comes through unchanged, a prepared one almost so. All series of the result
+/// have the same length, which only resampling changes.
 ///
 /// ```
 /// use hysteron::{PrepareOptions, Progress, Recording, prepare};
@@ -127,8 +129,10 @@ impl PrepareOptions {
 /// ```
 ///
 /// # Errors
-/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Preparation`] for a value outside the table of [`PrepareOptions`], or a
-/// lag or a step without time; [`Error::Filter`] for a cut-off that does not fit the samples; those of [`crate::fit`] where a lag is estimated.
+/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Preparation`] for a
+/// value outside the table of [`PrepareOptions`], or a lag or a step without time;
+/// [`Error::Filter`] for a cut-off that does not fit the samples; those of [`crate::fit`] where a
+/// lag is estimated.
 pub fn prepare(
     recording: &Recording,
     options: &PrepareOptions,
@@ -300,7 +304,8 @@ fn undo_lag(
     Ok(Some(report))
 }
 
-/// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its values are still those of the meter.
+/// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its
+/// values are still those of the meter.
 fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<Option<DeadBand>> {
     let size = match how {
         Step::Off => return Ok(None),
@@ -314,7 +319,8 @@ fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<O
             size
         }
         Step::Auto => {
-            // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both sides.
+            // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both
+            // sides.
             let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
             // A meter that flickers between two readings has not turned.
             let (low, high) = range(&work.input);

@@ -7,11 +7,13 @@ const FEWEST: usize = 8;
 /// Standard deviation of a Gaussian variable over the median of its absolute value.
 const SIGMA_PER_MEDIAN: f64 = 1.4826;
 
-/// The standard deviation of the white noise on `values`, in their unit; 0 for fewer than ten samples.
+/// The standard deviation of the white noise on `values`, in their unit; 0 for fewer than ten
+/// samples.
 ///
-/// The median of the absolute differences of order `k`, over `√C(2k, k)`, by which such a difference enlarges white noise. Noise
-/// gives the same at every order from 2 to 6, a smooth signal less with each: so the smallest is taken. (Differences of second order:
-/// Gasser, Sroka & Jennen-Steinmetz 1986; of higher order: Hall, Kay & Titterington 1990.) It is blind to noise
+/// The median of the absolute differences of order `k`, over `√C(2k, k)`, by which such a
+/// difference enlarges white noise. Noise gives the same at every order from 2 to 6, a smooth
+/// signal less with each: so the smallest is taken. (Differences of second order: Gasser, Sroka &
+/// Jennen-Steinmetz 1986; of higher order: Hall, Kay & Titterington 1990.) It is blind to noise
 /// that is slow, and on a series that mostly stands still it is 0.
 ///
 /// ```
@@ -47,8 +49,8 @@ pub(super) fn deviation_of(residuals: impl Iterator<Item = f64>) -> f64 {
     SIGMA_PER_MEDIAN * median_of(residuals.map(f64::abs).collect())
 }
 
-/// The smallest distance between two different values: the resolution of a reading that is shown in steps; 0 where
-/// there is but one value.
+/// The smallest distance between two different values: the resolution of a reading that is shown in
+/// steps; 0 where there is but one value.
 pub(super) fn resolution(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -86,8 +88,8 @@ mod tests {
             let signal = (0..count).map(|n| 10.0 * (n as f64 * 0.01).sin());
             let noisy: Vec<f64> = signal.zip(white).map(|(s, e)| s + sigma * e).collect();
             let found = noise(&noisy) / sigma;
-            // The median of n absolute values is known to 1.17/√n, 2 %, of itself; differences that overlap and the smallest
-            // of five orders make it three times as much.
+            // The median of n absolute values is known to 1.17/√n, 2 %, of itself; differences that
+            // overlap and the smallest of five orders make it three times as much.
             assert!((found - 1.0).abs() < 0.06, "{found} of {sigma}");
         }
     }

@@ -1,9 +1,11 @@
 //! Does the material depend on rate?
 //!
-//! Hysteresis as modelled here does not: run the input faster and the loops stay, for only the path of the
-//! input counts, not the clock (Visintin 1994). So what a static model leaves over is explained twice by what lags behind input and modelled output:
-//! once with time as the clock, once with the length of the path that the input has gone. A residual that time explains and the path does
-//! not comes from rate; one that both explain alike comes from a plane that is too coarse or a start that is not known.
+//! Hysteresis as modelled here does not: run the input faster and the loops stay, for only the path
+//! of the input counts, not the clock (Visintin 1994). So what a static model leaves over is
+//! explained twice by what lags behind input and modelled output: once with time as the clock, once
+//! with the length of the path that the input has gone. A residual that time explains and the path
+//! does not comes from rate; one that both explain alike comes from a plane that is too coarse or a
+//! start that is not known.
 
 use super::{PrepareOptions, Step, prepare};
 use crate::error::Result;
@@ -37,7 +39,8 @@ pub struct RateDependence {
 }
 
 impl RateDependence {
-    /// Above this, in percent of the range, a static model errs by rate more than noise would make it: [`NOISE`].
+    /// Above this, in percent of the range, a static model errs by rate more than noise would make
+    /// it: [`NOISE`].
     pub const THRESHOLD: f64 = 100.0 * NOISE;
 
     /// Whether to warn.
@@ -47,8 +50,8 @@ impl RateDependence {
     }
 }
 
-/// How much the recording, without its spikes, depends on rate; `None` without time, with fewer than 20 samples, or where time
-/// stands still.
+/// How much the recording, without its spikes, depends on rate; `None` without time, with fewer
+/// than 20 samples, or where time stands still.
 ///
 /// ```
 /// use hysteron::{Recording, rate_dependence};
@@ -104,8 +107,8 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
     }))
 }
 
-/// The largest R², over time constants on `clock`, of `residual` against what first-order lags of the two series are behind by;
-/// and that constant.
+/// The largest R², over time constants on `clock`, of `residual` against what first-order lags of
+/// the two series are behind by; and that constant.
 fn explained(residual: &[f64], series: [&Vec<f64>; 2], clock: &[f64]) -> (f64, f64) {
     let total = clock[clock.len() - 1] - clock[0];
     let shortest = total / clock.len() as f64;
@@ -141,7 +144,8 @@ fn centred(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The part of the variance of `y` that the best combination of `a` and `b` explains, all of mean zero.
+/// The part of the variance of `y` that the best combination of `a` and `b` explains, all of mean
+/// zero.
 fn r_squared(y: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let dot = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
     let (aa, yy) = (dot(a, a), dot(y, y));

@@ -5,14 +5,16 @@ use serde::Serialize;
 /// How many places are named.
 const NAMED: usize = 10;
 
-/// What [`crate::prepare`] did, step by step; `None` for a step that was off, or for resampling that was not needed.
+/// What [`crate::prepare`] did, step by step; `None` for a step that was off, or for resampling
+/// that was not needed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preparation {
     /// Samples of the recording as it came.
     pub samples_before: usize,
     /// Samples of the result.
     pub samples: usize,
-    /// Standard deviation of the white noise on the input, without spikes, in its unit: see [`crate::noise`].
+    /// Standard deviation of the white noise on the input, without spikes, in its unit: see
+    /// [`crate::noise`].
     pub input_noise: f64,
     /// The same of the output.
     pub output_noise: f64,

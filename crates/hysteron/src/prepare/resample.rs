@@ -8,20 +8,23 @@ use crate::remedy::{Remedy, Setting};
 /// Steps that differ from the median by up to this part of it are equal: a filter does not notice.
 const JITTER: f64 = 0.1;
 
-/// By default, the samples grow at most this many times in number, however short the median step is.
+/// By default, the samples grow at most this many times in number, however short the median step
+/// is.
 const GROWTH: f64 = 4.0;
 
 /// More samples than this are a mistyped step.
 const MOST_SAMPLES: f64 = 1e8;
 
-/// The median step, or the average one where that is so much longer that the samples would grow beyond all bounds.
+/// The median step, or the average one where that is so much longer that the samples would grow
+/// beyond all bounds.
 pub(super) fn step_of(time: &[f64]) -> f64 {
     let duration = time[time.len() - 1] - time[0];
     let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
     median.max(duration / (GROWTH * time.len() as f64))
 }
 
-/// That the median step does not make the samples many times as many: over a long pause there is nothing to filter.
+/// That the median step does not make the samples many times as many: over a long pause there is
+/// nothing to filter.
 pub(super) fn fits(time: &[f64]) -> Result<()> {
     let duration = time[time.len() - 1] - time[0];
     let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
@@ -47,7 +50,8 @@ pub(super) fn irregular(time: &[f64]) -> bool {
     steps().any(|step| (step - median).abs() > JITTER * median)
 }
 
-/// All series at every `step` from the first sample on, on straight lines between samples. Of samples at the same time the last counts.
+/// All series at every `step` from the first sample on, on straight lines between samples. Of
+/// samples at the same time the last counts.
 pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
     let Some(old) = recording.time.take() else {
         return Ok(());

@@ -1,9 +1,10 @@
 //! Readings that lost their sign.
 //!
-//! A meter that shows the magnitude only, as some do just below zero, turns −3 into 3. Over a run of such samples the series
-//! jumps where the run begins or ends, unless it begins at zero. Of all ways of giving signs back the one is taken that makes the path of the
-//! series shortest, each run costing as much as a jump that is beyond doubt (a shortest path through two states a
-//! sample: Viterbi 1967).
+//! A meter that shows the magnitude only, as some do just below zero, turns −3 into 3. Over a run
+//! of such samples the series jumps where the run begins or ends, unless it begins at zero. Of all
+//! ways of giving signs back the one is taken that makes the path of the series shortest, each run
+//! costing as much as a jump that is beyond doubt (a shortest path through two states a sample:
+//! Viterbi 1967).
 
 use super::noise::{median_of, noise};
 use crate::series::range;
@@ -13,9 +14,11 @@ const NEAR_ZERO: f64 = 0.1;
 
 /// What one run costs: this part of the range, or more.
 const LEAST_GAIN: f64 = 0.04;
-/// Or this many standard deviations of the noise, which crosses zero too: turning one sample saves at most four times its magnitude.
+/// Or this many standard deviations of the noise, which crosses zero too: turning one sample saves
+/// at most four times its magnitude.
 const NOISES: f64 = 16.0;
-/// Or this many usual steps: a series that goes from one side to the other in single steps does so by itself.
+/// Or this many usual steps: a series that goes from one side to the other in single steps does so
+/// by itself.
 const STEPS: f64 = 3.0;
 
 /// Gives back lost signs, in place, and returns which samples were turned.
@@ -31,7 +34,8 @@ pub(super) fn restore(values: &mut [f64]) -> Vec<usize> {
         .max(STEPS * usual);
     let turnable = |x: f64| x >= 0.0 && x <= NEAR_ZERO * (high - low);
 
-    // Cost of the best path that ends with the sample as it is, and turned; and whether that path came from a turned one.
+    // Cost of the best path that ends with the sample as it is, and turned; and whether that path
+    // came from a turned one.
     let mut cost = [0.0, f64::INFINITY];
     let mut came_turned: Vec<[bool; 2]> = Vec::with_capacity(values.len());
     let mut last = None;

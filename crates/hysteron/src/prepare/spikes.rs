@@ -1,9 +1,10 @@
 //! Isolated spikes.
 //!
-//! Hampel's identifier (1974): a sample is an outlier if it is further from the median of its neighbours than so many of their median
-//! absolute deviations. Recordings of actuators go up and down steeply, so the median gives way to a robust line through
-//! the neighbours (Theil 1950, Sen 1968), and a spike has to stick out beyond the samples on both sides of it: a step or a turn of the
-//! signal does not.
+//! Hampel's identifier (1974): a sample is an outlier if it is further from the median of its
+//! neighbours than so many of their median absolute deviations. Recordings of actuators go up and
+//! down steeply, so the median gives way to a robust line through the neighbours (Theil 1950, Sen
+//! 1968), and a spike has to stick out beyond the samples on both sides of it: a step or a turn of
+//! the signal does not.
 
 use super::noise::{deviation_of, median_of, noise};
 use crate::series::range;
@@ -11,14 +12,16 @@ use crate::series::range;
 /// Neighbours on either side. Eight of them outvote three samples in a row that are wrong.
 const REACH: usize = 4;
 
-/// Deviations from which on a sample is a spike. Hampel's 3 would take one sample in 400 of Gaussian noise for one; 4, one
-/// in 16,000.
+/// Deviations from which on a sample is a spike. Hampel's 3 would take one sample in 400 of
+/// Gaussian noise for one; 4, one in 16,000.
 pub(super) const DEVIATIONS: f64 = 4.0;
 
-/// A spike below this part of the range is left: less than half the distance between the levels of a plane of 20.
+/// A spike below this part of the range is left: less than half the distance between the levels of
+/// a plane of 20.
 const SMALLEST: f64 = 0.02;
 
-/// Replaces spikes of more than `deviations` by the line between their neighbours, in place, and returns which samples were replaced.
+/// Replaces spikes of more than `deviations` by the line between their neighbours, in place, and
+/// returns which samples were replaced.
 pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     let (low, high) = range(values);
     let sigma = noise(values);
@@ -63,7 +66,8 @@ pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     replaced
 }
 
-/// How far the sample in the middle is from the line through the others, and their deviation from it.
+/// How far the sample in the middle is from the line through the others, and their deviation from
+/// it.
 fn against_neighbours(window: &[f64]) -> (f64, f64) {
     let others = || {
         (0..window.len())
@@ -107,7 +111,8 @@ mod tests {
         let mut repaired = spiked.clone();
         assert_eq!(remove(&mut repaired, DEVIATIONS), at);
         for n in at {
-            // The line between neighbours, at a corner one step of 1 away from the truth, and the noise.
+            // The line between neighbours, at a corner one step of 1 away from the truth, and the
+            // noise.
             assert!((repaired[n] - clean[n]).abs() < 2.0, "{n}: {}", repaired[n]);
         }
         let untouched = |n: &usize| !at.contains(n);

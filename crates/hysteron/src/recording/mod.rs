@@ -160,11 +160,12 @@ impl Recording {
         (range(&self.input), range(&self.output))
     }
 
-    /// That the samples can be worked with, as every function of this crate that takes a recording demands.
+    /// That the samples can be worked with, as every function of this crate that takes a recording
+    /// demands.
     ///
     /// # Errors
-    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite, or
-    /// time goes back.
+    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite,
+    /// or time goes back.
     pub fn check(&self) -> Result<()> {
         let fault = |column: &str, problem: String| Error::Recording {
             path: self.source.as_ref().map(|source| source.path.clone()),

@@ -10,7 +10,8 @@ pub struct Errors {
     pub rmse: f64,
     /// Largest absolute difference, in the unit of the series.
     pub max_abs: f64,
-    /// `rmse` in percent of the measured range of the whole series; `None` where that range is zero.
+    /// `rmse` in percent of the measured range of the whole series; `None` where that range is
+    /// zero.
     pub nrmse_percent: Option<f64>,
     /// How many samples were compared.
     pub samples: usize,

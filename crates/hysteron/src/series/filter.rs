@@ -1,13 +1,14 @@
 //! Low-pass filtering without phase shift, for recordings that are at hand as a whole.
 //!
-//! A Butterworth filter of order 2 runs over the samples forward and then backward (the method of `filtfilt` in SciPy and MATLAB): the
-//! delays cancel and the attenuation doubles, so the gain is 1 at rest and ½ at the cut-off. At both ends the
-//! samples are continued by reflection through the end point, which continues a ramp as a ramp, and each pass sets out
-//! settled on its first value.
+//! A Butterworth filter of order 2 runs over the samples forward and then backward (the method of
+//! `filtfilt` in SciPy and MATLAB): the delays cancel and the attenuation doubles, so the gain is 1
+//! at rest and ½ at the cut-off. At both ends the samples are continued by reflection through the
+//! end point, which continues a ramp as a ramp, and each pass sets out settled on its first value.
 
 use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, Type};
 
-/// Reflected samples at each end, in periods of the cut-off; the settling has died down to 10⁻¹⁰ of itself over them.
+/// Reflected samples at each end, in periods of the cut-off; the settling has died down to 10⁻¹⁰ of
+/// itself over them.
 const PADDING_PERIODS: f64 = 6.0;
 
 /// Why the low-pass filter refused its arguments.
@@ -35,7 +36,8 @@ pub enum FilterError {
     NotFinite(usize),
 }
 
-/// `samples`, taken at `sample_rate` (Hz), without what moves faster than `cutoff` (Hz, below half the sampling rate).
+/// `samples`, taken at `sample_rate` (Hz), without what moves faster than `cutoff` (Hz, below half
+/// the sampling rate).
 ///
 /// The result has as many samples. A constant and a straight line come through unchanged.
 ///
@@ -73,8 +75,8 @@ pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f6
 
     let padding = (PADDING_PERIODS * sample_rate / cutoff).ceil() as usize;
     let padding = padding.min(samples.len() - 1);
-    // Only the distance from the line through the end points is filtered: in a recording too short for the settling to die
-    // down, a ramp would be bent otherwise.
+    // Only the distance from the line through the end points is filtered: in a recording too short
+    // for the settling to die down, a ramp would be bent otherwise.
     let rise = (last - first) / (samples.len() - 1) as f64;
     let line = |n: usize| first + rise * n as f64;
     let level: Vec<f64> = (0..).zip(samples).map(|(n, x)| x - line(n)).collect();
@@ -92,8 +94,8 @@ pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f6
     Ok((0..).zip(filtered).map(|(n, x)| line(n) + x).collect())
 }
 
-/// One pass of the filter, in place. Its gain at rest is 1, so filtering the distance from the first sample from an empty
-/// state is the same as setting out settled on that sample.
+/// One pass of the filter, in place. Its gain at rest is 1, so filtering the distance from the
+/// first sample from an empty state is the same as setting out settled on that sample.
 fn run<'a>(section: Coefficients<f64>, samples: impl Iterator<Item = &'a mut f64>) {
     let mut state = DirectForm2Transposed::<f64>::new(section);
     let mut origin = None;

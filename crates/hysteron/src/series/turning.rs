@@ -13,8 +13,8 @@ pub fn usual_tolerance(series: &[f64]) -> f64 {
     NOISE * (high - low).max(0.0)
 }
 
-/// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
-/// from it by more than `tolerance`.
+/// Finds the turning points of a series as it comes: an extreme counts once the series has gone
+/// back from it by more than `tolerance`.
 ///
 /// ```
 /// use hysteron::{Direction, Turning};
@@ -45,8 +45,8 @@ impl Turning {
         }
     }
 
-    /// Takes the next sample. Returns an extreme that is now known, by its index, with the direction
-    /// the series takes from there; the start counts as one.
+    /// Takes the next sample. Returns an extreme that is now known, by its index, with the
+    /// direction the series takes from there; the start counts as one.
     pub fn push(&mut self, y: f64) -> Option<(usize, Direction)> {
         let n = self.count;
         self.count += 1;
@@ -81,8 +81,8 @@ impl Turning {
     }
 }
 
-/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `tolerance`; the
-/// turning point belongs to the branch before it.
+/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns
+/// by more than `tolerance`; the turning point belongs to the branch before it.
 ///
 /// ```
 /// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
@@ -105,9 +105,10 @@ pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
     (0..series.len()).map(of_sample).collect()
 }
 
-/// The samples of a series that a hysteresis operator still remembers at its end, ascending: from its largest or its smallest, whichever comes
-/// first, the extremes that none after them reach, and the last sample. These alone leave every operator where the whole series leaves
-/// it, from all off or all on (return-point memory: Mayergoyz 2003, section 1.2).
+/// The samples of a series that a hysteresis operator still remembers at its end, ascending: from
+/// its largest or its smallest, whichever comes first, the extremes that none after them reach, and
+/// the last sample. These alone leave every operator where the whole series leaves it, from all off
+/// or all on (return-point memory: Mayergoyz 2003, section 1.2).
 ///
 /// ```
 /// assert_eq!(hysteron::remembered(&[0.0, 5.0, 2.0, 4.0, 1.0, 3.0, 2.5]), [0, 1, 4, 5, 6]);
@@ -132,8 +133,8 @@ pub fn remembered(series: &[f64]) -> Vec<usize> {
     found
 }
 
-/// For each sample of a series, the direction that the series takes next: up to an extreme and at it,
-/// that of the branch before it, and beyond it that of the branch after it.
+/// For each sample of a series, the direction that the series takes next: up to an extreme and at
+/// it, that of the branch before it, and beyond it that of the branch after it.
 ///
 /// A sample's direction is known only once the series has moved on, so it comes out some samples
 /// later; of those that wait, at most `capacity`, the oldest comes out without a direction.

@@ -5,8 +5,9 @@ use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 
-/// All columns of the file that a recording was read from, in their order and with their names; units
-/// that stood in a row below them stand behind them, and a time in another unit is in seconds.
+/// All columns of the file that a recording was read from, in their order and with their names;
+/// units that stood in a row below them stand behind them, and a time in another unit is in
+/// seconds.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
     header: Vec<String>,
@@ -16,7 +17,8 @@ pub struct Others {
 }
 
 impl Others {
-    /// None yet, of a table of which these columns are the recording's input, output, time and load.
+    /// None yet, of a table of which these columns are the recording's input, output, time and
+    /// load.
     pub(super) fn of(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
         Self {
             header: table.names_with_units(),
@@ -38,8 +40,8 @@ impl Others {
 
     /// Writes `recording`, made of the one that was read with these columns by [`crate::prepare`]
     /// from the times `before`: its series in their places, and the other columns beside them.
-    /// Where it was resampled, columns of numbers are interpolated, and others left out. Returns the
-    /// names of those.
+    /// Where it was resampled, columns of numbers are interpolated, and others left out. Returns
+    /// the names of those.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].

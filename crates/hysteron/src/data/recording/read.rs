@@ -14,15 +14,15 @@ use std::path::Path;
 impl Recording {
     /// Reads a recording from a CSV, Parquet or MATLAB file; `-` is CSV from standard input.
     ///
-    /// CSV has cells between commas, semicolons or tabs, with a decimal point or, where commas do not
-    /// separate them, a decimal comma; a row of units may stand below the header, and lines beginning
-    /// with `#` or `%` are comments. What a logger or LabVIEW writes above the header is skipped;
-    /// without a header, columns go by number, from 1. The text is UTF-8, UTF-16 with a byte order
-    /// mark, or else Windows-1252.
+    /// CSV has cells between commas, semicolons or tabs, with a decimal point or, where commas do
+    /// not separate them, a decimal comma; a row of units may stand below the header, and lines
+    /// beginning with `#` or `%` are comments. What a logger or LabVIEW writes above the header is
+    /// skipped; without a header, columns go by number, from 1. The text is UTF-8, UTF-16 with a
+    /// byte order mark, or else Windows-1252.
     ///
-    /// In a MATLAB file vectors have their variable's name, fields of structures are `name.field`, and
-    /// the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues DataValues]` asked for as
-    /// `M` is its data, and its times are used where no time is asked for.
+    /// In a MATLAB file vectors have their variable's name, fields of structures are `name.field`,
+    /// and the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues DataValues]` asked
+    /// for as `M` is its data, and its times are used where no time is asked for.
     ///
     /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, by its
     /// name or the row of units, is turned into seconds.
@@ -30,11 +30,11 @@ impl Recording {
     /// The notes tell what was assumed and mended, and of gaps in time.
     ///
     /// # Errors
-    /// [`crate::Error::File`]; [`crate::Error::Recording`] with row and column where a column is missing, a row is
-    /// ragged, or there are no rows; and, to be refused and not mended, where a cell is no finite
-    /// number, a row has more or fewer cells than the header, times go back or are repeated, or input
-    /// and output have different times; also where the file's contents take more memory than
-    /// [`ReadOptions::max_memory`].
+    /// [`crate::Error::File`]; [`crate::Error::Recording`] with row and column where a column is
+    /// missing, a row is ragged, or there are no rows; and, to be refused and not mended, where a
+    /// cell is no finite number, a row has more or fewer cells than the header, times go back or
+    /// are repeated, or input and output have different times; also where the file's contents take
+    /// more memory than [`ReadOptions::max_memory`].
     ///
     /// ```
     /// use hysteron::{Columns, Recording, Repair};

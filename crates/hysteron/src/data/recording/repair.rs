@@ -10,8 +10,8 @@ pub enum Repair {
     /// They are refused, with their places.
     #[default]
     Refuse,
-    /// Those without a number, or with more or fewer cells than the header, are dropped; those whose times go back are sorted; those at one time
-    /// become one, with the mean of their values.
+    /// Those without a number, or with more or fewer cells than the header, are dropped; those
+    /// whose times go back are sorted; those at one time become one, with the mean of their values.
     Mend,
 }
 

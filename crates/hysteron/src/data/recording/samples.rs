@@ -146,7 +146,8 @@ impl Samples {
         Ok(notes)
     }
 
-    /// The rows between whose time and that of the row before something holds, and the first as a fault.
+    /// The rows between whose time and that of the row before something holds, and the first as a
+    /// fault.
     fn steps(
         &self,
         table: &TableReader,
@@ -234,8 +235,8 @@ fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
     fault.remedied(Remedy::new(words, [Setting::on("repair")]))
 }
 
-/// A series at other times, along straight lines; NaN outside its own times. Only its finite samples
-/// count, in the order of their times, and of those at one time the last.
+/// A series at other times, along straight lines; NaN outside its own times. Only its finite
+/// samples count, in the order of their times, and of those at one time the last.
 pub(super) fn interpolate(times: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
     let samples = times.iter().zip(values).map(|(t, y)| (*t, *y));
     let mut samples: Vec<_> = samples

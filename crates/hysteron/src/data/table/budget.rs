@@ -1,4 +1,5 @@
-//! How much memory reading a file may take. A file can claim any size; it is believed only within this.
+//! How much memory reading a file may take. A file can claim any size; it is believed only within
+//! this.
 
 use std::fmt;
 

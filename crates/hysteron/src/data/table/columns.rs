@@ -11,13 +11,13 @@ impl TableReader {
     /// its number, from 1; or by a name that one column's alone begins with. What is found by a
     /// number or a beginning is told in [`TableReader::remarks`].
     ///
-    /// In a MATLAB file a matrix `[TimeValues DataValues]` of two columns is found under its own name
-    /// as well, and means its data; and the first column found decides how many rows there are:
-    /// shorter and longer ones are then left out.
+    /// In a MATLAB file a matrix `[TimeValues DataValues]` of two columns is found under its own
+    /// name as well, and means its data; and the first column found decides how many rows there
+    /// are: shorter and longer ones are then left out.
     ///
     /// # Errors
-    /// [`Error::Recording`](crate::Error::Recording) where there is none of that name, naming those that there are, or two,
-    /// or where it is not as long as the first one.
+    /// [`Error::Recording`](crate::Error::Recording) where there is none of that name, naming those
+    /// that there are, or two, or where it is not as long as the first one.
     pub fn column(&mut self, name: &str) -> Result<Column> {
         let place = self.find(name)?;
         match &mut self.source {
@@ -31,8 +31,8 @@ impl TableReader {
         }
     }
 
-    /// As [`TableReader::column`], for a column of time: its numbers are given in seconds, where its
-    /// name or unit says that it is in another unit.
+    /// As [`TableReader::column`], for a column of time: its numbers are given in seconds, where
+    /// its name or unit says that it is in another unit.
     ///
     /// # Errors
     /// As [`TableReader::column`].

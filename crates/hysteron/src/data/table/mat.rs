@@ -9,7 +9,8 @@ use super::numbers::Numbers;
 /// How deep structures are looked into.
 const DEEPEST: usize = 16;
 
-/// A numeric variable with its values column by column. A field of a structure is `structure.field`.
+/// A numeric variable with its values column by column. A field of a structure is
+/// `structure.field`.
 pub(super) struct Variable {
     pub(super) name: String,
     pub(super) rows: usize,

@@ -1,4 +1,5 @@
-//! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through one reader.
+//! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through
+//! one reader.
 
 mod budget;
 mod columns;
@@ -31,8 +32,8 @@ use time::TimeUnit;
 /// Reads a table with named columns, one row at a time.
 ///
 /// CSV is read as a stream and Parquet by row groups, so that memory does not grow with the file; a
-/// MATLAB file is held whole. In a MATLAB file a vector is a column under its own name, and a matrix
-/// `M` is the columns `M:1`, `M:2` and so on.
+/// MATLAB file is held whole. In a MATLAB file a vector is a column under its own name, and a
+/// matrix `M` is the columns `M:1`, `M:2` and so on.
 pub struct TableReader {
     path: PathBuf,
     header: Vec<String>,
@@ -96,8 +97,8 @@ impl TableReader {
         Self::open_as(path, max_memory, None, None)
     }
 
-    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end, and with what becomes
-    /// of rows that are cut short.
+    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end, and with what
+    /// becomes of rows that are cut short.
     pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
         let (repair, hash) = (Some(options.repair), Some(Hash::default()));
         Self::open_as(path, options.max_memory, repair, hash)
@@ -127,7 +128,8 @@ impl TableReader {
         &self.path
     }
 
-    /// What was assumed in reading the file, for a message; all of it is known at the end of the table.
+    /// What was assumed in reading the file, for a message; all of it is known at the end of the
+    /// table.
     pub fn remarks(&self) -> impl Iterator<Item = &Remark> {
         let of_text: &[Remark] = match &self.source {
             Source::Text(text) => text.remarks(),

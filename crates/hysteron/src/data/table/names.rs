@@ -1,8 +1,8 @@
 //! Columns by the names that people give them.
 //!
 //! A column is looked for, in this order, by its exact name; by its name without its unit, in upper
-//! or lower case; by its number, from 1; and by a name that is the beginning of its own, or ends one
-//! or two letters later, if that is so of one column only.
+//! or lower case; by its number, from 1; and by a name that is the beginning of its own, or ends
+//! one or two letters later, if that is so of one column only.
 
 use super::shortened;
 use crate::recording::Quantity;
@@ -63,7 +63,8 @@ fn without_unit(name: &str) -> String {
 }
 
 /// Whether one name begins with the other: `temp` and `temperature_c`, or, with up to two letters
-/// more than the column has, `temperature` and `temperatur`. Numbers are not cut: `x1` is not `x10`.
+/// more than the column has, `temperature` and `temperatur`. Numbers are not cut: `x1` is not
+/// `x10`.
 fn begins(asked: &str, column: &str) -> bool {
     const SHORTEST: usize = 3;
     const LETTERS: usize = 2;

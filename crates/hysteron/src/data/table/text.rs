@@ -20,7 +20,8 @@ use split::Splitter;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// A line longer than this is none of a table of numbers, and a quoted cell that goes on for longer is not closed.
+/// A line longer than this is none of a table of numbers, and a quoted cell that goes on for longer
+/// is not closed.
 const LONGEST: u64 = 1 << 22;
 
 /// The rows of a text file.
@@ -40,7 +41,8 @@ pub(super) struct Text {
     bytes: u64,
     /// Whether the row is still to be given out, because it was read in search of the header.
     held: bool,
-    /// What becomes of rows of another length than the header's; `None` where nothing can be mended.
+    /// What becomes of rows of another length than the header's; `None` where nothing can be
+    /// mended.
     repair: Option<Repair>,
     ragged: Places,
     /// The columns asked for, and what their commas say.

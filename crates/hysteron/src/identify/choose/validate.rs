@@ -1,5 +1,5 @@
-//! Cross-validation that leaves out whole branches: the samples of one branch are so alike that leaving
-//! out some of them would test nothing.
+//! Cross-validation that leaves out whole branches: the samples of one branch are so alike that
+//! leaving out some of them would test nothing.
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
@@ -43,12 +43,13 @@ impl Candidates {
     }
 }
 
-/// Chooses levels and smoothness by the error on left-out branches. Returns the options with the choice
-/// made, and how it came about.
+/// Chooses levels and smoothness by the error on left-out branches. Returns the options with the
+/// choice made, and how it came about.
 ///
-/// Chosen is the smoothest candidate that is worse than the best by no more than one standard error over the folds. More
-/// levels are tried until two numbers in a row have not reduced the error by 1 %. With unknown starts in several recordings, the
-/// patterns of starts are all off and all on only.
+/// Chosen is the smoothest candidate that is worse than the best by no more than one standard error
+/// over the folds. More levels are tried until two numbers in a row have not reduced the error by 1
+/// %. With unknown starts in several recordings, the patterns of starts are all off and all on
+/// only.
 ///
 /// # Errors
 /// As [`super::fit_weights`].
@@ -139,8 +140,8 @@ pub(crate) fn choose(
 }
 
 /// Of the candidates that are worse than the best by no more than one standard error of that
-/// difference over the folds, the smoothest, and of these the best: the one-standard-error rule of Breiman
-/// et al. (1984), which keeps the noise of the folds from choosing too little.
+/// difference over the folds, the smoothest, and of these the best: the one-standard-error rule of
+/// Breiman et al. (1984), which keeps the noise of the folds from choosing too little.
 fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
     let best = (0..scores.len()).min_by(|a, b| scores[*a].rmse.total_cmp(&scores[*b].rmse))?;
     let as_good = |n: &usize| {
@@ -160,8 +161,8 @@ fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
     chosen.map(|n| scores[n])
 }
 
-/// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the folds
-/// are of whole branches.
+/// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the
+/// folds are of whole branches.
 fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) {
     let (unit, units, whole) = problem.experiment.units(kept, ENOUGH_BRANCHES);
     let count = units.min(FOLDS);

@@ -26,9 +26,10 @@ const FACTORS: usize = 12;
 
 /// Offsets and weights of fits to data that might have been.
 ///
-/// A wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008): what a fit without them leaves of branches is put back with the
-/// sign of whole branches turned at random, and fitted again. Errors that are alike along a branch, as those of
-/// a model are, then count as what they are.
+/// A wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008): what a fit without
+/// them leaves of branches is put back with the sign of whole branches turned at random, and fitted
+/// again. Errors that are alike along a branch, as those of a model are, then count as what they
+/// are.
 pub(crate) fn replicates(
     problem: &Problem,
     fitted: &Fitted,
@@ -69,8 +70,9 @@ pub(crate) fn replicates(
     })
 }
 
-/// The error at each sample of a fit without its unit. A fit bends towards each branch, the more the fewer others
-/// speak of the same weights; these errors do not (the residuals of MacKinnon, Nielsen and Webb 2023).
+/// The error at each sample of a fit without its unit. A fit bends towards each branch, the more
+/// the fewer others speak of the same weights; these errors do not (the residuals of MacKinnon,
+/// Nielsen and Webb 2023).
 fn left_out_errors(
     problem: &Problem,
     fitted: &Fitted,
@@ -120,14 +122,17 @@ fn replicate(
 ) -> Result<Vec<f64>> {
     let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
     let mut right = equations.times(x);
-    // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
+    // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the
+    // fit.
     right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
     equations.minimum(&right, x, factor, Progress::NONE)
 }
 
-/// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).
+/// Root mean squared deviations of the replicates from the fit, and their main joint ones
+/// (principal components).
 ///
-/// From the fit, not from the replicates' mean: where a weight is zero, all of them lie on one side.
+/// From the fit, not from the replicates' mean: where a weight is zero, all of them lie on one
+/// side.
 pub(crate) fn spread(replicates: &[LoadPart], fit: &LoadPart) -> (LoadPart, Vec<LoadPart>) {
     let count = fit.weights.len() + 1;
     let value = |part: &LoadPart, n: usize| match n {

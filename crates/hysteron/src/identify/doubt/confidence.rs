@@ -1,5 +1,5 @@
-//! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
-//! the output.
+//! What the data say of the weights, and what not: excitation, rank, standard errors, and a band
+//! around the output.
 
 use crate::error::Result;
 use crate::identify::doubt::bootstrap;
@@ -68,7 +68,8 @@ pub(crate) fn of(
         .iter()
         .map(|range| &experiment.input[range.clone()])
         .collect();
-    // Where it is not known, the classes are those from off; what is open then counts among the unknowns.
+    // Where it is not known, the classes are those from off; what is open then counts among the
+    // unknowns.
     let start = match options.start {
         Start::On => Initial::On,
         Start::Off | Start::Unknown => Initial::Off,
@@ -88,8 +89,8 @@ pub(crate) fn of(
     }))
 }
 
-/// How many parameters the fit has: one for each weight above zero, less as far as the penalty ties them together,
-/// `tr (G + P)⁻¹ G` over these (Hastie, Tibshirani and Friedman 2009, 7.6).
+/// How many parameters the fit has: one for each weight above zero, less as far as the penalty ties
+/// them together, `tr (G + P)⁻¹ G` over these (Hastie, Tibshirani and Friedman 2009, 7.6).
 fn degrees_of_freedom(
     x: &[f64],
     equations: &NormalEquations<'_>,

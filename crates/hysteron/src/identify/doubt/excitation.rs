@@ -1,9 +1,10 @@
 //! What recorded inputs can say about each operator, whatever the output was.
 //!
-//! The offset is free, so what counts is the regressor matrix with its column means taken off. An operator's weight is
-//! determined where its unit vector lies in that matrix' row space; this is read off the resolution matrix
-//! `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the centred Gram matrix: a diagonal element of 1 says that the weight
-//! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
+//! The offset is free, so what counts is the regressor matrix with its column means taken off. An
+//! operator's weight is determined where its unit vector lies in that matrix' row space; this is
+//! read off the resolution matrix `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the
+//! centred Gram matrix: a diagonal element of 1 says that the weight is found, less than 1 that a
+//! part of it can be shifted to other operators and the output stays the same.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::sparse::{Initial, SparseForm};
@@ -16,23 +17,25 @@ use faer::{Mat, Side};
 use hysteron_core::Operator;
 use hysteron_core::{Definition, operator_index};
 
-/// Ridge `ε`. The centred Gram matrix counts samples: an operator that alone swings fully, for a few samples, has an
-/// element of about 1 there, and a spiral of [`crate::design()`] with ten samples a level no eigenvalue below 0.1.
-/// Swings of 1 % in a single sample leave 1e-4, and count as none.
+/// Ridge `ε`. The centred Gram matrix counts samples: an operator that alone swings fully, for a
+/// few samples, has an element of about 1 there, and a spiral of [`crate::design()`] with ten
+/// samples a level no eigenvalue below 0.1. Swings of 1 % in a single sample leave 1e-4, and count
+/// as none.
 const RIDGE: f64 = 1e-4;
 
 /// Rounding of the Gram matrix relative to its trace, which bounds every eigenvalue.
 const ROUNDING: f64 = 1e-12;
 
-/// Largest unresolved part of what counts as determined. The ridge leaves up to `RIDGE / 0.1`; one missing
-/// equation among weights leaves 1/4, its weights being `+1, −1, −1, +1` around a corner, and 1/K if a whole row is seen as a sum.
+/// Largest unresolved part of what counts as determined. The ridge leaves up to `RIDGE / 0.1`; one
+/// missing equation among weights leaves 1/4, its weights being `+1, −1, −1, +1` around a corner,
+/// and 1/K if a whole row is seen as a sum.
 pub(crate) const UNRESOLVED: f64 = 5e-3;
 
-/// The class of every operator, in the order of the weights, after the recorded `inputs`: each sets out with every
-/// operator off, and one offset is common to all.
+/// The class of every operator, in the order of the weights, after the recorded `inputs`: each sets
+/// out with every operator off, and one offset is common to all.
 ///
-/// A branch ends at a reversal of more than 1 % of the recording's range. Noise on an input counts as movement: prepare the
-/// input before. `O(n + N³)` time and `O(N²)` memory.
+/// A branch ends at a reversal of more than 1 % of the recording's range. Noise on an input counts
+/// as movement: prepare the input before. `O(n + N³)` time and `O(N²)` memory.
 ///
 /// ```
 /// use hysteron::{Excitation, Operator, Plane, excitation};
@@ -46,12 +49,14 @@ pub(crate) const UNRESOLVED: f64 = 5e-3;
 /// ```
 ///
 /// # Errors
-/// [`Error::Core`] for an input that is not finite; [`Error::Fit`] where the plane has too many operators for their Gram matrix.
+/// [`Error::Core`] for an input that is not finite; [`Error::Fit`] where the plane has too many
+/// operators for their Gram matrix.
 pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<Excitation>> {
     Unresolved::of(inputs, plane, operator, Initial::Off)?.classes(inputs)
 }
 
-/// What recorded inputs leave open: `I − R = ε (G + εI)⁻¹`, the part of a unit prior variance that data of unit noise leave.
+/// What recorded inputs leave open: `I − R = ε (G + εI)⁻¹`, the part of a unit prior variance that
+/// data of unit noise leave.
 pub(crate) struct Unresolved {
     plane: Plane,
     operator: Operator,
@@ -100,7 +105,8 @@ impl Unresolved {
         Ok(moves.into_iter().enumerate().map(class).collect())
     }
 
-    /// Which Everett corners `C[p][q]`, `q < p`, are determined, each at the place of weight `(q + 1, p)`.
+    /// Which Everett corners `C[p][q]`, `q < p`, are determined, each at the place of weight
+    /// `(q + 1, p)`.
     ///
     /// A corner is a sum of weights: `S (I − R) Sᵀ` has on its diagonal what is open of each.
     pub(crate) fn corners_known(&self) -> Vec<bool> {

@@ -14,33 +14,38 @@ use serde_json::json;
 /// Samples that the search looks at, or up to three times as many; the last fit sees all.
 const SEARCHED: usize = 2000;
 
-/// Time constants that the longest recording must last: after four of them a body has settled to 2 %. A slower one
-/// cannot be told from a drift.
+/// Time constants that the longest recording must last: after four of them a body has settled to 2
+/// %. A slower one cannot be told from a drift.
 const SETTLED: f64 = 4.0;
 
 /// Neighbours on the first grid of time constants differ by this factor.
 const GRID: f64 = 2.0;
 
-/// Time constants are resolved where one of half or twice the size fits this much worse (RMSE), whatever
-/// the other one. Much less can be had by chance, for the weights make up for a wrong body.
+/// Time constants are resolved where one of half or twice the size fits this much worse (RMSE),
+/// whatever the other one. Much less can be had by chance, for the weights make up for a wrong
+/// body.
 const RESOLVED: f64 = 1.25;
 
-/// Where the simplex is this small the time constants are known to a thousandth: far below what data can tell.
+/// Where the simplex is this small the time constants are known to a thousandth: far below what
+/// data can tell.
 const TOLERANCE: f64 = 1e-3;
 
 /// Steps of the simplex, several times what it takes.
 const STEPS: usize = 200;
 
-/// Identifies a thermal body and the weights behind it, from recordings of a drive (current, voltage, duty) with time.
+/// Identifies a thermal body and the weights behind it, from recordings of a drive (current,
+/// voltage, duty) with time.
 ///
-/// For given time constants the weights are a closed problem, that of [`fit_weights`]; the search is over the time
-/// constants only (separable least squares, Golub and Pereyra 1973), on a logarithmic grid and from its best
-/// point by the simplex of Nelder and Mead. They lie between the sampling step and a quarter of the longest recording: a faster body is
-/// always at rest, a slower one never comes near it. The plane is by default that of the temperature.
+/// For given time constants the weights are a closed problem, that of [`fit_weights`]; the search
+/// is over the time constants only (separable least squares, Golub and Pereyra 1973), on a
+/// logarithmic grid and from its best point by the simplex of Nelder and Mead. They lie between the
+/// sampling step and a quarter of the longest recording: a faster body is always at rest, a slower
+/// one never comes near it. The plane is by default that of the temperature.
 ///
-/// The weights can make up for a wrong body as long as each branch is driven in one way only. Where the two time constants are not
-/// resolved for that reason, one for both is identified, as a body in unchanging surroundings has; `fit.other["thermal"]` of the model
-/// says which. Drives of different shape, a ramp and a step, tell them apart.
+/// The weights can make up for a wrong body as long as each branch is driven in one way only. Where
+/// the two time constants are not resolved for that reason, one for both is identified, as a body
+/// in unchanging surroundings has; `fit.other["thermal"]` of the model says which. Drives of
+/// different shape, a ramp and a step, tell them apart.
 ///
 /// # Errors
 /// As [`fit_weights`]; [`Error::Thermal`] for recordings without time.
@@ -173,8 +178,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Of each run of `stride` samples the first and those with the extreme temperatures: without these the turning points,
-/// and with them the memory, would be others.
+/// Of each run of `stride` samples the first and those with the extreme temperatures: without these
+/// the turning points, and with them the memory, would be others.
 fn thin(recording: Recording, stride: usize) -> Recording {
     let theta = &recording.input;
     let starts = (0..theta.len()).step_by(stride);

@@ -22,7 +22,8 @@ impl Cholesky {
         &self.rows[start(i)..=start(i) + i]
     }
 
-    /// The factor of a whole matrix; `None` where that is not definite enough to tell from rounding.
+    /// The factor of a whole matrix; `None` where that is not definite enough to tell from
+    /// rounding.
     pub(crate) fn of(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let factor = Mat::from_fn(size, size, &element).llt(Side::Lower).ok()?;
         let l = factor.L();
@@ -34,8 +35,9 @@ impl Cholesky {
         })
     }
 
-    /// Takes a variable in: `column` holds its matrix elements with those taken in before, `diagonal`
-    /// that with itself. False, and nothing changed, where it depends on the others up to rounding.
+    /// Takes a variable in: `column` holds its matrix elements with those taken in before,
+    /// `diagonal` that with itself. False, and nothing changed, where it depends on the others up
+    /// to rounding.
     pub(crate) fn append(&mut self, mut column: Vec<f64>, diagonal: f64) -> bool {
         self.forward(&mut column);
         let pivot = diagonal - column.iter().map(|l| l * l).sum::<f64>();
@@ -48,8 +50,9 @@ impl Cholesky {
         true
     }
 
-    /// Takes the variable at place `k` out. Without its row, the rows below reach one element past the
-    /// diagonal; plane rotations of neighbouring columns take that element away again (Golub and Van Loan 2013, 6.5).
+    /// Takes the variable at place `k` out. Without its row, the rows below reach one element past
+    /// the diagonal; plane rotations of neighbouring columns take that element away again (Golub
+    /// and Van Loan 2013, 6.5).
     pub(crate) fn remove(&mut self, k: usize) {
         let mut to = start(k);
         let rest: Vec<f64> = self.rows.split_off(start(k + 1));

@@ -1,5 +1,5 @@
-//! Recordings put together into one experiment: their samples one after the other, their branches, and
-//! the functions of the load.
+//! Recordings put together into one experiment: their samples one after the other, their branches,
+//! and the functions of the load.
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
@@ -111,8 +111,9 @@ impl Experiment {
         self.branch.last().map_or(0, |last| last + 1)
     }
 
-    /// For each sample kept the unit that it stands or falls with: its branch, or, where there are fewer
-    /// than `enough` branches, a part of one, twice as many at least; how many units there are; and whether they are whole branches.
+    /// For each sample kept the unit that it stands or falls with: its branch, or, where there are
+    /// fewer than `enough` branches, a part of one, twice as many at least; how many units there
+    /// are; and whether they are whole branches.
     pub(crate) fn units(
         &self,
         kept: Option<&[f64]>,
@@ -213,7 +214,8 @@ fn check_range(
 /// input: the lowest ridge starts one step below the lowest level.
 ///
 /// # Errors
-/// [`Error::Core`] for a number of levels that cannot be, [`Error::Recording`] for an input that never changes.
+/// [`Error::Core`] for a number of levels that cannot be, [`Error::Recording`] for an input that
+/// never changes.
 pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
     check_range(std::slice::from_ref(recording), &recording.input, |r| {
         &r.input_quantity.name

@@ -1,4 +1,5 @@
-//! The start of a recording, with a model that is known: how much of each operator is on before the first sample.
+//! The start of a recording, with a model that is known: how much of each operator is on before the
+//! first sample.
 
 use crate::error::Result;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
@@ -7,15 +8,17 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 
-/// Sweeps end when none moves the output by more than this part of the model's range, and at the latest after so many.
+/// Sweeps end when none moves the output by more than this part of the model's range, and at the
+/// latest after so many.
 const ENOUGH: f64 = 1e-9;
 const SWEEPS: usize = 10_000;
 
 /// The outputs of `model` for the recording's input, from the start that explains its output best.
 ///
-/// Every operator that the first sample leaves open contributes `ν (γ_on − γ_off)` more than from off, with
-/// `ν` between 0 and its weight: bounded least squares, one coordinate at a time (Hildreth 1957). With weights of either sign
-/// `ν` is free, as it is where such weights are identified.
+/// Every operator that the first sample leaves open contributes `ν (γ_on − γ_off)` more than from
+/// off, with `ν` between 0 and its weight: bounded least squares, one coordinate at a time
+/// (Hildreth 1957). With weights of either sign `ν` is free, as it is where such weights are
+/// identified.
 pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Result<Vec<f64>> {
     let form = SparseForm::new(*model.plane(), model.operator())?;
     let (count, input) = (form.operators(), &recording.input);

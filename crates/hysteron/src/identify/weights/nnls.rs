@@ -1,6 +1,6 @@
-//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson (1974),
-//! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
-//! and with a factor that is updated, not made anew.
+//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson
+//! (1974), in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables
+//! at a time and with a factor that is updated, not made anew.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::cholesky::Cholesky;
@@ -10,8 +10,9 @@ use crate::progress::Progress;
 /// gradients, but many of them leave again.
 const STRIDE: usize = 8;
 
-/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
-/// definite, `N × N`, row by row. The objective never rises; where rounding keeps it from falling, the number of steps ends it.
+/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and
+/// positive definite, `N × N`, row by row. The objective never rises; where rounding keeps it from
+/// falling, the number of steps ends it.
 pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
@@ -135,7 +136,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// `Bᵀ B` with `rows` random rows and a ridge; of lower rank where there are fewer rows than columns.
+    /// `Bᵀ B` with `rows` random rows and a ridge; of lower rank where there are fewer rows than
+    /// columns.
     fn system(rng: &mut ChaCha8Rng, count: usize, rows: usize, ridge: f64) -> (Vec<f64>, Vec<f64>) {
         let b: Vec<Vec<f64>> = (0..rows)
             .map(|_| (0..count).map(|_| rng.random_range(0.0..1.0)).collect())
@@ -177,7 +179,8 @@ mod tests {
             // From well conditioned to what rounding alone makes definite.
             let ridge = [1e-1, 1e-5, 1e-9][round % 3];
             let (a, b) = system(&mut rng, count, rows, ridge);
-            // Starts with zeros, tiny numbers and large ones: at the boundary a step may have no length.
+            // Starts with zeros, tiny numbers and large ones: at the boundary a step may have no
+            // length.
             let start: Vec<f64> = (0..count)
                 .map(|_| [0.0, 0.0, 1e-300, 1e-12, 1.0][rng.random_range(0..5)])
                 .collect();

@@ -1,7 +1,7 @@
-//! Block principal pivoting for non-negative least squares (Portugal, Júdice and Vicente 1994; Kim and Park
-//! 2011): a whole block of variables changes sides at once, each time with a new factor. Where most
-//! variables end above zero, as with smooth weights, this takes some ten factors, where an active set
-//! takes the variables in one by one.
+//! Block principal pivoting for non-negative least squares (Portugal, Júdice and Vicente 1994; Kim
+//! and Park 2011): a whole block of variables changes sides at once, each time with a new factor.
+//! Where most variables end above zero, as with smooth weights, this takes some ten factors, where
+//! an active set takes the variables in one by one.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -12,8 +12,8 @@ const PATIENCE: usize = 5;
 /// Most factors.
 const MOST: usize = 50;
 
-/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, beginning with the variables above zero in `x`; or, and then it says
-/// false, a point near it where rounding or cycling stopped it.
+/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, beginning with the variables above zero in `x`;
+/// or, and then it says false, a point near it where rounding or cycling stopped it.
 pub(crate) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
     let count = b.len();
     let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();

@@ -77,7 +77,8 @@ impl Problem {
         Ok(output)
     }
 
-    /// Offset and weights for each function of the load, from states in `[0, 1]` to the operator's own outputs.
+    /// Offset and weights for each function of the load, from states in `[0, 1]` to the operator's
+    /// own outputs.
     pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
         let weights = self.regressor.weights(x).into_iter().enumerate();
         let part = |(part, mut weights): (usize, Vec<f64>)| {

@@ -1,12 +1,13 @@
-//! The whole linear problem of an experiment: several recordings, each from its own start, and weights
-//! that may depend on the load.
+//! The whole linear problem of an experiment: several recordings, each from its own start, and
+//! weights that may depend on the load.
 //!
-//! A **column** is one operator with a share of its weight that starts on in some recordings and off in
-//! the others. With a known start there is one column an operator. With an unknown one, an operator
-//! that the first sample leaves undetermined has weight times initial state `ν` between 0 and `μ`;
-//! since `Φ_off μ + (Φ_on − Φ_off) ν = Φ_off (μ − ν) + Φ_on ν`, that is a column starting off and one
-//! starting on, both with weights from zero on. Over several recordings the set `0 ≤ ν_s ≤ μ` is the
-//! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
+//! A **column** is one operator with a share of its weight that starts on in some recordings and
+//! off in the others. With a known start there is one column an operator. With an unknown one, an
+//! operator that the first sample leaves undetermined has weight times initial state `ν` between 0
+//! and `μ`; since `Φ_off μ + (Φ_on − Φ_off) ν = Φ_off (μ − ν) + Φ_on ν`, that is a column starting
+//! off and one starting on, both with weights from zero on. Over several recordings the set
+//! `0 ≤ ν_s ≤ μ` is the cone of all patterns of on and off, and [`Regressor::take_missing`] finds
+//! those that are worth having.
 
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
@@ -50,8 +51,8 @@ impl Column {
 /// The columns; what is asked of them is asked for the samples of an experiment.
 pub(crate) struct Regressor {
     form: SparseForm,
-    /// For each operator, bit `s`: the first sample of recording `s` leaves its state open. Empty where
-    /// the start is known.
+    /// For each operator, bit `s`: the first sample of recording `s` leaves its state open. Empty
+    /// where the start is known.
     open: Vec<u64>,
     columns: Vec<Column>,
     /// Operators whose state the first sample of some recording leaves open.
@@ -280,10 +281,11 @@ impl Regressor {
         Ok(gram)
     }
 
-    /// Takes in the columns whose pattern of starts would reduce the error most, one an operator and
-    /// part, where that is by more than `slack`; says whether there were any.
+    /// Takes in the columns whose pattern of starts would reduce the error most, one an operator
+    /// and part, where that is by more than `slack`; says whether there were any.
     ///
-    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns; `slopes` is `P x`, a value a column.
+    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns; `slopes`
+    /// is `P x`, a value a column.
     pub(crate) fn take_missing(
         &mut self,
         experiment: &Experiment,
@@ -302,7 +304,8 @@ impl Regressor {
         let before = self.columns.len();
         for part in 0..experiment.parts.len() {
             for operator in 0..self.form.operators() {
-                // The first columns are those that start off, in this order; the penalty does not know of starts.
+                // The first columns are those that start off, in this order; the penalty does not
+                // know of starts.
                 let first = part * self.form.operators() + operator;
                 let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! The rows of `W`, sample by sample: the factors of the turning points before the branch, which stay
-//! the same along it, and the three of the branch itself.
+//! The rows of `W`, sample by sample: the factors of the turning points before the branch, which
+//! stay the same along it, and the three of the branch itself.
 
 use crate::error::Result;
 use crate::identify::weights::sparse::Initial;

@@ -1,10 +1,11 @@
-//! Smoothness of the weights across the plane, in such units that its strength means the same whatever
-//! the number of levels.
+//! Smoothness of the weights across the plane, in such units that its strength means the same
+//! whatever the number of levels.
 //!
-//! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the plane, and a
-//! line density `ρ = K μ` on the diagonal, where operators have no memory. Penalised are the squares of
-//! both densities' slopes (Tikhonov 1963), `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over neighbours inside and
-//! `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along the diagonal, against the mean squared error.
+//! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the
+//! plane, and a line density `ρ = K μ` on the diagonal, where operators have no memory. Penalised
+//! are the squares of both densities' slopes (Tikhonov 1963), `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over
+//! neighbours inside and `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along the diagonal, against the mean squared
+//! error.
 
 use crate::identify::weights::regressor::Column;
 use hysteron_core::operator_index;

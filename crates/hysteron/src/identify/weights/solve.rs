@@ -1,9 +1,9 @@
 //! Least squares on the normal equations, made exact by refinement against the sparse form.
 //!
 //! The Gram matrix is singular as a rule: operators that were never excited, or always together. A
-//! small ridge makes it definite, and proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar 1976)
-//! take the ridge's effect away again: the residual of each step is computed by a run of the model,
-//! not from the Gram matrix. From zero on they lead to the solution of smallest norm.
+//! small ridge makes it definite, and proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar
+//! 1976) take the ridge's effect away again: the residual of each step is computed by a run of the
+//! model, not from the Gram matrix. From zero on they lead to the solution of smallest norm.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::experiment::Experiment;
@@ -16,11 +16,12 @@ use crate::progress::Progress;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-/// Ridge relative to the mean of the Gram matrix' diagonal: small beside singular values that matter,
-/// large beside its rounding.
+/// Ridge relative to the mean of the Gram matrix' diagonal: small beside singular values that
+/// matter, large beside its rounding.
 const RIDGE: f64 = 1e-11;
 
-/// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays here.
+/// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays
+/// here.
 const ROUNDING: f64 = 1e-13;
 
 /// Proximal steps end when one improves the objective by less than this part of it.
@@ -105,7 +106,8 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// The values that bring `A x`, with the best free columns, closest to `target`, from `start` on, in `steps` proximal steps at most.
+    /// The values that bring `A x`, with the best free columns, closest to `target`, from `start`
+    /// on, in `steps` proximal steps at most.
     pub(crate) fn solve(
         &self,
         target: &[f64],
@@ -148,8 +150,8 @@ impl<'a> NormalEquations<'a> {
         Ok(best)
     }
 
-    /// The minimum of `½ xᵀ M x − bᵀ x`: with a factor of `M` over all `x`, without one over those from zero on,
-    /// beginning at `start`.
+    /// The minimum of `½ xᵀ M x − bᵀ x`: with a factor of `M` over all `x`, without one over those
+    /// from zero on, beginning at `start`.
     pub(crate) fn minimum(
         &self,
         right: &[f64],

@@ -1,8 +1,9 @@
-//! The sparse form of the regressor matrix, `Φ = W S`: `S` the prefix sums of the Everett table, a row
-//! of `W` the few triangle factors of a sample's turning points. `Φ` itself is never formed.
+//! The sparse form of the regressor matrix, `Φ = W S`: `S` the prefix sums of the Everett table, a
+//! row of `W` the few triangle factors of a sample's turning points. `Φ` itself is never formed.
 //!
-//! Along a branch only three factors of a row change; those of the turning points before it stay. So
-//! sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a branch.
+//! Along a branch only three factors of a row change; those of the turning points before it stay.
+//! So sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a
+//! branch.
 
 use crate::error::Result;
 use crate::identify::weights::rows::{Rows, Term};
@@ -18,7 +19,8 @@ pub(crate) enum Initial {
     On,
 }
 
-/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
+/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's
+/// edge.
 pub(crate) const OPEN: f64 = 1e-9;
 
 /// How often a long pass tells how far it is, in samples.
@@ -67,7 +69,8 @@ impl SparseForm {
         Rows::new(&self.blank, &self.place, from)
     }
 
-    /// How much of each operator the first sample leaves open: its state from on less that from off.
+    /// How much of each operator the first sample leaves open: its state from on less that from
+    /// off.
     pub(crate) fn open(&self, first: f64) -> Result<Vec<f64>> {
         let levels = self.plane.levels();
         let (mut off, mut on) = (self.rows(Initial::Off)?, self.rows(Initial::On)?);
@@ -87,7 +90,8 @@ impl SparseForm {
         from: Initial,
     ) -> Result<Vec<f64>> {
         let table = vec![0.0; table_len(self.plane.levels())];
-        // A relay's states come doubled and shifted by its output of ±1; KP states are those of MKP.
+        // A relay's states come doubled and shifted by its output of ±1; KP states are those of
+        // MKP.
         let relay = self.operator == Operator::Relay;
         let operator = if relay {
             Operator::Relay
@@ -138,8 +142,8 @@ impl SparseForm {
         transpose_sums(self.plane.levels(), w);
     }
 
-    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, `W` and `W'` being the rows of the two
-    /// starts; [`SparseForm::gram_of`] makes `Φᵀ diag(scale) Φ'` of it.
+    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, `W` and `W'` being the rows of the
+    /// two starts; [`SparseForm::gram_of`] makes `Φᵀ diag(scale) Φ'` of it.
     pub(crate) fn add_outer(
         &self,
         input: &[f64],
@@ -209,8 +213,9 @@ impl SparseForm {
     }
 }
 
-/// What the samples of one branch sum up to: with `f`, `g` the factors of the turning points and `t`, `u`
-/// those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
+/// What the samples of one branch sum up to: with `f`, `g` the factors of the turning points and
+/// `t`, `u` those of the branch,
+/// `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
 #[derive(Default)]
 struct BranchSums {
     scale: f64,

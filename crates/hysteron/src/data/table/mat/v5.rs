@@ -72,8 +72,8 @@ struct Found<'f> {
 }
 
 impl Found<'_> {
-    /// Adds the variable in an element, or those in its fields; anything else is left out. `name` is
-    /// that of a field, which the element itself does not have.
+    /// Adds the variable in an element, or those in its fields; anything else is left out. `name`
+    /// is that of a field, which the element itself does not have.
     fn matrix(
         &mut self,
         name: Option<String>,

@@ -80,7 +80,8 @@ impl Found<'_> {
         if !numeric || is_text_or_empty(data).map_err(damaged)? {
             return Ok(());
         }
-        // HDF5 counts dimensions the other way round; the numbers lie column by column all the same.
+        // HDF5 counts dimensions the other way round; the numbers lie column by column all the
+        // same.
         let shape = data.shape().map_err(damaged)?;
         let (rows, columns) = match shape[..] {
             [] => (1, 1),
@@ -144,8 +145,8 @@ fn chunks(layout: &Layout, shape: &[u64]) -> u128 {
         })
 }
 
-/// What the library needs to read `count` numbers, beside the numbers: their bytes, and all chunks at
-/// once as they are unpacked.
+/// What the library needs to read `count` numbers, beside the numbers: their bytes, and all chunks
+/// at once as they are unpacked.
 fn working_memory(layout: &Layout, element: u64, shape: &[u64], count: u128) -> u128 {
     // No sum of a few of these is beyond what a u128 holds.
     const MOST: u128 = u128::MAX >> 4;

@@ -93,7 +93,8 @@ impl Claims {
         Ok(())
     }
 
-    /// What the largest page of a column takes, a dictionary and a page of data being held together.
+    /// What the largest page of a column takes, a dictionary and a page of data being held
+    /// together.
     fn largest_page(&mut self, chunk: &ColumnChunkMetaData) -> Result<u128, Refusal> {
         // Where these are negative, `byte_range` panics.
         let first = chunk.dictionary_page_offset();

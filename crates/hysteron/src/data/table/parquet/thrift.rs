@@ -48,7 +48,8 @@ impl Compact<'_> {
         Some(())
     }
 
-    /// Hands the fields of a structure to `field` with their number and type; it reads or skips them.
+    /// Hands the fields of a structure to `field` with their number and type; it reads or skips
+    /// them.
     pub(super) fn fields(
         &mut self,
         mut field: impl FnMut(&mut Self, i64, u8) -> Option<()>,

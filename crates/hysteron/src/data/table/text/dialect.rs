@@ -24,7 +24,8 @@ pub(in crate::data::table) struct Dialect {
 
 /// The beginning of a file, and whether that is all of it.
 ///
-/// Of a pipe it is what has come once the header and two rows are there: the rest may be long in coming.
+/// Of a pipe it is what has come once the header and two rows are there: the rest may be long in
+/// coming.
 pub(in crate::data::table) fn head(file: &mut impl Read) -> std::io::Result<(Vec<u8>, bool)> {
     let mut head = vec![0; HEAD];
     let mut length = 0;
@@ -122,7 +123,8 @@ impl Dialect {
     }
 }
 
-/// The delimiter that is there as often in every line, or else that which gives most lines as many cells.
+/// The delimiter that is there as often in every line, or else that which gives most lines as many
+/// cells.
 fn delimiter(lines: &[&[u8]]) -> u8 {
     // A comma may stand for a decimal point as well: it is asked last.
     let known = [b'\t', b';', b','].map(|delimiter| {

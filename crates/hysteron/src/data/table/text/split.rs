@@ -46,7 +46,8 @@ impl Splitter {
         }
     }
 
-    /// Reads on in a quoted cell: what stands after its closing quote, `None` if it is not in this line.
+    /// Reads on in a quoted cell: what stands after its closing quote, `None` if it is not in this
+    /// line.
     fn quoted<'t>(&mut self, mut rest: &'t [u8]) -> Option<&'t [u8]> {
         loop {
             let quote = rest.iter().position(|byte| *byte == b'"');
