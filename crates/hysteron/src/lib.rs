@@ -2,14 +2,21 @@
 //! inverse.
 //!
 //! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
-//! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
-//! [`fit`] ([`prepare()`] it before where it is noisy), simulate with [`Model::simulate`] or step
-//! by step with [`Model::step`], compensate with [`Model::inverse`], judge with [`evaluate`]. Where
-//! the plant changes, [`adapt()`] lets a model learn from a recording and [`Adaptive`] sample by
-//! sample; [`control`] puts models and inverses into loops, [`plant`] simulates devices to try them
-//! on, and [`track`](mod@track) compares controllers. *The chapter*, whose equations the docs
-//! number, is named in `hysteron-core`. The real-time core below, `hysteron-core`, runs without
-//! allocation.
+//! hysteresis operators. KP and classical Preisach relay operators can be used in its place.
+//!
+//! The usual steps:
+//! - Clean a noisy recording with [`prepare()`].
+//! - Identify a model with [`Fit`].
+//! - Simulate a whole input with [`Model::simulate`], or one sample at a time with [`Model::step`].
+//! - Compensate the hysteresis with [`Model::inverse`].
+//! - Measure the errors with [`evaluate`].
+//! - Where the plant changes, let the model learn: from a recording with [`adapt()`], or sample by
+//!   sample with [`Adaptive`].
+//! - Build control loops from models and inverses with [`control`].
+//!
+//! Simulated devices and comparisons of controllers are in the crate `hysteron-sim`. The real-time
+//! core is `hysteron-core`, which runs without allocation. Its documentation names *the chapter*,
+//! whose equation numbers the docs of both crates use.
 #![forbid(unsafe_code)]
 
 mod adapt;

@@ -1,5 +1,5 @@
-//! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input
-//! inside.
+//! One controller for all schemes: inverse feedforward, PID feedback, or both, with an optional
+//! inner loop around the input.
 
 use super::pid::limited;
 use super::watch::{Sight, Watch};
@@ -8,37 +8,37 @@ use crate::error::Result;
 use crate::model::Policy;
 use hysteron_core::{Direction, Outcome};
 
-/// What the output should be, and where it goes next.
+/// The wanted output, and the direction it takes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reference {
     /// The output wanted now.
     pub output: f64,
-    /// Where it goes next, where that is known; *anticipate* needs it.
+    /// The direction it takes next, if known. *Anticipate* needs it.
     pub heading: Option<Direction>,
 }
 
-/// What a controller does with a sample.
+/// What a controller does at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Action {
     /// The input asked for.
     pub command: f64,
     /// The drive to write to the device.
     pub drive: f64,
-    /// The output that the model expected before it learned, at the input that was seen last; NaN
-    /// without a model.
+    /// The output that the model expected at the last measured input, before it learned from this
+    /// sample. NaN without a model.
     pub prediction: f64,
-    /// The readings as filtered; NaN where there is nothing new to be believed.
+    /// The filtered readings. NaN where there is no new valid reading.
     pub filtered: Reading,
-    /// What there is to say.
+    /// Flags for this sample.
     pub status: LoopStatus,
 }
 
-/// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the
-/// drive.
+/// A [`Scheme`] at work. At each sample: read the device, call [`step`](Controller::step), write
+/// the drive.
 ///
-/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and
-/// nothing is learned. Without news from the input's sensor the loop inside holds the drive for
-/// [`Scheme::stuck_s`] and then goes to the lowest one.
+/// If the output's sensor gives nothing new, the feedback is held, the feedforward continues and
+/// nothing is learned. If the input's sensor gives nothing new, the inner loop holds the drive for
+/// [`Scheme::stuck_s`] and then sets the lowest drive.
 ///
 /// ```
 /// use hysteron::control::{Controller, Device, Gains, Reading, Scheme, Reference};
@@ -76,14 +76,13 @@ pub struct Controller {
     inner: Option<Pid>,
     output: Watch,
     input: Watch,
-    /// The last input that was asked of the device.
+    /// The last input that was commanded.
     last: Option<f64>,
-    /// Whether the drive stands at its lower and its upper limit.
+    /// Whether the drive is at its lower and at its upper limit.
     held: (bool, bool),
-    /// What the model expected when it last saw the input.
+    /// The output that the model expected at the last measured input.
     prediction: f64,
-    /// Whether the input's sensor was taken as broken, so that it is not known how the input came
-    /// to where it is.
+    /// Whether the input's sensor was taken as broken. Then the path of the input is not known.
     lost: bool,
 }
 
@@ -91,7 +90,7 @@ impl Controller {
     /// A controller at rest.
     ///
     /// # Errors
-    /// [`crate::Error::Control`] for numbers that no loop can run with.
+    /// [`crate::Error::Control`] for settings that no loop can run with.
     pub fn new(scheme: Scheme) -> Result<Self> {
         scheme.check()?;
         let watch = || Watch::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
@@ -108,8 +107,8 @@ impl Controller {
         })
     }
 
-    /// One sample: from what is wanted and what was read to what is to be written. The drive is
-    /// finite and within its limits whatever the readings are.
+    /// Runs one sample: takes the target and the readings, returns the drive to write. The drive is
+    /// finite and within its limits, whatever the readings are.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
@@ -133,8 +132,8 @@ impl Controller {
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings and
-    /// step tests.
+    /// Runs one sample with a given `command` for the input, without regard to the output. For
+    /// recordings and step tests.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
@@ -150,14 +149,14 @@ impl Controller {
         self.scheme.interval_s
     }
 
-    /// The model in the loop.
+    /// The model in the loop, if there is one.
     #[must_use]
     pub fn compensator(&self) -> Option<&super::Compensator> {
         self.scheme.compensator.as_ref()
     }
 
-    /// Output and input. Where no sensor measures the input, it is the one that was asked for, but
-    /// not for a loop around it.
+    /// Filters the readings of output and input. If no sensor measures the input, the last command
+    /// is used in its place, except where an inner loop needs a measurement.
     fn read(&mut self, reading: Reading) -> (Sight, Option<Sight>) {
         let output = self.output.read(reading.output);
         let input = match (reading.input, self.scheme.inner) {
@@ -258,13 +257,13 @@ impl Controller {
                 (false, false),
             ),
             Some(Sight::Repeated | Sight::Missing) => pid.hold(0.0, limits),
-            // Not knowing how hot it is, it must not be heated.
+            // Without a temperature reading, heating is not safe.
             Some(Sight::Blind) | None => {
                 pid.hold(0.0, limits);
                 limits.0
             }
         };
-        // The root of a square may differ from it by rounding.
+        // The square of a root may differ from the limit by rounding.
         let drive = if inner.square_root {
             power.sqrt()
         } else {

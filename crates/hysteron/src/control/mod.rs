@@ -1,11 +1,14 @@
-//! Control loops on a hysteresis model and its inverse.
+//! Control loops with a hysteresis model and its inverse.
 //!
-//! A [`Controller`] is a [`Scheme`] in motion; it runs on whatever implements [`Device`], real or
-//! simulated, and [`run`] does so on a [`SimulatedPlant`]. Times are in seconds, inputs and outputs
-//! in the model's units.
+//! A [`Scheme`] is the configuration of a loop and a [`Controller`] runs it. The controller runs on
+//! anything that implements [`Device`], real or simulated; [`run`] does so on a [`SimulatedPlant`]
+//! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
-//! An inverse in front of an actuator that it was identified from, and a PID that takes what is
-//! left:
+//! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
+//! feedback and `tuning` its gains; `watch` checks each sensor; `device`, `run` and `trace` connect
+//! the loop to a device and record it.
+//!
+//! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
 //! ```
 //! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run};

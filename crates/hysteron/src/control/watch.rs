@@ -1,15 +1,15 @@
-//! A sensor under watch: readings that are missing or stand still are not believed.
+//! Filters a sensor's readings, and detects readings that are missing or stuck.
 
-/// What a sensor tells at a sample.
+/// What a sensor's reading means at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sight {
-    /// Something new, filtered.
+    /// A new reading, filtered.
     Seen(f64),
-    /// The last reading once more, to the last bit: chance, or the sensor begins to stick.
+    /// Equal to the last reading to the last bit: by chance, or because the sensor begins to stick.
     Repeated,
-    /// Nothing, but not for long.
+    /// No reading, but not for long.
     Missing,
-    /// Nothing new for so long that the sensor is taken as broken.
+    /// No new reading for so long that the sensor is taken as broken.
     Blind,
 }
 
@@ -26,26 +26,26 @@ impl Sight {
     }
 }
 
-/// Filters a sensor's readings and tells when there is none to be believed.
+/// Filters a sensor's readings and tells which of them are valid.
 ///
-/// A repeated reading is held back at once, long before it is called stuck: until then the loop
-/// would integrate an error that is none and a model would learn from it.
+/// A repeated reading is rejected at once, long before the sensor is taken as broken. Otherwise the
+/// loop would integrate an error that does not exist, and a model would learn from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Watch {
     interval_s: f64,
     filter_s: f64,
-    /// Samples without news that a sensor at work does not give; none where equal readings are
-    /// believed.
+    /// Largest number of samples without a new reading that a working sensor can give; `None` where
+    /// equal readings are valid.
     patience: Option<u32>,
     filtered: f64,
     last: f64,
-    /// Samples since the last news.
+    /// Number of samples since the last new reading.
     gap: u32,
 }
 
 impl Watch {
-    /// A filter with the time constant `filter_s`; without news for `stuck_s` the sensor is taken
-    /// as broken.
+    /// A filter with the time constant `filter_s`. Without a new reading for `stuck_s`, the sensor
+    /// is taken as broken.
     pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
         Self {
             interval_s,
@@ -57,7 +57,7 @@ impl Watch {
         }
     }
 
-    /// What the sensor's `reading` tells.
+    /// Classifies and filters the sensor's `reading`.
     pub(super) fn read(&mut self, reading: f64) -> Sight {
         let repeated = self.patience.is_some() && reading == self.last;
         if reading.is_finite() && !repeated {
@@ -74,8 +74,7 @@ impl Watch {
         }
     }
 
-    /// Filters a value that is beyond doubt. After a gap it counts for the whole time that has
-    /// passed.
+    /// Filters a valid value. After a gap the value counts for the whole time since the last one.
     pub(super) fn filter(&mut self, value: f64) -> f64 {
         let passed = self.interval_s * (f64::from(self.gap) + 1.0);
         self.gap = 0;
@@ -99,8 +98,8 @@ mod tests {
     fn the_filter_is_that_of_a_first_order_body_whatever_is_lost() {
         let mut whole = Watch::new(0.1, 0.5, Some(1.0));
         let mut lossy = whole.clone();
-        // Of a constant after a start elsewhere both readings say the same, and the filter has come
-        // as far at the end.
+        // For a constant after a different start, both filters read the same values and end at the
+        // same state.
         for n in 0..20 {
             let reading = if n == 0 {
                 0.0
