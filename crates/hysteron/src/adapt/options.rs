@@ -1,4 +1,4 @@
-//! How a model is adapted to a recording, and what follows from both where nothing is said.
+//! Options of an adaptation, with defaults that follow from the model and the recording.
 
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::parts::DriftParts;
@@ -16,19 +16,19 @@ const GAIN: f64 = 0.3;
 const SPAN: f64 = 1.0;
 /// Forgetting factor of least squares, for weights and for shares.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err
-/// more, and alike from sample to sample.
+/// Error of a reading as a share of the output's range, for weights and for shares. It is larger
+/// for shares, because a few parts fit less well and their errors are correlated between samples.
 const MISFIT: [f64; 2] = [0.02, 0.05];
-/// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
+/// Share of the offset in the regressor of the gradient methods, relative to all weights together.
 const OFFSET: f64 = 0.2;
-/// Levels over which deviations of weights go together.
+/// Correlation length of the weights' deviations, in levels.
 const CORRELATION: f64 = 1.0;
-/// By how much the output with every operator on may differ, in parts of its range.
+/// Standard deviation of the output with every operator on, as a share of its range.
 const DEVIATION: f64 = 0.3;
-/// By how much a share of a part may differ.
+/// Standard deviation of each share.
 const SHARE: f64 = 0.5;
 
-/// Which parameters follow the error, and how.
+/// Which parameters are adapted, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Learner {
@@ -38,15 +38,15 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one
-    /// that errs least on measured recordings.
+    /// The coefficients of [`crate::DriftParts`] by recursive least squares. With the defaults it
+    /// has the smallest errors on measured recordings.
     #[default]
     Drift,
 }
 
-/// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording.
-/// `Y` is the range of the recording's output or that of the model, whichever is larger; single
-/// readings far from all others are not of the recording's.
+/// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
+/// recording. `Y` is the range of the recording's output or that of the model, whichever is larger.
+/// Single readings far from all others do not count for that range.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
@@ -68,11 +68,11 @@ pub enum Learner {
 /// | `burst` | 8 | from 1 on | readings in a row beyond the gate that are learned from, where they agree; samples at the end on probation |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptOptions {
-    /// What follows the error, and how.
+    /// Which parameters are adapted, and by which method.
     pub learner: Learner,
-    /// Where the operators stand before the first sample.
+    /// State of the operators before the first sample.
     pub start: Start,
-    /// Load that the shares start at.
+    /// Load that the coefficients start at.
     pub load: Option<f64>,
     /// Gain of the gradient methods.
     pub gain: Option<f64>,
@@ -84,21 +84,22 @@ pub struct AdaptOptions {
     pub noise: Option<f64>,
     /// Standard deviation by which a parameter may differ from its off-line value.
     pub spread: Option<f64>,
-    /// Levels over which deviations of weights go together.
+    /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
-    /// Errors up to this are noise.
+    /// Errors up to this are noise, in the output's unit.
     pub dead_zone: Option<f64>,
-    /// Share by which the weights return to the off-line ones with each update.
+    /// Share of the way back to the off-line weights with each update.
     pub leakage: Option<f64>,
-    /// How freely the offset moves.
+    /// How freely the offset moves, relative to one weight.
     pub offset_share: Option<f64>,
     /// Levels that the input has to move before a sample is learned from.
     pub movement: Option<f64>,
-    /// Samples after which the weights are judged.
+    /// Number of samples after which the weights are compared with the last good ones.
     pub trial: Option<u32>,
-    /// How many times the usual surprise a reading may be off; see [`Adaptation`].
+    /// A reading is rejected if its error is more than this many times the usual one; see
+    /// [`Adaptation`].
     pub gate: Option<f64>,
-    /// Readings in a row beyond the gate that are a jump.
+    /// Number of readings in a row beyond the gate that are taken as a real jump.
     pub burst: Option<u32>,
 }
 
@@ -106,15 +107,15 @@ impl AdaptOptions {
     /// The estimator's options for `model` on `recording`.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of
-    /// range is refused when an estimator is made.
+    /// [`Error::Fit`] for a field that is set but that the learner does not use. Values out of
+    /// range are refused when an estimator is made.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The estimator's options for `model` before anything was measured: `Y` is the model's range,
-    /// and the output is taken to have no noise.
+    /// The estimator's options for `model` before any measurement. `Y` is the model's range, and
+    /// the output is assumed to have no noise.
     ///
     /// # Errors
     /// As [`AdaptOptions::adaptation`].
@@ -123,7 +124,7 @@ impl AdaptOptions {
     }
 
     /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
-    /// start is off.
+    /// start is taken as off.
     ///
     /// ```
     /// use hysteron::{AdaptOptions, Model, Operator, Plane, Sign};
@@ -145,7 +146,7 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
-    /// An estimator of weights or shares, as the learner asks for.
+    /// An estimator of the weights or of the shares, depending on the learner.
     pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
         match self.learner {
             Learner::Drift => DriftParts::of(model, self.load)?.adaptive(adaptation),
@@ -159,7 +160,7 @@ impl AdaptOptions {
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
         let shares = usize::from(self.learner == Learner::Drift);
-        // An error of zero would be certainty.
+        // An error of zero would mean certainty and stop all learning.
         let misfit = rough.max(MISFIT[shares] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
             forgetting: self.forgetting.unwrap_or(FORGETTING[shares]),
@@ -227,8 +228,8 @@ impl AdaptOptions {
     }
 }
 
-/// The range of the values without those that lie further outside of the middle nine tenths than
-/// these are wide: wrong readings.
+/// The range of the values without wrong readings. The middle nine tenths of the values span a
+/// width; a value is wrong if it is more than this width outside.
 fn usual_range(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -241,11 +242,11 @@ fn usual_range(values: &[f64]) -> f64 {
     high - low
 }
 
-/// The variance of the sum of all weights, for a variance of one of each and the estimator's
+/// The variance of the sum of all weights, for a variance of one of each weight and the estimator's
 /// correlation between them.
 fn together(levels: usize, correlation: f64) -> f64 {
-    // Pairs of operators that are `along` and `across` apart: as many as places for one of them
-    // from which the other is on the triangle too.
+    // The number of pairs of operators that are `along` and `across` apart: the number of positions
+    // of the first one for which the second is inside the triangle.
     let levels = levels as isize;
     let mut sum = 0.0;
     for along in -levels..=levels {
@@ -284,7 +285,7 @@ mod tests {
                 sum += 1.0 / (1.0 + f64::from((i - k).pow(2) + (j - l).pow(2)) / 4.0);
             }
         }
-        // A few hundred terms in another order.
+        // A few hundred terms, summed in another order.
         assert!((together(6, 2.0) / sum - 1.0).abs() < 1e-12);
         assert_eq!(together(6, 0.0), 21.0);
     }

@@ -1,4 +1,5 @@
-//! A few ways in which weights change under load and drift, in place of all weights.
+//! A basis with few coefficients that describes how weights change under load and drift. It is
+//! adapted instead of all weights.
 
 use crate::adapt::adaptive::Adaptive;
 use crate::error::Result;
@@ -6,18 +7,21 @@ use crate::model::Model;
 use hysteron_core::Adaptation;
 use hysteron_core::operator_index;
 
-/// Levels by which the weights are shifted along the diagonal of the plane.
+/// Shifts of the weights along the diagonal of the plane, in levels.
 const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
 
-/// Sets of weights, and the share of each, that make up a model: what an estimator with few
-/// unknowns adapts.
+/// A basis (`parts`, sets of weights) and its coefficients (`shares`). Their weighted sum is the
+/// model. The estimator then has few unknowns.
 ///
-/// A model that depends on a load has its load parts. For any other one, the parts are the off-line
-/// weights shifted along the diagonal of the plane by −3, −1, 0, 1, 3 and 5 levels: a stress shifts
-/// all transformation temperatures alike (the relation of Clausius and Clapeyron), so that shares
-/// from zero on follow a larger stroke, a shift, and a transformation that is spread wider. An
-/// operator shifted beyond the plane is left out: above, it never switches, and below it is always
-/// on, as the offset is. One that would switch off below the plane does so at its lowest level.
+/// For a model that depends on a load, the basis consists of its load parts. For any other model it
+/// consists of the off-line weights, shifted along the diagonal of the plane by −3, −1, 0, 1, 3 and
+/// 5 levels. The reason is that stress shifts all transformation temperatures alike (relation of
+/// Clausius and Clapeyron). Non-negative coefficients can then describe a larger stroke, a shift,
+/// and a wider transformation.
+///
+/// An operator shifted beyond the plane is omitted: above the plane it never switches, and below it
+/// is always on, as the offset is. An operator that would switch off below the plane does so at its
+/// lowest level.
 ///
 /// ```
 /// use hysteron::{DriftParts, Model, Operator, Plane, Sign};
@@ -29,20 +33,21 @@ const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriftParts {
-    /// What the parts are with their shares: the model, at one load.
+    /// The model, at one load.
     pub model: Model,
-    /// `N` weights each, row by row.
+    /// The basis: `N` weights each, row by row.
     pub parts: Vec<Vec<f64>>,
-    /// As many as parts.
+    /// The coefficients, as many as `parts`.
     pub shares: Vec<f64>,
 }
 
 impl DriftParts {
-    /// The parts of `model`; one that depends on a load starts at `load`, or at the middle of its
-    /// range.
+    /// The parts of `model`. If it depends on a load, they start at `load`, by default at the
+    /// middle of its range.
     ///
     /// # Errors
-    /// [`crate::Error::Fit`] for a load outside the model's range, or of a model without one.
+    /// [`crate::Error::Fit`] for a load outside the model's range, or for a load with a model that
+    /// has none.
     pub fn of(model: &Model, load: Option<f64>) -> Result<Self> {
         let Some(dependence) = &model.load else {
             return match load {

@@ -1,4 +1,9 @@
-//! From a recording as it was measured to one that a model can be identified from.
+//! Preparation: turns a recording as measured into one that a model can be identified from.
+//!
+//! `spikes` and `sign` repair single samples. `resample` makes equal time steps. `noise` estimates
+//! the noise and `smooth` the low-pass that removes it. `lag` undoes a sensor's lag. `band` removes
+//! false reversals of the input. `rate` tests whether the material depends on rate. `report`
+//! records what was done.
 
 mod band;
 mod lag;
@@ -30,12 +35,12 @@ use crate::series::range;
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Step {
-    /// What follows from the data.
+    /// Use the value that follows from the data.
     #[default]
     Auto,
-    /// Nothing.
+    /// Skip the step.
     Off,
-    /// What is given.
+    /// Use this value.
     Value(f64),
 }
 
@@ -50,13 +55,13 @@ pub enum Step {
 /// | `dead_band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrepareOptions {
-    /// Lost signs and isolated spikes.
+    /// Repair of lost signs and removal of isolated spikes.
     pub spikes: Step,
-    /// Samples at equal steps of time.
+    /// Resampling to equal time steps.
     pub resample: Step,
-    /// Zero-phase low-pass.
+    /// Zero-phase low-pass filter.
     pub low_pass: Step,
-    /// Lag of the input's sensor.
+    /// Compensation of the lag of the input's sensor.
     pub lag: Step,
     /// Dead band for reversals of the input.
     pub dead_band: Step,
@@ -72,7 +77,7 @@ impl Default for PrepareOptions {
 }
 
 impl PrepareOptions {
-    /// Every step the same.
+    /// The same choice for every step.
     #[must_use]
     pub fn all(step: Step) -> Self {
         Self {
@@ -110,12 +115,12 @@ impl PrepareOptions {
     }
 }
 
-/// Prepares a recording for [`crate::fit`]: restores lost signs and removes spikes, resamples and
-/// smooths where noise asks for it, undoes a sensor's lag if told to, and takes false reversals
-/// from the input. Says what it did.
+/// Prepares a recording for [`crate::Fit`] and reports what was done. It restores lost signs,
+/// removes spikes, resamples and smooths if the noise requires it, undoes a sensor's lag on
+/// request, and removes false reversals of the input.
 ///
-/// A clean recording comes through unchanged, a prepared one almost so. All series of the result
-/// have the same length, which only resampling changes.
+/// A clean recording is not changed. Preparing a prepared recording changes almost nothing. All
+/// series of the result have the same length; only resampling changes it.
 ///
 /// ```
 /// use hysteron::{PrepareOptions, Progress, Recording, prepare};
@@ -129,10 +134,12 @@ impl PrepareOptions {
 /// ```
 ///
 /// # Errors
-/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Preparation`] for a
-/// value outside the table of [`PrepareOptions`], or a lag or a step without time;
-/// [`Error::Filter`] for a cut-off that does not fit the samples; those of [`crate::fit`] where a
-/// lag is estimated.
+/// - [`Error::Recording`] for an invalid recording.
+/// - [`Error::Preparation`] for a value outside the table of [`PrepareOptions`], and for a lag or a
+///   time step without time.
+/// - [`Error::Filter`] for a cut-off that does not fit the samples.
+/// - As [`crate::Fit::run`], if a lag is estimated.
+/// - The error that `progress` returns.
 pub fn prepare(
     recording: &Recording,
     options: &PrepareOptions,
@@ -167,7 +174,7 @@ pub fn prepare(
     let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
     let lag = undo_lag(&mut work, options.lag, step, progress)?;
 
-    // What is left of the noise on the input.
+    // Noise that remains on the input after filtering.
     let mut left = sigma[0] * input_cutoff.map_or(1.0, smooth::let_through);
     let undone = lag.as_ref().and_then(|lag| lag.undone);
     if let (Some(tau), Some(step)) = (undone, step) {
@@ -208,7 +215,7 @@ fn remove_spikes(work: &mut Recording, step: Step) -> Option<Spikes> {
     })
 }
 
-/// Returns the step that was taken, if any was.
+/// Returns the time step if the recording was resampled.
 fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64>> {
     let taken = match (step, &work.time) {
         (Step::Value(_), None) => {
@@ -304,8 +311,8 @@ fn undo_lag(
     Ok(Some(report))
 }
 
-/// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its
-/// values are still those of the meter.
+/// `left` is the standard deviation of the noise that remains on the input. `as_read` is true if
+/// the values are still those of the meter.
 fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<Option<DeadBand>> {
     let size = match how {
         Step::Off => return Ok(None),
@@ -319,10 +326,9 @@ fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<O
             size
         }
         Step::Auto => {
-            // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both
-            // sides.
+            // The largest of n Gaussian values (Donoho & Johnstone 1994), on both sides.
             let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
-            // A meter that flickers between two readings has not turned.
+            // Flicker of a meter between two neighbouring readings is not a reversal.
             let (low, high) = range(&work.input);
             let flicker = band::resolution_with_rounding(&work.input);
             match as_read && flicker <= NOISE * (high - low) {
