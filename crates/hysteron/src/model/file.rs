@@ -1,4 +1,4 @@
-//! The model file: JSON, versioned, every fault named by its field.
+//! The model file: JSON with a version. Every error names the field.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
@@ -33,7 +33,7 @@ struct File {
     fit: Option<FitSummary>,
 }
 
-/// Only what tells whether the rest can be read at all.
+/// The fields that show whether the rest of the file can be read.
 #[derive(Deserialize)]
 #[serde(expecting = "a model: an object in braces")]
 struct Head {
@@ -77,8 +77,8 @@ struct OutputEntry {
     sign: i64,
 }
 
-/// Weights that depend on a load: `weights` and `offset` above are then those at the middle of its
-/// range.
+/// Weights that depend on a load. `weights` and `offset` of the file are then those at the middle
+/// of its range.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 struct LoadEntry {
@@ -88,7 +88,7 @@ struct LoadEntry {
     unit: Option<String>,
     min: f64,
     max: f64,
-    /// For each Bernstein polynomial, from the smallest load on.
+    /// One entry for each Bernstein polynomial, from the smallest load on.
     parts: Vec<LoadPart>,
 }
 
@@ -237,7 +237,7 @@ impl Model {
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
             fit: self.fit.clone(),
         };
-        // Numbers and strings only: there is nothing that JSON cannot hold.
+        // The file has only numbers and strings, so writing JSON cannot fail.
         serde_json::to_string(&file).unwrap_or_default() + "\n"
     }
 }

@@ -1,8 +1,8 @@
-//! Files and folders that appear whole or not at all, and what they may replace.
+//! Writes files and folders that appear complete or not at all, and decides what they may replace.
 //!
-//! One policy for every command. What a command made itself is replaced. Anything else is kept,
-//! unless the user says otherwise. A file that is read is never replaced. How a command knows its
-//! own results:
+//! All commands use the same rule. An existing result of ours is replaced. Any other file is kept,
+//! unless the user forces it. A file that is an input is never replaced. A result is recognised as
+//! ours like this:
 //!
 //! | result | it is ours where |
 //! | --- | --- |
@@ -14,8 +14,12 @@
 //! | FMU | its description names this program, and no file was added or exchanged |
 //! | anything else | it holds the very bytes that are to be written |
 //!
-//! A CSV file has no room for a mark. So an edit of other columns is not seen, and a table without
-//! columns of its own, such as a prepared recording, is replaced by the same bytes only.
+//! A CSV file has no room for a mark. So changes in its other columns are not detected. A CSV table
+//! without added columns, such as a prepared recording, may be replaced by the same bytes only.
+//!
+//! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
+//! write files and folders under temporary names (`unfinished`) and move them to their place
+//! (`moves`). `table` writes tables; `parquet`, `spool` and `splice` write them as Parquet.
 
 mod atomic;
 mod destination;
