@@ -104,7 +104,9 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     if model.load.is_some() {
         let Some(load) = &recording.load else {
             return Err(crate::error::Error::Fit(
-                "the model depends on a load: the recording needs it too, or take the model at one load".into(),
+                "the model depends on a load: the recording needs it too, or take the model at one \
+                 load"
+                    .into(),
             ));
         };
         output_model = model.simulate_under_load(&seen.input, load)?;

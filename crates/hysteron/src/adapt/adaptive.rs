@@ -14,8 +14,10 @@ use hysteron_core::{Solution, Target};
 /// ```
 /// use hysteron::{Adaptation, Adaptive, Method, Model, Operator, Plane, Sign};
 /// let plane = Plane::new(20.0, 80.0, 5)?;
-/// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
-/// let method = Method::LeastSquares { forgetting: 0.99, noise: 0.01, spread: 1.0, correlation: 3.0 };
+/// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+/// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
+/// let (noise, spread, correlation) = (0.01, 1.0, 3.0);
+/// let method = Method::LeastSquares { forgetting: 0.99, noise, spread, correlation };
 /// let mut adaptive = Adaptive::new(&model(1.0)?, Adaptation { method, ..Adaptation::default() })?;
 /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());
 /// for n in 0..1000 {
@@ -295,7 +297,8 @@ fn reserved(numbers: usize) -> Result<Vec<f64>> {
     let bytes = 8 * numbers as u128;
     if bytes > MOST_BYTES {
         return Err(Error::Fit(format!(
-            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} GiB allowed: take another method, or a model with fewer levels",
+            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} \
+             GiB allowed: take another method, or a model with fewer levels",
             bytes as f64 / f64::from(1 << 30),
             MOST_BYTES >> 30
         )));

@@ -106,10 +106,12 @@ impl Adapted {
 /// ```
 /// use hysteron::{AdaptOptions, Model, Operator, Plane, Progress, Recording, Sign, adapt};
 /// let plane = Plane::new(20.0, 80.0, 5)?;
-/// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
+/// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+/// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
 /// let input: Vec<f64> = (0..1000).map(|n| 50.0 - 40.0 * (0.05 * f64::from(n)).cos()).collect();
 /// let output = model(1.5)?.simulate(&input)?;
-/// let adapted = adapt(&model(1.0)?, &Recording::new(input, output)?, &AdaptOptions::default(), Progress::NONE)?;
+/// let recording = Recording::new(input, output)?;
+/// let adapted = adapt(&model(1.0)?, &recording, &AdaptOptions::default(), Progress::NONE)?;
 /// let last = adapted.thirds[2];
 /// assert!(last.adapting.rmse < 0.05 * last.fixed.rmse);
 /// # Ok::<(), hysteron::Error>(())
@@ -201,7 +203,9 @@ fn refuse_unusable(model: &Model) -> Result<()> {
     match size.is_finite() && size > 0.0 {
         true => Ok(()),
         false => Err(Error::Fit(
-            "the model's weights are all zero, or too large to be squared: there is nothing to adapt".into(),
+            "the model's weights are all zero, or too large to be squared: there is nothing to \
+             adapt"
+                .into(),
         )),
     }
 }
@@ -293,7 +297,12 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
             spread,
             correlation,
         } => {
-            json!({"forgetting": forgetting, "noise": noise, "spread": spread, "correlation": correlation})
+            json!({
+                "forgetting": forgetting,
+                "noise": noise,
+                "spread": spread,
+                "correlation": correlation,
+            })
         }
     };
     object["offset_share"] = json!(options.offset_share);

@@ -50,39 +50,43 @@ pub enum Learner {
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `learner` | drift | see [`Learner`] | what follows the error, and how |
-/// | `start` | off | off, on, unknown | where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less |
-/// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
-/// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
-/// | `span` | 1 | 1/8 to 8 | increments: levels between two updates |
-/// | `forgetting` | weights: 0.999; shares: 0.9999 | above 0, up to 1 | least squares: what a sample counts after the next |
-/// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
-/// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
-/// | `correlation` | 1 | from 0 on | least squares of weights: levels over which deviations go together |
-/// | `dead_zone` | twice the output's [`noise`] | from 0 on | errors up to this are noise; in the output's unit |
-/// | `leakage` | 0 | 0 to 1 | share by which the weights return to the off-line ones with each update |
-/// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
-/// | `movement` | 0.05 | from 0 on | levels that the input has to move before a sample is learned from |
-/// | `trial` | 256 | from 1 on | samples after which the weights are judged against the last good ones |
-/// | `gate` | 12 | 0, or from 2 on | a reading that surprises so many times more than usual is not learned from; 0: all are learned from |
-/// | `burst` | 8 | from 1 on | readings in a row beyond the gate that are learned from, where they agree; samples at the end on probation |
+/// | `learner` | drift | see [`Learner`] | parameters and method |
+/// | `start` | off | off, on, unknown | state before the first sample |
+/// | `load` | middle of its range | the model's range | load of the first shares (drift) |
+/// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
+/// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
+/// | `forgetting` | weights: 0.999, shares: 0.9999 | up to 1 | forgetting (least squares) |
+/// | `noise` | see the field | above 0 | error of a reading (least squares) |
+/// | `spread` | see the field | above 0 | deviation of a parameter (least squares) |
+/// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
+/// | `dead_zone` | twice the output's [`noise`] | 0 or more | errors that are noise |
+/// | `leakage` | 0 | 0 to 1 | return to the off-line weights |
+/// | `offset_share` | see the field | 0 or more | how freely the offset moves |
+/// | `movement` | 0.05 | 0 or more | levels between samples learned from |
+/// | `trial` | 256 | 1 or more | samples of a trial |
+/// | `gate` | 12 | 0, or 2 or more | rejects wrong readings |
+/// | `burst` | 8 | 1 or more | accepts a real jump |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptOptions {
     /// Which parameters are adapted, and by which method.
     pub learner: Learner,
-    /// State of the operators before the first sample.
+    /// State of the operators before the first sample. Unknown: off or on, whichever gives the
+    /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the coefficients start at.
+    /// Load that the shares start at, for [`Learner::Drift`] with a model that depends on a load.
     pub load: Option<f64>,
-    /// Gain of the gradient methods.
+    /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
     /// Levels between two updates from increments.
     pub span: Option<f64>,
-    /// Forgetting factor of least squares.
+    /// Forgetting factor of least squares: weight of a sample relative to the next one.
     pub forgetting: Option<f64>,
-    /// Standard deviation of a reading's error.
+    /// Least squares: standard deviation of a reading's error, including the error of the model, in
+    /// the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for weights and
+    /// 5 % for shares.
     pub noise: Option<f64>,
-    /// Standard deviation by which a parameter may differ from its off-line value.
+    /// Least squares: standard deviation by which a parameter may differ from its off-line value.
+    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for shares: 0.5.
     pub spread: Option<f64>,
     /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
@@ -90,16 +94,18 @@ pub struct AdaptOptions {
     pub dead_zone: Option<f64>,
     /// Share of the way back to the off-line weights with each update.
     pub leakage: Option<f64>,
-    /// How freely the offset moves, relative to one weight.
+    /// How freely the offset moves, relative to one weight or share. Default of the gradient
+    /// methods: `0.2 √N`. Default of least squares: the offset may deviate by 0.3 `Y`.
     pub offset_share: Option<f64>,
     /// Levels that the input has to move before a sample is learned from.
     pub movement: Option<f64>,
     /// Number of samples after which the weights are compared with the last good ones.
     pub trial: Option<u32>,
-    /// A reading is rejected if its error is more than this many times the usual one; see
-    /// [`Adaptation`].
+    /// A reading is rejected if it is more than this many times as surprising as usual; 0 to accept
+    /// all readings. See [`Adaptation`].
     pub gate: Option<f64>,
-    /// Number of readings in a row beyond the gate that are taken as a real jump.
+    /// Number of readings in a row beyond the gate that are taken as a real jump if they agree.
+    /// Also the number of samples on probation at the end.
     pub burst: Option<u32>,
 }
 

@@ -52,7 +52,8 @@ pub struct Action {
 ///     }
 ///     fn write(&mut self, drive: f64) {
 ///         self.volts = drive;
-///         self.mm += 0.1 * (0.5 * self.volts - self.mm); // what the physics would do until the next sample
+///         // The physics until the next sample.
+///         self.mm += 0.1 * (0.5 * self.volts - self.mm);
 ///     }
 /// }
 ///

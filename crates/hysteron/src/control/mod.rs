@@ -11,7 +11,9 @@
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
 //! ```
-//! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run};
+//! use hysteron::control::{
+//!     Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run,
+//! };
 //! use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions};
 //! use hysteron::{Fit, Progress, Recording};
 //!
@@ -35,7 +37,8 @@
 //!     stuck_s: Some(0.15),
 //!     ..Scheme::new(0.01, (0.0, 150.0))
 //! })?;
-//! let reference: Vec<f64> = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos()).collect();
+//! let reference = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos());
+//! let reference: Vec<f64> = reference.collect();
 //! let course = Course { reference: &reference, headings: &[], events: &[] };
 //! let trace = run(&mut new()?, &mut controller, &course, Progress::NONE)?;
 //! let late = 200..1000; // after the start

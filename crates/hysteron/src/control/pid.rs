@@ -29,7 +29,8 @@ impl Gains {
         match self.gain.is_finite() && time(self.integral_s) && time(self.derivative_s) {
             true => Ok(()),
             false => Err(Error::Control(format!(
-                "gain {}, integral time {} s, derivative time {} s: a finite gain and times from zero are needed",
+                "gain {}, integral time {} s, derivative time {} s: a finite gain and times from \
+                 zero are needed",
                 self.gain, self.integral_s, self.derivative_s
             ))),
         }
@@ -51,7 +52,8 @@ const DERIVATIVE_FILTER: f64 = 8.0;
 /// let mut pid = Pid::new(Gains { gain: 2.0, integral_s: 1.0, derivative_s: 0.0 });
 /// let limits = (0.0, 10.0);
 /// for _ in 0..1000 {
-///     assert_eq!(pid.step(100.0, 0.1, 0.0, limits, (false, false)), 10.0); // out of reach for long
+///     // The error is out of reach for a long time.
+///     assert_eq!(pid.step(100.0, 0.1, 0.0, limits, (false, false)), 10.0);
 /// }
 /// assert!(pid.step(-1.0, 0.1, 0.0, limits, (false, false)) < 10.0); // and back at once
 /// ```

@@ -107,7 +107,7 @@ impl Scheme {
             let fine = !inner.square_root || self.drives.0 >= 0.0;
             require(
                 fine,
-                "a drive that is a square root cannot be below zero: `drives`",
+                "`drives` must not be negative, because the drive is a square root",
             )?;
         }
         Ok(())

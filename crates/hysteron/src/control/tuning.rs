@@ -53,7 +53,8 @@ impl RelayTest {
         let fine = low < high && (high - low).is_finite() && middle.is_finite();
         if !(fine && hysteresis >= 0.0 && hysteresis.is_finite()) {
             return Err(Error::Control(format!(
-                "`commands` {low} to {high}, `middle` {middle}, `hysteresis` {hysteresis}: finite numbers are needed, the lower command first and the hysteresis from 0 on"
+                "`commands` {low} to {high}, `middle` {middle}, `hysteresis` {hysteresis}: finite \
+                 numbers are needed, the lower command first and the hysteresis from 0 on"
             )));
         }
         let none = (f64::INFINITY, f64::NEG_INFINITY);

@@ -30,9 +30,9 @@ const SAMPLES_PER_LEVEL: f64 = 10.0;
 /// | --- | --- | --- | --- |
 /// | `plane` | | | the plane of the model to be identified |
 /// | `operator` | MKP | MKP, KP, relay | its elementary operator |
-/// | `rates` | | above zero | how fast the input can rise and fall |
+/// | `rates` | | above 0 | how fast the input can rise and fall |
 /// | `budget_s` | none | enough for one ring | longest duration of the profile, s |
-/// | `step_s` | ten samples a level | above zero, at least one sample a level | longest time between samples, s |
+/// | `step_s` | 10 samples per level | above 0, 1 sample per level | longest sample interval, s |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignOptions {
     /// The plane of the model to be identified.
@@ -156,7 +156,8 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let samples = options.rates.duration(&inputs(options, &turns)) / step_s;
     if samples > MOST_SAMPLES {
         return Err(Error::Design(format!(
-            "a sample every {step_s:e} s makes {samples:.1e} samples, more than {MOST_SAMPLES:e}: give a longer step, or rates nearer to each other"
+            "a sample every {step_s:e} s makes {samples:.1e} samples, more than {MOST_SAMPLES:e}: \
+             give a longer step, or rates nearer to each other"
         )));
     }
     let (time, input) = match legs.is_empty() {
@@ -193,14 +194,16 @@ fn check(options: &DesignOptions, recorded: &[&[f64]]) -> Result<f64> {
     let level_s = plane.step() / options.rates.fastest();
     if let Some(step) = options.step_s.filter(|step| *step > level_s * (1.0 + 1e-9)) {
         return Err(Error::Design(format!(
-            "in a step of {step} s the input passes more than one level: take at most {level_s:.4} s, or fewer levels"
+            "in a step of {step} s the input passes more than one level: \
+             take at most {level_s:.4} s, or fewer levels"
         )));
     }
     for (n, input) in recorded.iter().enumerate() {
         let (low, high) = range(input);
         if input.is_empty() || plane.normalise(low) >= plane.normalise(high) {
             return Err(Error::Design(format!(
-                "recording {} of {} moves no operator: its input lies between {low} and {high}, the plane's active range is {} to {}",
+                "recording {} of {} moves no operator: its input lies between {low} and {high}, \
+                 the plane's active range is {} to {}",
                 n + 1,
                 recorded.len(),
                 plane.bottom(),
@@ -227,7 +230,8 @@ fn within_budget(options: &DesignOptions, turns: &[usize]) -> Result<Vec<usize>>
     selections.into_iter().find(fits).ok_or_else(|| {
         let least = seconds(&spiral::evenly(turns, 1));
         Error::Design(format!(
-            "{:.4} min ({budget:.1} s) are too short for a single ring, which takes {:.4} min ({least:.1} s): allow more time or faster rates",
+            "{:.4} min ({budget:.1} s) are too short for a single ring, which takes {:.4} min \
+             ({least:.1} s): allow more time or faster rates",
             budget / 60.0,
             least / 60.0
         ))

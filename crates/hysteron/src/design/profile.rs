@@ -16,7 +16,8 @@ impl Rates {
         for (name, rate) in [("heating", self.heating), ("cooling", self.cooling)] {
             if !(rate.is_finite() && rate > 0.0) {
                 return Err(Error::Design(format!(
-                    "the {name} rate is {rate}, but must be above zero, in units of the input per second"
+                    "the {name} rate is {rate}, but must be above zero, in units of the input per \
+                     second"
                 )));
             }
         }

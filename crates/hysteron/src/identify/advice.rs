@@ -46,21 +46,24 @@ impl fmt::Display for Advice {
                 range: (low, high),
             } => write!(
                 f,
-                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} and were taken as its ends"
+                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} \
+                 and were clipped to its ends"
             ),
             Self::AgainstInput { part } if *part > 0.5 => write!(
                 f,
-                "on {:.0} % of its way the output goes the other way than the model's sign allows",
+                "on {:.0} % of its path the output moves against the sign of the model",
                 100.0 * part
             ),
             Self::AgainstInput { part } => write!(
                 f,
-                "on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow",
+                "on {:.0} % of its path the output moves against the input, which non-negative \
+                 weights cannot follow",
                 100.0 * part
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the first input leaves {operators} operators open, which are taken as off"
+                "the first input does not determine the state of {operators} operators: they are \
+                 taken as off"
             ),
         }
     }
@@ -73,11 +76,11 @@ impl Advice {
         match self {
             Self::Clipped { .. } => Remedy::new("widen {}", [Setting::any("range")]),
             Self::AgainstInput { part } if *part > 0.5 => Remedy::new(
-                "leave {} out; where it was left out, the output hardly follows from this input",
+                "leave {} out; if it was not set, the output hardly depends on this input",
                 [Setting::any("sign")],
             ),
             Self::AgainstInput { .. } => Remedy::new(
-                "a butterfly loop needs {}, several loads {}, a drive that heats {}",
+                "use {} for a butterfly loop, {} for several loads, {} for a drive that heats",
                 [
                     Setting::word("solver", "ols"),
                     Setting::any("load"),

@@ -252,7 +252,7 @@ impl<'a> Fit<'a> {
         if !self.body {
             return Ok(());
         }
-        let what = "behind a thermal body neither levels nor smoothness can be chosen";
+        let what = "with a thermal body, levels and smoothness cannot be chosen automatically";
         let settings = [Setting::any("levels"), Setting::any("smooth")];
         let remedy = Remedy::new("give {} and {} yourself", settings);
         Err(Error::Fit(what.into()).remedied(remedy))

@@ -30,13 +30,13 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// [`crate::Error::Recording`] for an invalid recording.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    let band = usual_tolerance(&recording.output);
+    let tolerance = usual_tolerance(&recording.output);
     let headings = headings(&recording.input, usual_tolerance(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);
     let mut held = recording.output[0];
     for (&y, heading) in recording.output.iter().zip(headings) {
         // The output behind a play operator, so that noise within the tolerance does not move it.
-        let next = held.clamp(y - band, y + band);
+        let next = held.clamp(y - tolerance, y + tolerance);
         let way = sign.factor() * (next - held);
         held = next;
         match heading {

@@ -9,20 +9,20 @@ use hysteron_core::Operator;
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `operator` | MKP | MKP, KP, relay | the elementary operator |
-/// | `levels` | 20 | from 2 on; the Gram matrix takes `8 N²` bytes, `N = K(K + 1)/2` | how fine the plane is |
+/// | `levels` | 20 | 2 or more | number of levels `K` |
 /// | `range` | from the data | finite, in order | the plane's lowest and highest level |
 /// | `solver` | NNLS | NNLS, OLS | see [`Solver`] |
 /// | `sign` | the better one | ± | direction of the output |
 /// | `offset` | free | finite | output with every operator off |
-/// | `smooth` | 0 | from 0 on; 1e-10 to 1e-4 as a rule | strength of the smoothness across the plane |
-/// | `start` | off | off, on, unknown | where the operators stand before each recording |
-/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, where the recordings have one |
+/// | `smooth` | 0 | 0 to 1e6, usually 1e-10 to 1e-4 | strength of the smoothness |
+/// | `start` | off | off, on, unknown | state of the operators before each recording |
+/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, if any |
 /// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// The elementary operator.
     pub operator: Operator,
-    /// Number of levels `K`.
+    /// Number of levels `K`. The Gram matrix takes `8 N²` bytes, with `N = K(K + 1)/2`.
     pub levels: usize,
     /// Lowest and highest level; `None` for the plane whose active range is the range of the input.
     pub range: Option<(f64, f64)>,

@@ -16,7 +16,8 @@ use serde::Serialize;
 /// ```
 /// use hysteron::{FitOptions, Recording, Fit};
 /// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
-/// let output = input.iter().enumerate().map(|(n, t)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin()).collect();
+/// let noisy = |(n, t): (usize, &f64)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin();
+/// let output = input.iter().enumerate().map(noisy).collect();
 /// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
 /// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;

@@ -70,7 +70,7 @@ impl FirstOrder {
     pub fn step(&self, state: &mut ThermalState, dt: f64, drive: f64) -> Result<f64> {
         if let Some((name, value)) = self.fault() {
             return Err(Error::Thermal(format!(
-                "the body's {name} is {value}, where a finite number above zero is needed"
+                "the body's {name} is {value}, but must be a finite number above zero"
             )));
         }
         if !(dt >= 0.0 && dt.is_finite() && drive.is_finite()) {

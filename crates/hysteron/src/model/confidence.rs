@@ -66,7 +66,7 @@ impl Confidence {
             .map(|(name, value)| {
                 (
                     name.to_owned(),
-                    format!("{value:e} is not a number from zero on that can be squared"),
+                    format!("{value:e} is negative, not a number, or too large to be squared"),
                 )
             })
     }

@@ -133,7 +133,8 @@ impl Model {
     /// let text = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
     ///     "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2]}"#;
     /// let error = hysteron::Model::from_json(text).unwrap_err();
-    /// assert!(error.to_string().contains("field `weights`: 2 weights where K(K+1)/2 = 3 are needed"));
+    /// let expected = "field `weights`: 2 weights where K(K+1)/2 = 3 are needed";
+    /// assert!(error.to_string().contains(expected));
     /// ```
     ///
     /// # Errors
@@ -153,7 +154,8 @@ impl Model {
             found => {
                 let found = found.map_or("none".into(), |v| v.to_string());
                 let problem = format!(
-                    "version {found} is not known, only {VERSION}: a newer hysteron may read this file"
+                    "version {found} is not known, only {VERSION}: \
+                     a newer hysteron may read this file"
                 );
                 return Err(fault("version", problem));
             }
@@ -257,7 +259,7 @@ impl LoadEntry {
     fn into_load(self, model: &Model) -> Result<LoadDependence> {
         let (min, max) = (self.min, self.max);
         if !(min.is_finite() && max.is_finite() && min < max) {
-            let problem = format!("the range {min} to {max} is not finite and in order");
+            let problem = format!("the range {min} to {max} must be finite, the smaller end first");
             return Err(fault("load", problem));
         }
         if self.parts.is_empty() {

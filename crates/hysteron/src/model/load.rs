@@ -123,7 +123,8 @@ impl LoadDependence {
         let slack = 1e-6 * (high - low);
         if !(load >= low - slack && load <= high + slack) {
             return Err(Error::Fit(format!(
-                "the {} {load} is outside the range {low} to {high} that the model was identified at",
+                "the {} {load} is outside the range {low} to {high} that the model was identified \
+                 at",
                 self.quantity.name
             )));
         }

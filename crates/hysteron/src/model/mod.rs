@@ -119,7 +119,8 @@ impl Model {
     /// load.
     pub fn plain(&self) -> Result<&Operators> {
         if self.thermal.is_some() {
-            let what = "the model has a thermal body: an inverse gives its temperature, not the drive that takes it there, and each sample needs its time";
+            let what = "the model has a thermal body: an inverse gives its temperature, not the \
+                        drive that takes it there, and each sample needs its time";
             return Err(Error::Thermal(what.into()));
         }
         match &self.load {

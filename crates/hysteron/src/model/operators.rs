@@ -215,7 +215,8 @@ impl Operators {
     /// ```
     /// # use hysteron::{Operator, Operators, Plane, Sign};
     /// # let plane = Plane::new(0.0, 1.0, 2)?;
-    /// # let model = Operators::new(Operator::Mkp, plane, vec![1.0, 2.0, 4.0], 0.0, Sign::Positive)?;
+    /// # let weights = vec![1.0, 2.0, 4.0];
+    /// # let model = Operators::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive)?;
     /// let mut state = model.start();
     /// model.run(&mut state, &[0.5, 1.0, 0.5], &mut [0.0; 3])?;
     /// assert_eq!(model.operator_states(&state)?, [1.0, 1.0, 0.5]); // γ_11, γ_12, γ_22

@@ -12,8 +12,8 @@ use hysteron_core::Direction;
 
 /// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by
 /// more than half the dead band.
-pub(super) fn settle(values: &mut [f64], band: f64) {
-    let mut turning = Turning::new(band);
+pub(super) fn settle(values: &mut [f64], dead_band: f64) {
+    let mut turning = Turning::new(dead_band);
     let turns: Vec<(usize, Direction)> = values.iter().filter_map(|&v| turning.push(v)).collect();
     let ends = turns.iter().skip(1).map(|(n, _)| *n);
     let ends: Vec<usize> = ends.chain(values.len().checked_sub(1)).collect();

@@ -129,7 +129,7 @@ fn rmse(recording: &Recording, progress: Progress<'_>) -> Result<f64> {
     model
         .fit
         .map(|fit| fit.rmse)
-        .ok_or_else(|| Error::Preparation("a fit did not say how it went".into()))
+        .ok_or_else(|| Error::Preparation("a fit returned no summary".into()))
 }
 
 #[cfg(test)]

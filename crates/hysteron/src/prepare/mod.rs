@@ -46,24 +46,31 @@ pub enum Step {
 
 /// The steps of [`prepare`], in their order.
 ///
-/// | field | default | value | by default |
+/// | field | default | value | unit |
 /// | --- | --- | --- | --- |
-/// | `spikes` | auto | how many median absolute deviations make a spike, above 0 | 4; lost signs are given back first |
-/// | `resample` | auto | time between samples, s, above 0 | the median step, only where time is irregular and a filter needs it |
-/// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | for each series, that at which what is taken away is as large as the noise; none where that is below 0.05 % of the range |
-/// | `lag` | off | time constant of the input's sensor, s, above 0 | `Auto`: that with which a static model fits best, if it fits 10 % better; right only where the material does not depend on rate |
-/// | `dead_band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
+/// | `spikes` | auto | above 0 | median absolute deviations |
+/// | `resample` | auto | above 0 | s |
+/// | `low_pass` | auto | above 0, below half the sampling rate | Hz; without time cycles/sample |
+/// | `lag` | off | above 0 | s |
+/// | `dead_band` | auto | 0 or more | unit of the input |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrepareOptions {
-    /// Repair of lost signs and removal of isolated spikes.
+    /// Repair of lost signs, then removal of isolated spikes. The value is the number of deviations
+    /// from which on a sample is a spike. Auto: 4.
     pub spikes: Step,
-    /// Resampling to equal time steps.
+    /// Resampling to equal time steps of this length. Auto: the median step, and only if the time
+    /// is irregular and a filter needs equal steps.
     pub resample: Step,
-    /// Zero-phase low-pass filter.
+    /// Zero-phase low-pass filter; the value is the cut-off for both series. Auto: for each series,
+    /// the cut-off that removes as much as the noise. No filter if the noise is below 0.05 % of the
+    /// range.
     pub low_pass: Step,
-    /// Compensation of the lag of the input's sensor.
+    /// Compensation of the lag of the input's sensor; the value is its time constant. Auto: the
+    /// time constant that gives the best fit of a static model, if that fit is 10 % better. This is
+    /// valid only if the material does not depend on rate.
     pub lag: Step,
-    /// Dead band for reversals of the input.
+    /// Dead band: reversals of the input up to this are noise. Auto: the largest reversal that
+    /// noise causes in this number of samples, `2√(2 ln n) σ`.
     pub dead_band: Step,
 }
 
@@ -108,7 +115,7 @@ impl PrepareOptions {
         }
         match self.dead_band {
             Step::Value(band) if !(band.is_finite() && band >= 0.0) => Err(Error::Preparation(
-                format!("the dead band must be a number from zero on, not {band}"),
+                format!("the dead band must be zero or above, not {band}"),
             )),
             _ => Ok(()),
         }
@@ -127,7 +134,8 @@ impl PrepareOptions {
 /// let mut input: Vec<f64> = (0..300).map(|n| 40.0 * (f64::from(n) * 0.05).sin()).collect();
 /// let output = input.iter().map(|t| 0.5 * t).collect();
 /// input[100] = 0.0; // a reading that was lost
-/// let (prepared, report) = prepare(&Recording::new(input, output)?, &PrepareOptions::default(), Progress::NONE)?;
+/// let recording = Recording::new(input, output)?;
+/// let (prepared, report) = prepare(&recording, &PrepareOptions::default(), Progress::NONE)?;
 /// assert_eq!(report.spikes.map(|spikes| spikes.input.first), Some(vec![101])); // counted from 1
 /// assert!((prepared.input[100] + 38.36).abs() < 0.1);
 /// # Ok::<(), hysteron::Error>(())
@@ -227,7 +235,8 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
             let duration = time[time.len() - 1] - time[0];
             if step > duration {
                 return Err(Error::Preparation(format!(
-                    "a step of {step} s is longer than the recording, {duration} s: take a shorter one"
+                    "a step of {step} s is longer than the recording, {duration} s: \
+                     take a shorter one"
                 )));
             }
             step
@@ -320,7 +329,8 @@ fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<O
             let (low, high) = range(&work.input);
             if size >= high - low {
                 return Err(Error::Preparation(format!(
-                    "a dead band of {size} takes the whole range of the input, {low} to {high}: take a smaller one"
+                    "a dead band of {size} covers the whole range of the input, {low} to {high}: \
+                     take a smaller one"
                 )));
             }
             size

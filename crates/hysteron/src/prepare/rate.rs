@@ -57,7 +57,8 @@ impl RateDependence {
 /// ```
 /// use hysteron::{Recording, rate_dependence};
 /// let input: Vec<f64> = (0..600).map(|n| 50.0 - 30.0 * (f64::from(n * n) * 1e-4).cos()).collect();
-/// let output = input.iter().scan(20.0_f64, |y, x| { *y = y.clamp(x - 2.0, x + 2.0); Some(*y) }).collect();
+/// let mut y = 20.0_f64;
+/// let output = input.iter().map(|x| { y = y.clamp(x - 2.0, x + 2.0); y }).collect();
 /// let mut recording = Recording::new(input, output)?;
 /// recording.time = Some((0..600).map(f64::from).collect());
 /// let rate = rate_dependence(&recording)?.unwrap();

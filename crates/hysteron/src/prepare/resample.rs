@@ -30,11 +30,13 @@ pub(super) fn fits(time: &[f64]) -> Result<()> {
     let samples = duration / median;
     if median > 0.0 && samples > GROWTH * time.len() as f64 {
         let what = format!(
-            "the time has gaps: at the median step of {median} s there would be {samples:.0} samples instead of {}",
+            "the time has gaps: at the median step of {median} s there would be {samples:.0} \
+             samples instead of {}",
             time.len()
         );
         let remedy = Remedy::new(
-            "cut the recording at its gaps (several files make one experiment), or leave the filter out ({}) or give a step ({})",
+            "cut the recording at its gaps (several files make one experiment), or turn the filter \
+             off ({}), or give a step ({})",
             [Setting::word("low-pass", "off"), Setting::any("resample")],
         );
         return Err(Error::Preparation(what).remedied(remedy));

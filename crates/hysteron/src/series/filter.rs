@@ -22,7 +22,8 @@ pub enum FilterError {
     SampleRate(f64),
     /// The cut-off is not between 0 and half the sampling rate.
     #[error(
-        "the cut-off is {cutoff} Hz, but must lie above 0 and below half the sampling rate, {nyquist} Hz"
+        "the cut-off is {cutoff} Hz, but must lie above 0 and below half the sampling rate, \
+         {nyquist} Hz"
     )]
     Cutoff {
         /// The cut-off given, Hz.

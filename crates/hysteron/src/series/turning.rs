@@ -85,7 +85,8 @@ impl Turning {
 /// `tolerance`. The turning point belongs to the branch before it.
 ///
 /// ```
-/// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
+/// let series = [0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0];
+/// assert_eq!(hysteron::branches(&series, 0.5), [0, 0, 0, 1, 1, 1, 2]);
 /// ```
 #[must_use]
 pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {

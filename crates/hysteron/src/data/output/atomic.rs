@@ -37,8 +37,8 @@ impl AtomicFile {
     /// replaced.
     ///
     /// # Errors
-    /// [`Error::File`]. Its source has the kind [`io::ErrorKind::AlreadyExists`] if an existing file
-    /// is not ours and is kept.
+    /// [`Error::File`]. Its source has the kind [`io::ErrorKind::AlreadyExists`] if an existing
+    /// file is not ours and is kept.
     pub fn create<'a>(target: impl Into<Destination<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
         let claim = target.claim(own)?;

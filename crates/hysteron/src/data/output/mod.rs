@@ -4,15 +4,15 @@
 //! unless the user forces it. A file that is an input is never replaced. A result is recognised as
 //! ours like this:
 //!
-//! | result | it is ours where |
+//! | result | it is ours if |
 //! | --- | --- |
-//! | model | it is, byte for byte, what this library writes for the model in it, and tells of a fit |
-//! | table, CSV | its last columns are those that a command adds, and their numbers are written as here |
+//! | model | it records a fit and has exactly the bytes that this library would write |
+//! | table, CSV | its last columns are those that a command adds, written as we write them |
 //! | table, Parquet | its metadata name this library as the writer |
-//! | folder | each file is as its list of digests says ([`manifest`]) |
-//! | exported C | the digest in its first line is that of the lines below |
-//! | FMU | its description names this program, and no file was added or exchanged |
-//! | anything else | it holds the very bytes that are to be written |
+//! | folder | each file matches its digest in the list ([`manifest`]) |
+//! | exported C | the digest in its first line matches the lines below |
+//! | FMU | its description names this program, and no file was added or replaced |
+//! | anything else | it already holds the bytes that are to be written |
 //!
 //! A CSV file has no room for a mark. So changes in its other columns are not detected. A CSV table
 //! without added columns, such as a prepared recording, may be replaced by the same bytes only.

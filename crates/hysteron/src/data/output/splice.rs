@@ -146,7 +146,7 @@ impl Splice {
         match self.original.rows(self.group) {
             None => self.writer.into_inner().map_err(io_error),
             Some(_) => Err(io::Error::other(
-                "the file that is read has changed meanwhile",
+                "the input file has changed while it was read",
             )),
         }
     }

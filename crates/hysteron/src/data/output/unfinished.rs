@@ -131,7 +131,7 @@ pub(super) fn bare(error: io::Error) -> io::Error {
 }
 
 fn taken_away() -> io::Error {
-    io::Error::other("other runs keep removing what this one begins: try again")
+    io::Error::other("other programs keep removing the temporary files of this one: try again")
 }
 
 /// Locks a new file. Returns false if another program has taken it for a leftover and removed it.

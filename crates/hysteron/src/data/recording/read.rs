@@ -92,7 +92,8 @@ impl Recording {
         for (n, name) in named.iter().enumerate() {
             if let (Some(name), true) = (name, named[..n].contains(name)) {
                 let problem = format!(
-                    "the column `{name}` is named twice: input, output, time and load are four things"
+                    "the column `{name}` is named twice: \
+                     input, output, time and load are four things"
                 );
                 return Err(table.fault(None, problem));
             }
@@ -134,7 +135,8 @@ impl Recording {
             if at.is_some() && interpolated.is_none() && all[..n].contains(at) {
                 let names = [columns.input, columns.output, "the time", "the load"];
                 let problem = format!(
-                    "the column meant by `{}` is that of another series: input, output, time and load are four things",
+                    "the column meant by `{}` is that of another series: \
+                     input, output, time and load are four things",
                     names[n]
                 );
                 return Err(table.fault(*at, problem));

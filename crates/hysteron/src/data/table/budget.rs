@@ -41,7 +41,8 @@ impl Budget {
             return Ok(());
         }
         Err(format!(
-            "{what} needs {} of memory and {} of {} are left: if the file is not damaged, allow more with the option `max memory`",
+            "{what} needs {} of memory and {} of {} are left: if the file is not damaged, \
+             allow more with the option `max memory`",
             Size(bytes),
             Size(self.left),
             Size(u128::from(self.whole))

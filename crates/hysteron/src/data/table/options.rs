@@ -6,8 +6,8 @@ use crate::data::recording::Repair;
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `repair` | refuse | | what becomes of rows that cannot be used as they are |
-/// | `max_memory` | [`ReadOptions::MAX_MEMORY`], 4 GiB | any | most memory that the file's contents may take, in bytes |
+/// | `repair` | refuse | refuse, mend | what to do with rows that cannot be used |
+/// | `max_memory` | 4 GiB | any | largest memory for the contents of the file, bytes |
 ///
 /// A [`Repair`] converts into options with the defaults for all other fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -111,7 +111,8 @@ impl Scale {
         let converted = column.converted_type();
         let nanoseconds = matches!(
             column.logical_type_ref(),
-            Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) if time.unit == TimeUnit::NANOS
+            Some(LogicalType::Timestamp(time) | LogicalType::Time(time))
+                if time.unit == TimeUnit::NANOS
         );
         let factor = match converted {
             _ if nanoseconds || stored == Type::INT96 => 1e-9,

@@ -69,7 +69,8 @@ impl fmt::Display for Remark {
             ),
             Self::Unnamed { above, columns } => write!(
                 f,
-                "no header row: the table begins in line {}, and its columns go by number, 1 to {columns}",
+                "no header row: the table begins in line {}, and its columns go by number, \
+                 1 to {columns}",
                 above + 1
             ),
             Self::Found { asked, column } => {
@@ -96,7 +97,8 @@ impl fmt::Display for Remark {
                 duration,
             } => write!(
                 f,
-                "the time in column `{column}` has no unit and is taken as seconds: a step of {step} s, {duration} s in all; \
+                "the time in column `{column}` has no unit and is taken as seconds: \
+                 a step of {step} s, {duration} s in all; \
                  if it is in another unit, say so in its name, as in `time [ms]`"
             ),
         }

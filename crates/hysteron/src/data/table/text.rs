@@ -294,7 +294,8 @@ impl Text {
                     row: Some(place),
                     column: Some(column),
                     problem: format!(
-                        "`{written}` may be {number} or {whole}: write the numbers of this column with a decimal point, or without commas between thousands"
+                        "`{written}` may be {number} or {whole}: write the numbers of this column \
+                         with a decimal point, or without commas between thousands"
                     ),
                 });
             }

@@ -82,7 +82,7 @@ impl Unresolved {
         let factor = Mat::from_fn(count, count, |a, b| gram[a * count + b])
             .llt(Side::Lower)
             .map_err(|_| {
-                Error::Fit("the Gram matrix is not definite: the input has no use".into())
+                Error::Fit("the Gram matrix is not definite: the input cannot be used".into())
             })?;
         let mut matrix = factor.inverse();
         matrix *= faer::Scale(ridge);

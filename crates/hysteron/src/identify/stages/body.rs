@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
         }
         if shortest <= 0.0 {
             return Err(Error::Thermal(
-                "time does not pass in a recording: nothing can be learned of its body".into(),
+                "time does not pass in a recording, so its body cannot be identified".into(),
             ));
         }
         let samples: usize = recordings.iter().map(Recording::len).sum();

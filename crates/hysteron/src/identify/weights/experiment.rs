@@ -32,7 +32,7 @@ impl Experiment {
         };
         if recordings.len() > MOST_RECORDINGS {
             return Err(Error::Fit(format!(
-                "{} recordings, where one experiment has {MOST_RECORDINGS} at most",
+                "{} recordings are too many: one experiment has at most {MOST_RECORDINGS}",
                 recordings.len()
             )));
         }
@@ -69,7 +69,8 @@ impl Experiment {
                 // Loads that differ only by rounding are one load.
                 if high - low <= 1e-9 * high.abs().max(low.abs()) {
                     return Err(Error::Fit(format!(
-                        "the load is {low} throughout: nothing can be learned of its effect, fit without it"
+                        "the load is {low} throughout, so its effect cannot be identified: \
+                         fit without it"
                     )));
                 }
                 let (loads, degree) = (different(&load), options.load_degree);
@@ -167,7 +168,8 @@ impl Experiment {
         let plane = Plane::new(min, max, options.levels)?;
         if plane.normalise(low) >= plane.normalise(high) {
             return Err(Error::Fit(format!(
-                "the input, from {low} to {high}, moves no operator of a plane from {min} to {max}: take another range"
+                "the input, from {low} to {high}, moves no operator of a plane from {min} to \
+                 {max}: take another range"
             )));
         }
         Ok(plane)

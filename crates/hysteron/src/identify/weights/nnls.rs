@@ -68,7 +68,9 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
         }
     }
     Err(Error::Fit(
-        "the non-negative solution was not found: the problem is too badly conditioned, take fewer levels".into(),
+        "the non-negative solution was not found, because the problem is too badly conditioned: \
+         take fewer levels"
+            .into(),
     ))
 }
 

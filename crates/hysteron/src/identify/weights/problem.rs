@@ -33,7 +33,7 @@ impl Problem {
         let experiment = Experiment::new(recordings, options)?;
         if options.offset.is_some() && experiment.load_range.is_some() {
             return Err(Error::Fit(
-                "an offset that is given cannot depend on the load: leave one of them out".into(),
+                "a fixed offset cannot depend on the load: leave one of them out".into(),
             ));
         }
         let plane = experiment.plane(recordings, options)?;
@@ -176,7 +176,8 @@ pub(crate) fn check_gram(columns: usize) -> Result<()> {
         return Ok(());
     }
     Err(Error::Fit(format!(
-        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
+        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB \
+         allowed: take fewer levels",
         bytes as f64 / f64::from(1 << 30),
         GRAM_BYTES >> 30
     )))
@@ -192,7 +193,7 @@ fn check(options: &FitOptions) -> Result<()> {
     } = options;
     if let Some(offset) = offset.filter(|offset| offset.is_nan() || offset.abs() > 1e140) {
         return Err(Error::Fit(format!(
-            "the offset {offset} is not a number to work with"
+            "the offset {offset} is not a number, or is too large to be squared"
         )));
     }
     if !(*smooth >= 0.0 && *smooth <= 1e6) {

@@ -231,7 +231,8 @@ impl<'a> NormalEquations<'a> {
 
 pub(crate) fn not_definite() -> Error {
     Error::Fit(
-        "the normal equations cannot be factorised: the data hold values too large or too small to work with"
+        "the normal equations cannot be factorised, because values in the data are too large or \
+         too small: use another unit"
             .into(),
     )
 }

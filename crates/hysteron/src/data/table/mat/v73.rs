@@ -100,12 +100,12 @@ impl Found<'_> {
             .chunks()
             .is_ok_and(|listed| listed.len() as u128 > chunks(&layout, &shape))
         {
-            return Err(damaged("an array has more parts than it says"));
+            return Err(damaged("an array has more chunks than it claims"));
         }
         self.budget.take(held, format_args!("`{name}`"))?;
         let values = data.read_f64().map_err(damaged)?;
         if values.len() as u128 != count {
-            return Err(damaged("an array is not of the size it says"));
+            return Err(damaged("an array is not of the size that it claims"));
         }
         self.variables.push(Variable {
             name,
