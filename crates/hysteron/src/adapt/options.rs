@@ -184,7 +184,7 @@ impl AdaptOptions {
             Learner::LeastSquares => {
                 let correlation = self.correlation.unwrap_or(CORRELATION);
                 let spread =
-                    DEVIATION * span / together(model.plane().levels(), correlation).sqrt();
+                    DEVIATION * span / variance_of_sum(model.plane().levels(), correlation).sqrt();
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
@@ -250,7 +250,7 @@ fn usual_range(values: &[f64]) -> f64 {
 
 /// The variance of the sum of all weights, for a variance of one of each weight and the estimator's
 /// correlation between them.
-fn together(levels: usize, correlation: f64) -> f64 {
+fn variance_of_sum(levels: usize, correlation: f64) -> f64 {
     // The number of pairs of operators that are `along` and `across` apart: the number of positions
     // of the first one for which the second is inside the triangle.
     let levels = levels as isize;
@@ -292,7 +292,7 @@ mod tests {
             }
         }
         // A few hundred terms, summed in another order.
-        assert!((together(6, 2.0) / sum - 1.0).abs() < 1e-12);
-        assert_eq!(together(6, 0.0), 21.0);
+        assert!((variance_of_sum(6, 2.0) / sum - 1.0).abs() < 1e-12);
+        assert_eq!(variance_of_sum(6, 0.0), 21.0);
     }
 }

@@ -2,7 +2,7 @@
 //! inner loop around the input.
 
 use super::pid::limited;
-use super::watch::{Sight, Watch};
+use super::sensor::{Sensed, Sensor};
 use super::{LoopStatus, Pid, Reading, Scheme};
 use crate::error::Result;
 use crate::model::Policy;
@@ -75,8 +75,8 @@ pub struct Controller {
     scheme: Scheme,
     pid: Option<Pid>,
     inner: Option<Pid>,
-    output: Watch,
-    input: Watch,
+    output: Sensor,
+    input: Sensor,
     /// The last input that was commanded.
     last: Option<f64>,
     /// Whether the drive is at its lower and at its upper limit.
@@ -94,12 +94,12 @@ impl Controller {
     /// [`crate::Error::Control`] for settings that no loop can run with.
     pub fn new(scheme: Scheme) -> Result<Self> {
         scheme.check()?;
-        let watch = || Watch::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
+        let sensor = || Sensor::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
         Ok(Self {
             pid: scheme.pid.map(Pid::new),
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
-            output: watch(),
-            input: watch(),
+            output: sensor(),
+            input: sensor(),
             last: None,
             held: (false, false),
             prediction: f64::NAN,
@@ -118,7 +118,7 @@ impl Controller {
         let (output, input) = self.read(reading);
         let mut status = LoopStatus::default();
         if let Some(compensator) = &mut self.scheme.compensator {
-            if let Some(input) = input.and_then(Sight::value) {
+            if let Some(input) = input.and_then(Sensed::value) {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
@@ -127,7 +127,7 @@ impl Controller {
                 status.adapted = outcome == Some(Outcome::Learned);
                 status.rejected = outcome == Some(Outcome::Rejected);
             }
-            self.lost |= input == Some(Sight::Blind);
+            self.lost |= input == Some(Sensed::Broken);
         }
         let command = self.command(target, output.value(), &mut status)?;
         Ok(self.act(command, self.prediction, (output, input), status))
@@ -158,12 +158,12 @@ impl Controller {
 
     /// Filters the readings of output and input. If no sensor measures the input, the last command
     /// is used in its place, except where an inner loop needs a measurement.
-    fn read(&mut self, reading: Reading) -> (Sight, Option<Sight>) {
+    fn read(&mut self, reading: Reading) -> (Sensed, Option<Sensed>) {
         let output = self.output.read(reading.output);
         let input = match (reading.input, self.scheme.inner) {
             (Some(input), _) => Some(self.input.read(input)),
             (None, Some(_)) => Some(self.input.read(f64::NAN)),
-            (None, None) => self.last.map(|last| Sight::Seen(self.input.filter(last))),
+            (None, None) => self.last.map(|last| Sensed::New(self.input.filter(last))),
         };
         (output, input)
     }
@@ -172,7 +172,7 @@ impl Controller {
         &mut self,
         command: f64,
         prediction: f64,
-        (output, input): (Sight, Option<Sight>),
+        (output, input): (Sensed, Option<Sensed>),
         status: LoopStatus,
     ) -> Action {
         let drive = self.drive(command, input);
@@ -200,7 +200,7 @@ impl Controller {
             },
             status: LoopStatus {
                 saturated: limits.contains(&true),
-                sensor_fault: output.fault() || input.is_some_and(Sight::fault),
+                sensor_fault: output.fault() || input.is_some_and(Sensed::fault),
                 ..status
             },
         }
@@ -239,7 +239,7 @@ impl Controller {
         })
     }
 
-    fn drive(&mut self, command: f64, input: Option<Sight>) -> f64 {
+    fn drive(&mut self, command: f64, input: Option<Sensed>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
             return limited(command, low, high);
@@ -250,16 +250,16 @@ impl Controller {
         };
         let limits = (square(low), square(high));
         let power = match input {
-            Some(Sight::Seen(input)) => pid.step(
+            Some(Sensed::New(input)) => pid.step(
                 command - input,
                 self.scheme.interval_s,
                 0.0,
                 limits,
                 (false, false),
             ),
-            Some(Sight::Repeated | Sight::Missing) => pid.hold(0.0, limits),
+            Some(Sensed::Repeated | Sensed::Missing) => pid.hold(0.0, limits),
             // Without a temperature reading, heating is not safe.
-            Some(Sight::Blind) | None => {
+            Some(Sensed::Broken) | None => {
                 pid.hold(0.0, limits);
                 limits.0
             }

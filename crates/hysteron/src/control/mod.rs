@@ -5,7 +5,7 @@
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
-//! feedback and `tuning` its gains; `watch` checks each sensor; `device`, `run` and `trace` connect
+//! feedback and `tuning` its gains; `sensor` checks each sensor; `device`, `run` and `trace` connect
 //! the loop to a device and record it.
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
@@ -53,9 +53,9 @@ mod device;
 mod pid;
 mod run;
 mod scheme;
+mod sensor;
 mod trace;
 mod tuning;
-mod watch;
 
 pub use compensator::Compensator;
 pub use controller::{Action, Controller, Reference};

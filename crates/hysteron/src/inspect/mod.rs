@@ -40,7 +40,7 @@ pub struct RecordingSummary {
     pub input: Series,
     /// The output.
     pub output: Series,
-    /// The sampling, where there is a time column.
+    /// The sampling; `None` without time.
     pub time: Option<Sampling>,
     /// Number of levels of the plane that `excited` is counted on.
     pub levels: usize,
@@ -82,7 +82,7 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
         let count = |band: f64| {
             let mut turning = Turning::new(band);
             let turns = values.iter().filter_map(|&v| turning.push(v)).count();
-            turns.saturating_sub(1) // the start is no reversal
+            turns.saturating_sub(1) // the start is not a reversal
         };
         Series {
             name: quantity.name.clone(),

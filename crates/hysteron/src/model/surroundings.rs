@@ -1,5 +1,5 @@
-//! Simulates any model with the series that it needs besides its input: time for a thermal body,
-//! and a load. Also gives the band.
+//! Simulates any model, together with the series that it may need besides its input: the time, for
+//! a thermal body, and the load. Also computes the band around that output.
 
 use crate::error::{Error, Result};
 use crate::model::Model;

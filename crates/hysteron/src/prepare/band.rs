@@ -55,7 +55,7 @@ pub(super) fn resolution_with_rounding(values: &[f64]) -> f64 {
 pub(super) fn reversals(values: &[f64]) -> usize {
     let mut turning = Turning::new(0.0);
     let turns = values.iter().filter_map(|&v| turning.push(v)).count();
-    turns.saturating_sub(1) // the start is no reversal
+    turns.saturating_sub(1) // the start is not a reversal
 }
 
 #[cfg(test)]

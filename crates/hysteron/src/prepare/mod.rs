@@ -248,7 +248,7 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
         _ => return Ok(None),
     };
     if taken <= 0.0 {
-        return Ok(None); // time stands still throughout
+        return Ok(None); // the time never advances
     }
     resample::resample(work, taken)?;
     Ok(Some(taken))

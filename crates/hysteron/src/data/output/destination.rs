@@ -6,7 +6,7 @@ use std::io::{self, BufReader, Read};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// How to recognise that an existing file is an unchanged result of ours, for one kind of result.
+/// How to recognise that an existing file is ours: a result of hysteron that nobody has changed.
 #[derive(Debug, Clone, Copy)]
 pub enum Own {
     /// Every result of this kind carries a mark. The function looks for it.

@@ -1,5 +1,5 @@
-//! The list of files that were written into a folder, with their digests. It tells which files are
-//! ours and unchanged.
+//! The list of files that hysteron wrote into a folder, with their digests. It shows which files in
+//! the folder are ours and unchanged.
 //!
 //! The format can also be read by `sha256sum -c`.
 

@@ -1,8 +1,9 @@
 //! Writes files and folders that appear complete or not at all, and decides what they may replace.
 //!
-//! All commands use the same rule. An existing result of ours is replaced. Any other file is kept,
-//! unless the user forces it. A file that is an input is never replaced. A result is recognised as
-//! ours like this:
+//! All commands use the same rule. A file is *ours* if hysteron wrote it as a result and nobody has
+//! changed it since. Such a file is replaced by a new result. Any other file is kept, unless the
+//! user forces it. A file that is an input is never replaced. This is how a file of ours is
+//! recognised:
 //!
 //! | result | it is ours if |
 //! | --- | --- |

@@ -1,4 +1,4 @@
-//! Recognises our own results by their content.
+//! Recognises files that hysteron wrote, by their content.
 
 use super::parquet::PROGRAM;
 use crate::model::Model;

@@ -170,7 +170,7 @@ impl Recording {
             of_rows.push((NoteKind::Interpolated, places));
         }
         if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
-            table.judge_time(at, time);
+            table.check_time_unit(at, time);
         }
         let remarks = table.remarks().cloned().map(Note::File);
         let of_rows = of_rows

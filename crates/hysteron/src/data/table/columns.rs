@@ -57,7 +57,7 @@ impl TableReader {
     }
 
     /// Adds a remark if a time without a unit would be unusual in seconds.
-    pub(crate) fn judge_time(&mut self, column: Column, time: &[f64]) {
+    pub(crate) fn check_time_unit(&mut self, column: Column, time: &[f64]) {
         /// Unusual: a step of over a minute, a recording of over six hours, a step below a
         /// microsecond.
         const LONGEST_STEP: f64 = 60.0;

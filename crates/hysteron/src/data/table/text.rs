@@ -227,7 +227,7 @@ impl Text {
     pub(super) fn advance(&mut self, header: &[String]) -> Result<bool> {
         loop {
             if !std::mem::take(&mut self.held) && !self.read(None)? {
-                self.judge_commas(header)?;
+                self.check_commas(header)?;
                 return Ok(false);
             }
             let found = self.row.0.len();
@@ -275,7 +275,7 @@ impl Text {
     /// At the end of the table, checks the commas that may separate thousands. They are no problem
     /// if any number shows that commas are decimal. Otherwise, refuses columns that look like
     /// thousands, and adds a remark about columns that could be.
-    fn judge_commas(&mut self, header: &[String]) -> Result<()> {
+    fn check_commas(&mut self, header: &[String]) -> Result<()> {
         let asked = std::mem::take(&mut self.asked);
         if asked.iter().any(|(_, commas)| commas.is_decimal()) {
             return Ok(());
