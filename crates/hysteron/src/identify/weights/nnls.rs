@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::identify::weights::cholesky::Cholesky;
 use crate::progress::Progress;
 
-/// One step may add one in this many of the variables above zero. Adding more at once saves
-/// gradients, but many of them leave again.
+/// One step may add one variable, and one more for each group of this many variables above zero.
+/// Adding more at once saves gradients, but many of them leave again.
 const STRIDE: usize = 8;
 
 /// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and
