@@ -5,8 +5,8 @@
 //! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
 //! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
-//! feedback and `tuning` its gains; `sensor` checks each sensor; `device`, `run` and `trace` connect
-//! the loop to a device and record it.
+//! feedback and `tuning` its gains; `sensor` checks each sensor; `device`, `run` and `trace`
+//! connect the loop to a device and record it.
 //!
 //! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!

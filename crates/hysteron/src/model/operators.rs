@@ -183,8 +183,8 @@ impl Operators {
     /// Returns how many inputs were clipped.
     ///
     /// # Errors
-    /// As [`Operators::step`], with the index of the sample; [`Error::Core`] for an `output` that is
-    /// shorter than `input`.
+    /// As [`Operators::step`], with the index of the sample; [`Error::Core`] for an `output` that
+    /// is shorter than `input`.
     pub fn run(
         &self,
         state: &mut OperatorState,
