@@ -210,7 +210,7 @@ fn merge<T: Real>(recent: &mut [Turn<T>; LOOK + 1], grid: Grid<'_, T>, min: T) -
     }
     let (p, q) = here;
     let held = T::from_index(p) + (inner_min - T::from_index(q));
-    let max = held.limited(peak, inner_max);
+    let max = held.clamp(peak, inner_max);
     // From the corner before on, so that ten thousand of these leave no more rounding than one.
     let at_max = recent[1].y + grid.everett(split(max), split(outer_min));
     let at_min = at_max - grid.everett(split(max), split(min));

@@ -37,7 +37,7 @@ pub(crate) fn check<T: Real>(
         for i in 1..=j {
             let index = operator_index(i, j);
             let weight = weights[index];
-            size = size + weight.larger(-weight);
+            size = size + weight.max(-weight);
             if !(size + size).is_finite() {
                 return Err(Error::WeightNotFinite { index });
             }
@@ -98,7 +98,7 @@ pub(crate) struct Split<T> {
 impl<T: Real> Split<T> {
     #[inline(always)]
     pub(crate) fn of(x: T, levels: usize) -> Self {
-        let middle = (x - T::HALF).smaller(T::from_index(levels - 1));
+        let middle = (x - T::HALF).min(T::from_index(levels - 1));
         let (start, cell) = middle.nearest_index();
         Self {
             cell,
@@ -132,8 +132,8 @@ impl<T: Real> Triangle<T> {
             near,
             mid: near + step,
             far: near + max.cell + 2,
-            larger: max.part.larger(min.part),
-            smaller: max.part.smaller(min.part),
+            larger: max.part.max(min.part),
+            smaller: max.part.min(min.part),
         }
     }
 }

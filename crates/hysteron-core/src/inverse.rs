@@ -230,8 +230,8 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             Operator::Mkp => (target, T::ONE),
             Operator::Kp | Operator::Relay => (T::HALF * target + T::HALF * total, T::HALF),
         };
-        let tolerance = unit * tolerance.larger(T::ZERO); // NaN too
-        let reach = tolerance.larger(self.slack);
+        let tolerance = unit * tolerance.max(T::ZERO); // NaN too
+        let reach = tolerance.max(self.slack);
         if wanted - total > reach {
             return Ok(Solution {
                 input: self.top(state),
@@ -245,7 +245,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             });
         }
         // Tolerances count from the target itself, not from the end of the range that is nearest to it.
-        let nearest = wanted.limited(T::ZERO, total);
+        let nearest = wanted.clamp(T::ZERO, total);
         let now = state.place().y;
         let edge =
             heading.and_then(|heading| self.edge(state, heading, wanted, (tolerance, reach)));
@@ -297,7 +297,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let plane = self.model.plane();
         match self.model.operator() {
             Operator::Relay => state.input(),
-            _ => state.input().limited(plane.bottom(), plane.max()),
+            _ => state.input().clamp(plane.bottom(), plane.max()),
         }
     }
 
@@ -324,11 +324,11 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         // No further than `tolerance` beyond the target, nor beyond the output that it rests at.
         match heading {
             Direction::Rising if now - wanted <= reach => {
-                let last = wanted.smaller(rest) + tolerance;
+                let last = wanted.min(rest) + tolerance;
                 Some(self.rising(state, Goal::Leave(last, self.slack)).input)
             }
             Direction::Falling if wanted - now <= reach => {
-                let last = wanted.larger(rest) - tolerance;
+                let last = wanted.max(rest) - tolerance;
                 Some(self.falling(state, Goal::Leave(last, self.slack)).input)
             }
             _ => None,
@@ -343,7 +343,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let plane = self.model.plane();
         let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum));
         let x = self.climb(branch.began.x, branch.start, goal.shifted(branch.began.y));
-        let x = x.limited(branch.start, branch.end);
+        let x = x.clamp(branch.start, branch.end);
         if self.model.operator() != Operator::Relay {
             return Landing {
                 input: plane.denormalise(x),
@@ -369,7 +369,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         let plane = self.model.plane();
         let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum));
         let x = self.descend(branch.began.x, branch.start, goal.mirrored(branch.began.y));
-        let x = x.limited(branch.end, branch.start);
+        let x = x.clamp(branch.end, branch.start);
         if self.model.operator() != Operator::Relay {
             return Landing {
                 input: plane.denormalise(x),

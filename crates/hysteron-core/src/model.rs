@@ -184,7 +184,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         state.travel(self.table(), T::ZERO, input);
         for &x in turning_points {
             // Never −0, which has no place in the order of positions.
-            state.travel(self.table(), x.larger(T::ZERO), input);
+            state.travel(self.table(), x.max(T::ZERO), input);
         }
         Ok(())
     }

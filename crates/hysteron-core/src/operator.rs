@@ -30,7 +30,7 @@ impl Operator {
 /// The ridge function of level `k` at the normalised input, equation (4): `r_k(x) = clamp(x − (k − 1), 0, 1)`.
 #[must_use]
 pub fn ridge<T: Real>(x: T, k: usize) -> T {
-    (x - T::from_index(k.saturating_sub(1))).limited(T::ZERO, T::ONE)
+    (x - T::from_index(k.saturating_sub(1))).clamp(T::ZERO, T::ONE)
 }
 
 /// One MKP operator, equation (5): `γ ← max(r_j(x), min(γ, r_i(x)))`.
@@ -39,7 +39,7 @@ pub fn ridge<T: Real>(x: T, k: usize) -> T {
 /// every step. The KP operator has the same state; only its output differs ([`Operator::output`]).
 #[must_use]
 pub fn mkp<T: Real>(gamma: T, x: T, i: usize, j: usize) -> T {
-    ridge(x, j).larger(gamma.smaller(ridge(x, i)))
+    ridge(x, j).max(gamma.min(ridge(x, i)))
 }
 
 /// One relay, Fig. 5(a), with state 0 (output −1) or 1 (output +1): on at `T ≥ β_j` when the input

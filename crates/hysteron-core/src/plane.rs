@@ -71,7 +71,7 @@ impl<T: Real> Plane<T> {
         let reaches = (max - min) * per_unit >= steps;
         let bottom = min - step;
         // Some rounding units from each other, so that no two levels coincide.
-        let largest = max.larger(-max).larger(min.larger(-min));
+        let largest = max.max(-max).max(min.max(-min));
         let distinct = step > largest * T::EPSILON * T::from_index(4);
         if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct && reaches)
         {
@@ -140,7 +140,7 @@ impl<T: Real> Plane<T> {
     #[inline(always)]
     pub fn normalise(&self, input: T) -> T {
         let x = (input - self.min) * self.per_unit + T::ONE;
-        x.limited(T::ZERO, T::from_index(self.levels))
+        x.clamp(T::ZERO, T::from_index(self.levels))
     }
 
     /// Whether `input` lies outside the active range, and on which side.
@@ -168,10 +168,7 @@ impl<T: Real> Plane<T> {
     /// A move just large enough to be one: a relay that stands on its level switches on the next move only.
     #[must_use]
     pub fn nudge(&self) -> T {
-        let size = self
-            .max
-            .larger(-self.max)
-            .larger(self.bottom.larger(-self.bottom));
+        let size = self.max.max(-self.max).max(self.bottom.max(-self.bottom));
         size * (T::EPSILON + T::EPSILON)
     }
 

@@ -22,7 +22,7 @@ pub(crate) fn up_to<T: Real>(plane: &Plane<T>, (last, x): (T, T), level: usize) 
     if x >= T::from_index(level) {
         last
     } else {
-        plane.level(level).larger(last + plane.nudge())
+        plane.level(level).max(last + plane.nudge())
     }
 }
 
@@ -33,6 +33,6 @@ pub(crate) fn down_to<T: Real>(plane: &Plane<T>, (last, x): (T, T), level: usize
     if x <= T::from_index(level) {
         last
     } else {
-        plane.level(level + 1).smaller(last - plane.nudge())
+        plane.level(level + 1).min(last - plane.nudge())
     }
 }

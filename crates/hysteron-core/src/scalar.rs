@@ -53,20 +53,20 @@ pub trait Real:
 
     /// The larger of two numbers, neither of them NaN.
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
     /// The smaller of two numbers, neither of them NaN.
     #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
+    fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
     /// `self` limited to `[low, high]`.
     #[inline(always)]
-    fn limited(self, low: Self, high: Self) -> Self {
-        self.larger(low).smaller(high)
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
     }
 }
 

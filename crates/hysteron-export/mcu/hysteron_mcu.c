@@ -9,7 +9,7 @@
 /* The position of an input: level k stands at k, one step below the lowest at 0. */
 static hys_real normalise(const hys_model *model, hys_real input)
 {
-    return limited((input - model->min) * model->per_unit + ONE, ZERO, model->top);
+    return hys_clamp((input - model->min) * model->per_unit + ONE, ZERO, model->top);
 }
 
 /* The highest level at or below an input. The levels themselves decide, not the rounding of the position. */
@@ -76,7 +76,7 @@ static int merged(hys_state *state)
         return 0;
     }
     held = number(peak.cell) + (recent[3].x - number(min.cell));
-    max = limited(held, recent[4].x, recent[2].x);
+    max = hys_clamp(held, recent[4].x, recent[2].x);
     at_max = split_of(model, max);
     /* From the corner before on, so that ten thousand of these leave no more rounding than one. */
     recent[2].x = max;
@@ -284,7 +284,7 @@ int hys_restore(hys_state *state, const hys_real *points, size_t count, hys_real
     }
     start(state);
     for (n = 0u; n < count; n++) { /* as many iterations as points */
-        travel(state, larger(points[n], ZERO)); /* never -0 */
+        travel(state, hys_max(points[n], ZERO)); /* never -0 */
     }
     state->input = input;
     return HYS_OK;

@@ -36,7 +36,7 @@ static void copy(hys_real *to, const hys_real *from, size_t count)
 /* The ridge of level k: 0 below it, 1 from one step further up on. */
 static hys_real ridge(hys_real x, size_t k)
 {
-    return limited(x - number(k - 1u), ZERO, ONE);
+    return hys_clamp(x - number(k - 1u), ZERO, ONE);
 }
 
 /* The row or column whose ridge a position lies on. */
@@ -50,14 +50,14 @@ static size_t touched(const hys_model *model, hys_real x)
 static void follow(hys_adaptive *self, hys_real from, hys_real to)
 {
     const hys_model *model = &self->model;
-    size_t first = touched(model, smaller(from, to)), last = touched(model, larger(from, to));
+    size_t first = touched(model, hys_min(from, to)), last = touched(model, hys_max(from, to));
     size_t i, j;
     if (to > from) {
         for (j = first; j <= last; j++) { /* at most K iterations */
             hys_real on = ridge(to, j);
             for (i = 1u; i <= j; i++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
-                *gamma = larger(*gamma, on);
+                *gamma = hys_max(*gamma, on);
             }
         }
     } else if (to < from) {
@@ -65,7 +65,7 @@ static void follow(hys_adaptive *self, hys_real from, hys_real to)
             hys_real off = ridge(to, i);
             for (j = i; j <= model->levels; j++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
-                *gamma = smaller(*gamma, off);
+                *gamma = hys_min(*gamma, off);
             }
         }
     }
@@ -103,7 +103,7 @@ static void align(hys_adaptive *self)
         for (j = 1u; j <= self->model.levels; j++) { /* K iterations */
             for (i = 1u; i <= j; i++) { /* at most K iterations */
                 hys_real *gamma = self->gamma + place(i, j);
-                *gamma = larger(ridge(x, j), smaller(*gamma, ridge(x, i)));
+                *gamma = hys_max(ridge(x, j), hys_min(*gamma, ridge(x, i)));
             }
         }
     }
@@ -204,7 +204,7 @@ static void restart(hys_gate *gate)
 static void rescale(hys_gate *gate, hys_real scale)
 {
     if (is_finite(scale)) {
-        gate->scale = larger(scale, gate->range / number(LEAST));
+        gate->scale = hys_max(scale, gate->range / number(LEAST));
     }
 }
 
@@ -217,13 +217,13 @@ static void believe(hys_gate *gate, hys_real scale)
 
 static hys_real size_of(hys_real x)
 {
-    return larger(x, -x);
+    return hys_max(x, -x);
 }
 
 /* Whether two surprises are of one jump: they differ by at most half of the larger one. */
 static int agree(hys_real a, hys_real b)
 {
-    return size_of(a - b) <= ONE / number(2u) * larger(size_of(a), size_of(b));
+    return size_of(a - b) <= ONE / number(2u) * hys_max(size_of(a), size_of(b));
 }
 
 /* Whether a reading is believed whose prediction has this error. */
@@ -282,7 +282,7 @@ static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real 
     if (candidate <= good && is_finite(candidate)) {
         copy(self->good, self->candidate, count);
     }
-    if (now > number(4u) * (smaller(candidate, good) + rounding)) {
+    if (now > number(4u) * (hys_min(candidate, good) + rounding)) {
         copy(self->theta, self->good, count);
         copy(self->candidate, self->good, count);
         return 1;
@@ -303,7 +303,7 @@ static void update(hys_adaptive *self, hys_real error)
     for (n = 0u; n <= count; n++) { /* N + 1 iterations */
         hys_real theta = self->theta[n], offline = n < count ? self->offline[n] : ZERO;
         theta = theta + step * regressor(self, n, count) + leakage * (offline - theta);
-        self->theta[n] = n < count ? larger(theta, ZERO) : theta;
+        self->theta[n] = n < count ? hys_max(theta, ZERO) : theta;
     }
 }
 
@@ -319,7 +319,7 @@ static int learn(hys_adaptive *self, hys_real measured, hys_real error)
     if (judge(self, error, candidate, good, measured)) {
         return HYS_ROLLED_BACK;
     }
-    counted = error - limited(error, -zone, zone);
+    counted = error - hys_clamp(error, -zone, zone);
     if (counted == ZERO) {
         return HYS_WAITING;
     }
@@ -331,7 +331,7 @@ static int learn(hys_adaptive *self, hys_real measured, hys_real error)
 static int moves(hys_adaptive *self)
 {
     hys_real way = self->state.x - self->learned;
-    int moved = larger(way, -way) > self->options.movement;
+    int moved = hys_max(way, -way) > self->options.movement;
     if (moved) {
         self->learned = self->state.x;
     }
@@ -408,7 +408,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
         return HYS_INPUT_NOT_FINITE;
     }
     for (n = 0u; n < all; n++) { /* N iterations */
-        size += larger(weights[n], -weights[n]);
+        size += hys_max(weights[n], -weights[n]);
         if (!is_finite(size + size)) {
             return HYS_WEIGHT_NOT_FINITE;
         }

@@ -32,19 +32,19 @@ static inline int is_finite(hys_real x)
     return x - x == ZERO;
 }
 
-static inline hys_real larger(hys_real a, hys_real b)
+static inline hys_real hys_max(hys_real a, hys_real b)
 {
     return a > b ? a : b;
 }
 
-static inline hys_real smaller(hys_real a, hys_real b)
+static inline hys_real hys_min(hys_real a, hys_real b)
 {
     return a < b ? a : b;
 }
 
-static inline hys_real limited(hys_real x, hys_real low, hys_real high)
+static inline hys_real hys_clamp(hys_real x, hys_real low, hys_real high)
 {
-    return smaller(larger(x, low), high);
+    return hys_min(hys_max(x, low), high);
 }
 
 /* K and positions fit int32_t, whose conversions are one instruction on most targets. */

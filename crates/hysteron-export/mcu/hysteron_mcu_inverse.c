@@ -192,7 +192,7 @@ static hys_real relay_up(const hys_state *state, size_t up)
     if (state->x >= number(up)) {
         return state->input;
     }
-    return larger(level(model, up), state->input + model->nudge);
+    return hys_max(level(model, up), state->input + model->nudge);
 }
 
 /* The input that takes a relay down to position `down`, where the level above it switches off. */
@@ -202,7 +202,7 @@ static hys_real relay_down(const hys_state *state, size_t down)
     if (state->x <= number(down)) {
         return state->input;
     }
-    return smaller(level(model, down + 1u), state->input - model->nudge);
+    return hys_min(level(model, down + 1u), state->input - model->nudge);
 }
 
 /* The whole number at or above a position. */
@@ -219,7 +219,7 @@ static landing rising_to(const hys_state *state, hys_real value, int beyond)
     branch on = find(state, 0u, upward(value, beyond, model->slack));
     hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->slack));
     landing there;
-    x = limited(x, on.start, on.end);
+    x = hys_clamp(x, on.start, on.end);
     if (model->kind == RELAY) {
         size_t up = beyond ? whole(x) : whole_above(model, x);
         there.input = relay_up(state, up);
@@ -245,7 +245,7 @@ static landing falling_to(const hys_state *state, hys_real value, int beyond)
     on = find(state, 1u, to);
     /* What the output lost since the branch began rises. */
     x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->slack));
-    x = limited(x, on.end, on.start);
+    x = hys_clamp(x, on.end, on.start);
     if (model->kind == RELAY) {
         size_t down = beyond ? whole_above(model, x) : whole(x);
         there.input = relay_down(state, down);
@@ -267,11 +267,11 @@ static int edge(const hys_state *state, int up, hys_real wanted, hys_real tolera
     }
     /* No further than `tolerance` beyond the target, nor beyond the sum that it rests at. */
     if (up && state->y - wanted <= reach) {
-        *input = rising_to(state, smaller(wanted, rest) + tolerance, 1).input;
+        *input = rising_to(state, hys_min(wanted, rest) + tolerance, 1).input;
         return 1;
     }
     if (!up && wanted - state->y <= reach) {
-        *input = falling_to(state, larger(wanted, rest) - tolerance, 1).input;
+        *input = falling_to(state, hys_max(wanted, rest) - tolerance, 1).input;
         return 1;
     }
     return 0;
@@ -284,12 +284,12 @@ static hys_real solve(const hys_state *state, hys_real target, int heading, hys_
     int relay = model->kind == RELAY, back;
     hys_real wanted = target, reach, nearest, input;
     landing there;
-    tolerance = larger(tolerance, ZERO); /* NaN too */
+    tolerance = hys_max(tolerance, ZERO); /* NaN too */
     if (model->kind != MKP) {
         wanted = HALF * target + HALF * model->total;
         tolerance = HALF * tolerance;
     }
-    reach = larger(tolerance, model->slack);
+    reach = hys_max(tolerance, model->slack);
     if (wanted - model->total > reach) {
         *status = HYS_HIGH;
         /* For a relay that fell to the highest level, this level no longer switches it on. */
@@ -301,14 +301,14 @@ static hys_real solve(const hys_state *state, hys_real target, int heading, hys_
     }
     *status = HYS_REACHED;
     /* Tolerances count from the target itself, not from the end of the range that is nearest to it. */
-    nearest = limited(wanted, ZERO, model->total);
+    nearest = hys_clamp(wanted, ZERO, model->total);
     if (heading != HYS_HOLD && edge(state, heading == HYS_RISING, wanted, tolerance, reach, &input)) {
         return input;
     }
     back = (wanted > state->y) != is_rising(state);
     if (within(nearest, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
         /* Beyond the plane only a relay can tell the nearest end from where the input stands. */
-        return relay ? state->input : limited(state->input, model->bottom, model->max);
+        return relay ? state->input : hys_clamp(state->input, model->bottom, model->max);
     }
     there = nearest > state->y ? rising_to(state, nearest, 0) : falling_to(state, nearest, 0);
     if (relay && !within(there.output, wanted, reach + model->slack)) {

@@ -68,7 +68,7 @@ impl<T: Real> Gate<T> {
             return true;
         }
         let surprise = error - self.left;
-        let size = surprise.larger(-surprise);
+        let size = surprise.max(-surprise);
         // Without a range there is nothing to measure by before the first surprise.
         if size <= options.gate * self.scale || self.scale == T::ZERO {
             self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
@@ -101,13 +101,13 @@ impl<T: Real> Gate<T> {
 
     fn rescale(&mut self, scale: T) {
         if scale.is_finite() {
-            self.scale = scale.larger(self.range / T::from_index(LEAST));
+            self.scale = scale.max(self.range / T::from_index(LEAST));
         }
     }
 }
 
 /// Whether two surprises are of one jump: they differ by at most half of the larger one.
 fn agree<T: Real>(a: T, b: T) -> bool {
-    let size = |x: T| x.larger(-x);
-    size(a - b) <= T::HALF * size(a).larger(size(b))
+    let size = |x: T| x.max(-x);
+    size(a - b) <= T::HALF * size(a).max(size(b))
 }

@@ -26,7 +26,7 @@ pub(super) fn update<T: Real>(
 pub(super) fn project<T: Real>(theta: &mut [T]) {
     if let Some((_offset, weights)) = theta.split_last_mut() {
         for weight in weights {
-            *weight = weight.larger(T::ZERO);
+            *weight = weight.max(T::ZERO);
         }
     }
 }

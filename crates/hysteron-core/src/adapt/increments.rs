@@ -38,9 +38,9 @@ impl<T: Real> Increment<T> {
     /// which have no memory, have moved by as much, so that the increment says something for sure.
     pub(super) fn extend(&mut self, position: T, span: T) -> bool {
         let (low, high) = self.range;
-        self.range = (low.smaller(position), high.larger(position));
+        self.range = (low.min(position), high.max(position));
         let travelled = position - self.position;
-        travelled.larger(-travelled) >= span
+        travelled.max(-travelled) >= span
     }
 
     /// What the weights say of the increment that ends with `measured`. `O(K)` for each level travelled.
@@ -88,7 +88,7 @@ impl<T: Real> Finished<T> {
             let theta = slices.theta[n];
             let moved = theta + step * phi + leakage * (slices.offline[n] - theta);
             if moved.is_finite() {
-                slices.theta[n] = moved.larger(T::ZERO);
+                slices.theta[n] = moved.max(T::ZERO);
             }
         });
     }

@@ -166,7 +166,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// equation again.
     fn moves(&mut self, position: T) -> bool {
         let way = position - self.learned;
-        let moved = way.larger(-way) > self.options.movement;
+        let moved = way.max(-way) > self.options.movement;
         if moved {
             self.learned = position;
         }
@@ -178,7 +178,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         let Method::Increments { span, .. } = self.options.method else {
             return false;
         };
-        let least = span.larger(self.options.movement);
+        let least = span.max(self.options.movement);
         match &mut self.increment {
             Some(increment) => increment.extend(position, least),
             None => true,

@@ -10,7 +10,7 @@ use crate::state::State;
 /// The rows or columns `first..=last` whose ridges a move from `x` to `to` touches: one more than the cells crossed.
 pub(super) fn touched<T: Real>(x: T, to: T, levels: usize) -> (usize, usize) {
     let cell = |x: T| x.floor_index().min(levels - 1) + 1;
-    (cell(x.smaller(to)), cell(x.larger(to)))
+    (cell(x.min(to)), cell(x.max(to)))
 }
 
 /// Moves the states `gamma` from the normalised position `x` to `to`, equation (5): rising, only rows are
@@ -21,7 +21,7 @@ pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
         for j in first..=last {
             let on = ridge(to, j);
             for gamma in &mut gamma[operator_index(1, j)..][..j] {
-                *gamma = gamma.larger(on);
+                *gamma = gamma.max(on);
             }
         }
     } else if to < x {
@@ -29,7 +29,7 @@ pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
             let off = ridge(to, i);
             for j in i..=levels {
                 let gamma = &mut gamma[operator_index(i, j)];
-                *gamma = gamma.smaller(off);
+                *gamma = gamma.min(off);
             }
         }
     }

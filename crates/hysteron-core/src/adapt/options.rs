@@ -171,7 +171,7 @@ impl<T: Real> Adaptation<T> {
 
     /// What an error counts beyond the dead zone.
     pub(super) fn beyond(&self, error: T) -> T {
-        error - error.limited(-self.dead_zone, self.dead_zone)
+        error - error.clamp(-self.dead_zone, self.dead_zone)
     }
 }
 

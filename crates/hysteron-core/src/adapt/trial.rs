@@ -63,7 +63,7 @@ impl<T: Real> Trial<T> {
         if candidate <= good && candidate.is_finite() {
             contest.good.copy_from_slice(contest.candidate);
         }
-        let worse = now > T::from_index(4) * (candidate.smaller(good) + rounding);
+        let worse = now > T::from_index(4) * (candidate.min(good) + rounding);
         if worse {
             contest.roll_back();
         } else {

@@ -1,6 +1,6 @@
 //! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
 
-use super::pid::limited;
+use super::pid::clamp;
 use super::watch::{Sight, Watch};
 use super::{LoopStatus, Pid, Reading, Scheme};
 use crate::error::Result;
@@ -220,7 +220,7 @@ impl Controller {
         };
         let (low, high) = scheme.commands;
         Ok(match (&mut self.pid, measured) {
-            (None, _) => limited(feedforward, low, high),
+            (None, _) => clamp(feedforward, low, high),
             (Some(pid), None) => pid.hold(feedforward, scheme.commands),
             (Some(pid), Some(measured)) => pid.step(
                 target.output - measured,
@@ -235,7 +235,7 @@ impl Controller {
     fn drive(&mut self, command: f64, input: Option<Sight>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
-            return limited(command, low, high);
+            return clamp(command, low, high);
         };
         let square = |drive: f64| match inner.square_root {
             true => drive * drive,
@@ -263,7 +263,7 @@ impl Controller {
         } else {
             power
         };
-        limited(drive, low, high)
+        clamp(drive, low, high)
     }
 }
 

@@ -108,9 +108,9 @@ impl Pid {
                 self.integral += growth;
             }
             // What the integral alone would add beyond the limits serves nothing.
-            self.integral = limited(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
+            self.integral = clamp(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
         }
-        let out = limited(fixed + self.integral, low, high);
+        let out = clamp(fixed + self.integral, low, high);
         self.correction = out - bias;
         out
     }
@@ -119,11 +119,11 @@ impl Pid {
     /// back, the output moves by what the error has changed in between and no more. The derivative starts again.
     pub fn hold(&mut self, bias: f64, (low, high): (f64, f64)) -> f64 {
         self.last = None;
-        limited(bias + self.correction, low, high)
+        clamp(bias + self.correction, low, high)
     }
 }
 
 /// Like [`f64::clamp`], but without its panic for limits in the wrong order; NaN comes out as `low`.
-pub(super) fn limited(value: f64, low: f64, high: f64) -> f64 {
+pub(super) fn clamp(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)
 }
