@@ -21,7 +21,7 @@ const LOOK: usize = 4;
 
 /// Where the input is, and the branch it is on. `Copy`, so that a loop over samples can hold it in registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place<T> {
+pub(crate) struct Position<T> {
     /// Normalised position, never −0; for relays the level last reached, as a whole number.
     pub(crate) x: T,
     /// `Σ μ γ` at `x`.
@@ -35,7 +35,7 @@ pub(crate) struct Place<T> {
     end: T,
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> Position<T> {
     pub(crate) fn start(levels: usize) -> Self {
         Self {
             x: T::ZERO,
@@ -71,7 +71,7 @@ impl<T: Real> Place<T> {
 
     /// Whether this is the same position on the same branch, whatever the outputs.
     pub(crate) fn is_at(&self, other: &Self) -> bool {
-        let key = |place: &Self| (place.x, place.top, place.began, place.end);
+        let key = |position: &Self| (position.x, position.top, position.began, position.end);
         key(self) == key(other)
     }
 

@@ -246,7 +246,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         }
         // Tolerances count from the target itself, not from the end of the range that is nearest to it.
         let nearest = wanted.clamp(T::ZERO, total);
-        let now = state.place().y;
+        let now = state.branch_position().y;
         let edge =
             heading.and_then(|heading| self.edge(state, heading, wanted, (tolerance, reach)));
         if let Some(edge) = edge {
@@ -313,7 +313,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        let now = state.place().y;
+        let now = state.branch_position().y;
         let rest = match state.turns().last() {
             Some(began) if state.is_rising() == (heading == Direction::Rising) => began.y,
             _ => now,

@@ -255,7 +255,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        self.outward(state.place().y)
+        self.outward(state.branch_position().y)
     }
 
     /// The Everett table, from [`crate::table_index`]`(0, 0)` on: [`crate::table_len`] elements or more.

@@ -23,8 +23,8 @@ impl<T: Real> Branch<T> {
     {
         let turns = state.turns();
         let here = Turn {
-            x: state.place().x,
-            y: state.place().y,
+            x: state.branch_position().x,
+            y: state.branch_position().y,
         };
         // The one at `kind` itself, the end of the plane, counts as met.
         let count = (turns.len() - 1 - kind) / 2;

@@ -1,6 +1,6 @@
 //! What a model remembers of its input: the dominant turning points, in memory that the caller provides.
 
-use crate::branch::{Place, START, Turn};
+use crate::branch::{Position, START, Turn};
 use crate::error::Error;
 use crate::everett::{Grid, Split, Triangle};
 use crate::operator::Operator;
@@ -36,7 +36,7 @@ pub struct State<T, S> {
     stamp: u64,
     /// Last input, in its own unit, before clipping.
     input: T,
-    place: Place<T>,
+    position: Position<T>,
 }
 
 impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
@@ -66,7 +66,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
             operator,
             stamp,
             input: plane.bottom(),
-            place: Place::start(plane.levels()),
+            position: Position::start(plane.levels()),
         })
     }
 
@@ -79,19 +79,19 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     /// The last input as a normalised position in `[0, K]`; for relays the whole number of the level last passed.
     #[must_use]
     pub fn position(&self) -> T {
-        self.place.x
+        self.position.x
     }
 
     /// Whether the branch being travelled is a rising one.
     #[must_use]
     pub fn is_rising(&self) -> bool {
-        self.place.is_rising()
+        self.position.is_rising()
     }
 
     /// How many corners `(M, m)` are held now, at most `2K`.
     #[must_use]
     pub fn corners(&self) -> usize {
-        (self.place.top - START) / 2
+        (self.position.top - START) / 2
     }
 
     /// The turning points `M_1, m_1, M_2, m_2, …` as normalised positions, the present position last.
@@ -99,14 +99,14 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     /// With [`State::input`] they are the whole state: [`crate::Model::restore`] rebuilds it from them, bit for bit.
     pub fn turning_points(&self) -> impl Iterator<Item = T> + '_ {
         let turns = &self.turns()[2..];
-        turns.iter().map(|turn| turn.x).chain([self.place.x])
+        turns.iter().map(|turn| turn.x).chain([self.position.x])
     }
 
     /// How many turning points lie before the branch being travelled. While it stays the same from one
     /// sample to the next, so does what [`State::memory_terms`] gives.
     #[must_use]
     pub fn held(&self) -> usize {
-        self.place.top - START
+        self.position.top - START
     }
 
     /// The terms of `H` over the Everett table: calls `term(index, factor)` so that
@@ -136,7 +136,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     #[must_use]
     #[inline]
     pub fn branch_terms(&self) -> [(usize, T); 3] {
-        self.terms_between(self.turns.as_ref()[self.place.top].x, self.place.x)
+        self.terms_between(self.turns.as_ref()[self.position.top].x, self.position.x)
     }
 
     /// Up to a maximum adds its triangle, down to a minimum takes one away.
@@ -164,13 +164,13 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         self.operator
     }
 
-    pub(crate) fn place(&self) -> Place<T> {
-        self.place
+    pub(crate) fn branch_position(&self) -> Position<T> {
+        self.position
     }
 
     /// All turning points from the start on, and the endless height before it: maxima at even places.
     pub(crate) fn turns(&self) -> &[Turn<T>] {
-        &self.turns.as_ref()[START - 1..=self.place.top]
+        &self.turns.as_ref()[START - 1..=self.position.top]
     }
 
     pub(crate) fn stamp(&self) -> u64 {
@@ -181,7 +181,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     pub(crate) fn reset_off(&mut self, plane: &Plane<T>, stamp: u64) {
         self.stamp = stamp;
         self.input = plane.bottom();
-        self.place = Place::start(plane.levels());
+        self.position = Position::start(plane.levels());
     }
 
     /// The outputs of another table at every turning point, and at the present position.
@@ -189,7 +189,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         self.stamp = stamp;
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        self.place.rebase(turns, Grid { table, levels });
+        self.position.rebase(turns, Grid { table, levels });
     }
 
     /// Moves to a normalised position, as restored: `input` is what it stands for.
@@ -197,7 +197,8 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     pub(crate) fn travel(&mut self, table: &[T], x: T, input: T) {
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        self.place.travel(turns, Grid { table, levels }, &mut [x]);
+        self.position
+            .travel(turns, Grid { table, levels }, &mut [x]);
         self.input = input;
     }
 
@@ -206,10 +207,10 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     pub(crate) fn step(&mut self, plane: &Plane<T>, table: &[T], input: T) -> T {
         let x = match self.operator {
             Operator::Mkp | Operator::Kp => plane.normalise(input),
-            Operator::Relay => relay::position(plane, (self.input, self.place.x), input),
+            Operator::Relay => relay::position(plane, (self.input, self.position.x), input),
         };
         self.travel(table, x, input);
-        self.place.y
+        self.position.y
     }
 
     /// Moves to each of `inputs`, all known to be finite, and writes `outward(Σ μ γ)` to `outputs`, as many.
@@ -228,7 +229,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
                 self.run_by(table, inputs, outputs, position, outward);
             }
             Operator::Relay => {
-                let mut last = (self.input, self.place.x);
+                let mut last = (self.input, self.position.x);
                 let position = |input| {
                     last = (input, relay::position(plane, last, input));
                     last.1
@@ -252,16 +253,16 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     ) {
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        let mut place = self.place;
+        let mut here = self.position;
         for (inputs, outputs) in inputs.chunks(AHEAD).zip(outputs.chunks_mut(AHEAD)) {
             for (x, &input) in outputs.iter_mut().zip(inputs) {
                 *x = position(input);
             }
-            place.travel(turns, Grid { table, levels }, outputs);
+            here.travel(turns, Grid { table, levels }, outputs);
             for y in outputs {
                 *y = outward(*y);
             }
         }
-        self.place = place;
+        self.position = here;
     }
 }

@@ -5,7 +5,7 @@ use super::increments::Increment;
 use super::memory::{Layout, Slices};
 use super::trial::Trial;
 use super::{Adaptation, Learning, Method, Outcome, operators, parameters};
-use crate::branch::Place;
+use crate::branch::Position;
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett;
@@ -55,7 +55,7 @@ pub struct Estimator<T, M> {
     /// `c` of the gradient.
     pub(super) floor: T,
     /// Where the operators' states stand; none where they have to be taken from a state first.
-    pub(super) place: Option<Place<T>>,
+    pub(super) aligned: Option<Position<T>>,
     /// The position last learned from.
     pub(super) learned: T,
     pub(super) increment: Option<Increment<T>>,
@@ -176,7 +176,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// branch or at another position than it left it: only a state that others brought back to the very same, by another way,
     /// needs this.
     pub fn realign(&mut self) {
-        self.place = None;
+        self.aligned = None;
     }
 
     pub(super) fn slices(&mut self) -> Slices<'_, T> {
@@ -188,7 +188,10 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     where
         S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
     {
-        if self.place.is_some_and(|place| place.is_at(&state.place())) {
+        if self
+            .aligned
+            .is_some_and(|position| position.is_at(&state.branch_position()))
+        {
             return;
         }
         let levels = self.levels;
@@ -209,7 +212,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         if !slices.gamma.is_empty() {
             operators::follow(slices.gamma, levels, from, state.position());
         }
-        self.place = Some(state.place());
+        self.aligned = Some(state.branch_position());
     }
 
     /// Lets the model's table follow the parameters, and takes them back where it would not be one of numbers; says what

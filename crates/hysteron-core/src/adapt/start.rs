@@ -113,7 +113,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             memory,
             offset,
             floor: T::ZERO,
-            place: None,
+            aligned: None,
             learned: T::ZERO,
             increment: None,
             rows_due: 0,
