@@ -20,7 +20,7 @@ use crate::state::State;
 pub struct Inverse<'m, T, C> {
     model: &'m Model<T, C>,
     /// Outputs closer than this are equal: the rounding of a table entry.
-    slack: T,
+    rounding: T,
 }
 
 /// Where a target goes next.
@@ -162,8 +162,11 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         match self.negative_weights() {
             Some(which) => Err(Error::NegativeWeights(which)),
             None => {
-                let slack = T::from_index(4) * T::EPSILON * self.total();
-                Ok(Inverse { model: self, slack })
+                let rounding = T::from_index(4) * T::EPSILON * self.total();
+                Ok(Inverse {
+                    model: self,
+                    rounding,
+                })
             }
         }
     }
@@ -172,8 +175,8 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
 impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// Outputs `Σ μ γ` closer than this are taken as equal: the rounding of a table entry.
     #[must_use]
-    pub fn slack(&self) -> T {
-        self.slack
+    pub fn rounding(&self) -> T {
+        self.rounding
     }
 
     /// Finds the input for `target` and moves `state` there.
@@ -231,7 +234,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             Operator::Kp | Operator::Relay => (T::HALF * target + T::HALF * total, T::HALF),
         };
         let tolerance = unit * tolerance.max(T::ZERO); // NaN too
-        let reach = tolerance.max(self.slack);
+        let reach = tolerance.max(self.rounding);
         if wanted - total > reach {
             return Ok(Solution {
                 input: self.top(state),
@@ -256,19 +259,19 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
             });
         }
         let goes_back = (wanted > now) != state.is_rising();
-        if within(nearest, now, self.slack) || goes_back && within(wanted, now, tolerance) {
+        if within(nearest, now, self.rounding) || goes_back && within(wanted, now, tolerance) {
             return Ok(Solution {
                 input: self.stay(state),
                 status: Status::Ok,
             });
         }
-        let goal = Goal::Reach(nearest, self.slack);
+        let goal = Goal::Reach(nearest, self.rounding);
         let Landing { input, output } = match nearest > now {
             true => self.rising(state, goal),
             false => self.falling(state, goal),
         };
         let status = match self.model.operator() {
-            Operator::Relay if !within(output, wanted, reach + self.slack) => Status::Passed,
+            Operator::Relay if !within(output, wanted, reach + self.rounding) => Status::Passed,
             _ => Status::Ok,
         };
         Ok(Solution { input, status })
@@ -325,11 +328,11 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         match heading {
             Direction::Rising if now - wanted <= reach => {
                 let last = wanted.min(rest) + tolerance;
-                Some(self.rising(state, Goal::Leave(last, self.slack)).input)
+                Some(self.rising(state, Goal::Leave(last, self.rounding)).input)
             }
             Direction::Falling if wanted - now <= reach => {
                 let last = wanted.max(rest) - tolerance;
-                Some(self.falling(state, Goal::Leave(last, self.slack)).input)
+                Some(self.falling(state, Goal::Leave(last, self.rounding)).input)
             }
             _ => None,
         }

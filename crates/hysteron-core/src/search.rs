@@ -41,10 +41,10 @@ impl<T: Real> Branch<T> {
 /// What an output on the way has to do.
 #[derive(Clone, Copy)]
 pub(crate) enum Goal<T> {
-    /// Come to this value or beyond. Short of it by the slack, the second number, is there.
+    /// Come to this value or beyond. Short of it by the rounding, the second number, is there.
     Reach(T, T),
     /// Go beyond this value: its last place on a flat stretch is wanted. Beyond it by no more than the
-    /// slack, the second number, is still there.
+    /// rounding, the second number, is still there.
     Leave(T, T),
 }
 
@@ -57,31 +57,31 @@ impl<T: Real> Goal<T> {
 
     pub(crate) fn met_rising(self, output: T) -> bool {
         match self {
-            Goal::Reach(value, slack) => output >= value - slack,
-            Goal::Leave(value, slack) => output > value + slack,
+            Goal::Reach(value, rounding) => output >= value - rounding,
+            Goal::Leave(value, rounding) => output > value + rounding,
         }
     }
 
     pub(crate) fn met_falling(self, output: T) -> bool {
         match self {
-            Goal::Reach(value, slack) => output <= value + slack,
-            Goal::Leave(value, slack) => output < value - slack,
+            Goal::Reach(value, rounding) => output <= value + rounding,
+            Goal::Leave(value, rounding) => output < value - rounding,
         }
     }
 
     /// The goal for `output − base`.
     pub(crate) fn shifted(self, base: T) -> Self {
         match self {
-            Goal::Reach(value, slack) => Goal::Reach(value - base, slack),
-            Goal::Leave(value, slack) => Goal::Leave(value - base, slack),
+            Goal::Reach(value, rounding) => Goal::Reach(value - base, rounding),
+            Goal::Leave(value, rounding) => Goal::Leave(value - base, rounding),
         }
     }
 
     /// The goal for `peak − output`, which rises where the output falls.
     pub(crate) fn mirrored(self, peak: T) -> Self {
         match self {
-            Goal::Reach(value, slack) => Goal::Reach(peak - value, slack),
-            Goal::Leave(value, slack) => Goal::Leave(peak - value, slack),
+            Goal::Reach(value, rounding) => Goal::Reach(peak - value, rounding),
+            Goal::Leave(value, rounding) => Goal::Leave(peak - value, rounding),
         }
     }
 }

@@ -271,7 +271,7 @@ fn relays_jump_to_or_past_the_target() {
         let (model, mut state) = build(plane, Operator::Relay, &weights);
         let inverse = model.inverse().unwrap();
         let (low, high) = model.output_range();
-        let slack = 1e-12 * (high - low);
+        let rounding = 1e-12 * (high - low);
         for _ in 0..100 {
             let before = state.clone();
             let target = rng.random_range(low..=high);
@@ -279,9 +279,9 @@ fn relays_jump_to_or_past_the_target() {
             let (start, reached) = (model.output(&before), model.output(&state));
             let rising = target > start;
             assert!(if rising {
-                reached >= target - slack
+                reached >= target - rounding
             } else {
-                reached <= target + slack
+                reached <= target + rounding
             });
             // One level less would not have done.
             let mut short = before.clone();
@@ -293,9 +293,9 @@ fn relays_jump_to_or_past_the_target() {
             if (less > before.input()) == rising {
                 let missed = model.step(&mut short, less).unwrap().output;
                 assert!(if rising {
-                    missed < target + slack
+                    missed < target + rounding
                 } else {
-                    missed > target - slack
+                    missed > target - rounding
                 });
             }
         }

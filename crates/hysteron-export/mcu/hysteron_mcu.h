@@ -35,7 +35,7 @@
 #endif
 
 /* Models that were exported for another layout do not compile. */
-#define HYS_LAYOUT 1
+#define HYS_LAYOUT 2
 
 #ifdef __cplusplus
 extern "C" {
@@ -79,7 +79,7 @@ typedef struct {
     hys_real per_unit;      /* 1/step, rounded up */
     hys_real nudge;         /* the least move that is one */
     hys_real total;         /* sum of all weights */
-    hys_real slack;         /* outputs closer than this are equal */
+    hys_real rounding;         /* outputs closer than this are equal */
     hys_real offset;        /* output with a sum of zero */
     unsigned char kind;     /* operators: 0 MKP, 1 KP, 2 relay */
     unsigned char falls;    /* 1 where the output falls as the operators switch on */

@@ -169,7 +169,7 @@ static void rewrite(hys_adaptive *self)
         }
     }
     model->total = row[0];
-    model->slack = number(4u) * EPSILON * model->total;
+    model->rounding = number(4u) * EPSILON * model->total;
     model->offset = model->falls ? -offset_of(self) : offset_of(self);
 }
 

@@ -23,7 +23,7 @@
 
 #include "hysteron_mcu.h"
 
-#if HYS_LAYOUT != 1
+#if HYS_LAYOUT != 2
 #error "hysteron_mcu_adapt: export the model again: hysteron_mcu.h is of another version"
 #endif
 

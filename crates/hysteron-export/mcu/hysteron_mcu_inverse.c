@@ -3,8 +3,8 @@
 
 #define HALF ((hys_real)0.5)
 
-/* What an output on the way has to do: come to `value`, where the slack makes `limit` enough, or, `beyond`, exceed it by
- * more than the slack. */
+/* What an output on the way has to do: come to `value`, where the rounding makes `limit` enough, or, `beyond`, exceed it by
+ * more than the rounding. */
 typedef struct {
     hys_real value, limit;
     int beyond;
@@ -21,11 +21,11 @@ static int met_falling(goal to, hys_real output)
 }
 
 /* The goal for a way up to `value`, of an output that is measured from where the branch began. */
-static goal upward(hys_real value, int beyond, hys_real slack)
+static goal upward(hys_real value, int beyond, hys_real rounding)
 {
     goal to;
     to.value = value;
-    to.limit = beyond ? value + slack : value - slack;
+    to.limit = beyond ? value + rounding : value - rounding;
     to.beyond = beyond;
     return to;
 }
@@ -216,8 +216,8 @@ static size_t whole_above(const hys_model *model, hys_real x)
 static landing rising_to(const hys_state *state, hys_real value, int beyond)
 {
     const hys_model *model = state->model;
-    branch on = find(state, 0u, upward(value, beyond, model->slack));
-    hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->slack));
+    branch on = find(state, 0u, upward(value, beyond, model->rounding));
+    hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->rounding));
     landing there;
     x = hys_clamp(x, on.start, on.end);
     if (model->kind == RELAY) {
@@ -240,11 +240,11 @@ static landing falling_to(const hys_state *state, hys_real value, int beyond)
     hys_real x;
     landing there;
     to.value = value;
-    to.limit = beyond ? value - model->slack : value + model->slack;
+    to.limit = beyond ? value - model->rounding : value + model->rounding;
     to.beyond = beyond;
     on = find(state, 1u, to);
     /* What the output lost since the branch began rises. */
-    x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->slack));
+    x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->rounding));
     x = hys_clamp(x, on.end, on.start);
     if (model->kind == RELAY) {
         size_t down = beyond ? whole_above(model, x) : whole(x);
@@ -289,7 +289,7 @@ static hys_real solve(const hys_state *state, hys_real target, int heading, hys_
         wanted = HALF * target + HALF * model->total;
         tolerance = HALF * tolerance;
     }
-    reach = hys_max(tolerance, model->slack);
+    reach = hys_max(tolerance, model->rounding);
     if (wanted - model->total > reach) {
         *status = HYS_HIGH;
         /* For a relay that fell to the highest level, this level no longer switches it on. */
@@ -306,12 +306,12 @@ static hys_real solve(const hys_state *state, hys_real target, int heading, hys_
         return input;
     }
     back = (wanted > state->y) != is_rising(state);
-    if (within(nearest, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
+    if (within(nearest, state->y, model->rounding) || (back && within(wanted, state->y, tolerance))) {
         /* Beyond the plane only a relay can tell the nearest end from where the input stands. */
         return relay ? state->input : hys_clamp(state->input, model->bottom, model->max);
     }
     there = nearest > state->y ? rising_to(state, nearest, 0) : falling_to(state, nearest, 0);
-    if (relay && !within(there.output, wanted, reach + model->slack)) {
+    if (relay && !within(there.output, wanted, reach + model->rounding)) {
         *status = HYS_PASSED;
     }
     return there.input;

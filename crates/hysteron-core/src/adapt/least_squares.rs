@@ -197,8 +197,8 @@ mod tests {
                 let (now, start) = (&*slices.covariance, &*slices.start);
                 assert!(is_positive(|a, b| now[packed(a, b)]), "after {n}");
                 // By no more than rounding.
-                let slack = |a, b| if a == b { 1e-9 } else { 0.0 };
-                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + slack(a, b);
+                let rounding = |a, b| if a == b { 1e-9 } else { 0.0 };
+                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + rounding(a, b);
                 assert!(is_positive(below), "after {n}");
             }
         }
