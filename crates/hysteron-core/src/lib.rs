@@ -31,7 +31,7 @@ mod search;
 mod state;
 
 pub use adapt::{
-    Adaptation, Estimator, Learning, Method, Outcome, estimator_len, estimator_len_of_parts,
+    Adaptation, Estimator, Learning, Method, Outcome, estimator_len, estimator_len_of_basis,
 };
 pub use branch::Turn;
 pub use definition::Definition;
@@ -41,6 +41,6 @@ pub use interface::Region;
 pub use inverse::{Direction, Inverse, Solution, Status, Target};
 pub use model::{ClippedCount, Model, Output};
 pub use operator::{Operator, mkp, relay, ridge};
-pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index};
+pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use state::{State, turn_capacity};

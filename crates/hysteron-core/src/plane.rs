@@ -19,6 +19,21 @@ pub const fn operator_index(i: usize, j: usize) -> usize {
     j * j.saturating_sub(1) / 2 + i.saturating_sub(1)
 }
 
+/// All operators `(i, j)` of a plane of `levels` levels, in the order of the weights: `j = 1…K`, and
+/// within each row `i = 1…j`.
+///
+/// There are [`operator_count`]`(levels)` of them; the one at position `n` has
+/// [`operator_index`]`(i, j) = n`.
+///
+/// ```
+/// use hysteron_core::operators;
+/// let all: Vec<_> = operators(3).collect();
+/// assert_eq!(all, [(1, 1), (1, 2), (2, 2), (1, 3), (2, 3), (3, 3)]);
+/// ```
+pub fn operators(levels: usize) -> impl Iterator<Item = (usize, usize)> {
+    (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)))
+}
+
 /// Which end of the plane an input was clipped to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clipped {

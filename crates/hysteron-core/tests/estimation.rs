@@ -8,7 +8,7 @@ use common::{
     weights,
 };
 use hysteron_core::{
-    Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_parts, operator_count,
+    Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_basis, operator_count,
 };
 use rand::{Rng, RngExt};
 
@@ -218,7 +218,7 @@ fn weights_held_at_zero_do_not_pile_up() {
 }
 
 #[test]
-fn shares_of_parts_are_found() {
+fn coefficients_of_a_basis_are_found() {
     const K: usize = 20;
     let n = operator_count(K);
     let least_squares = Method::LeastSquares {
@@ -233,14 +233,14 @@ fn shares_of_parts_are_found() {
     ] {
         for operator in common::OPERATORS {
             let mut rng = rng(14);
-            let parts: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
-            let scale = parts.chunks(n).map(|part| part.iter().sum::<f64>());
-            // Each of a total of 1, as the shares of loads are.
+            let basis: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
+            let scale = basis.chunks(n).map(|member| member.iter().sum::<f64>());
+            // Each member has the total 1, as the members for loads have.
             let totals: Vec<f64> = scale.collect();
-            let parts: Vec<f64> = (0..3 * n).map(|k| parts[k] / totals[k / n]).collect();
+            let basis: Vec<f64> = (0..3 * n).map(|k| basis[k] / totals[k / n]).collect();
             let known = [0.5, 2.0, 0.0];
             let plant: Vec<f64> = (0..n)
-                .map(|k| (0..3).map(|part| known[part] * parts[part * n + k]).sum())
+                .map(|k| (0..3).map(|m| known[m] * basis[m * n + k]).sum())
                 .collect();
             let (plant, mut there) = build(unit_plane(K), operator, &plant);
             let start = [1.0, 1.0, 1.0];
@@ -249,9 +249,9 @@ fn shares_of_parts_are_found() {
                 ..options(method)
             };
             let (mut model, mut state) = build(unit_plane(K), operator, &vec![1.0; n]);
-            let memory = vec![0.0; estimator_len_of_parts(K, method, 3)];
+            let memory = vec![0.0; estimator_len_of_basis(K, method, 3)];
             let mut estimator =
-                Estimator::of_parts(guards, &mut model, &parts, &start, 0.0, memory).unwrap();
+                Estimator::of_basis(guards, &mut model, &basis, &start, 0.0, memory).unwrap();
             for input in strokes(&mut rng, &unit_plane(K), 200_000, 40) {
                 let measured = plant.step(&mut there, input).unwrap().output;
                 estimator

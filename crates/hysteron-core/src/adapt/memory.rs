@@ -15,12 +15,12 @@ pub const fn estimator_len<T: Copy>(levels: usize, method: Method<T>) -> usize {
 
 /// Numbers that an [`crate::Estimator`] over `parts` needs.
 #[must_use]
-pub const fn estimator_len_of_parts<T: Copy>(
+pub const fn estimator_len_of_basis<T: Copy>(
     levels: usize,
     method: Method<T>,
-    parts: usize,
+    count: usize,
 ) -> usize {
-    Layout::parts(levels, method, parts).len()
+    Layout::basis(levels, method, count).len()
 }
 
 /// How many numbers of each kind there are.
@@ -78,13 +78,13 @@ impl Layout {
         }
     }
 
-    pub(super) const fn parts<T: Copy>(levels: usize, method: Method<T>, parts: usize) -> Self {
+    pub(super) const fn basis<T: Copy>(levels: usize, method: Method<T>, count: usize) -> Self {
         Self {
-            parameters: parts + 1,
+            parameters: count + 1,
             gamma: 0,
             anchor: 0,
-            covariance: Self::covariance(parts + 1, method),
-            tables: parts * table_len(levels),
+            covariance: Self::covariance(count + 1, method),
+            tables: count * table_len(levels),
         }
     }
 

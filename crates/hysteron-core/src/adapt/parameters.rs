@@ -67,10 +67,10 @@ pub(super) fn rewrite<T: Real, C: AsRef<[T]> + AsMut<[T]>>(
     }
     model.rewrite(|p, _, row| {
         row.fill(T::ZERO);
-        for (&share, table) in theta.iter().zip(tables.chunks(table_len(levels))) {
-            let part = &table[table_index(p, 0)..];
-            for (entry, &part) in row.iter_mut().zip(part) {
-                *entry = *entry + share * part;
+        for (&coefficient, table) in theta.iter().zip(tables.chunks(table_len(levels))) {
+            let member = &table[table_index(p, 0)..];
+            for (entry, &member) in row.iter_mut().zip(member) {
+                *entry = *entry + coefficient * member;
             }
         }
     });

@@ -45,46 +45,52 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// # Errors
     /// As [`Estimator::new`]; [`Error::Adaptation`] for [`Method::Increments`], for a correlation,
     /// and for shares that are negative or not finite, or overflow with their parts.
-    pub fn of_parts<C: AsRef<[T]> + AsMut<[T]>>(
+    pub fn of_basis<C: AsRef<[T]> + AsMut<[T]>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
-        parts: &[T],
-        shares: &[T],
+        basis: &[T],
+        coefficients: &[T],
         offset: T,
         memory: M,
     ) -> Result<Self, Error> {
         let levels = model.plane().levels();
-        let (n, count) = (operator_count(levels), shares.len());
-        let fit = |share: &T| *share >= T::ZERO && share.is_finite();
+        let (n, count) = (operator_count(levels), coefficients.len());
+        let fit = |c: &T| *c >= T::ZERO && c.is_finite();
         let unfit = match options.method {
             Method::Increments { .. } => Some("method"),
             Method::LeastSquares { correlation, .. } if correlation != T::ZERO => {
                 Some("correlation")
             }
-            _ if count == 0 || !shares.iter().all(fit) => Some("shares"),
+            _ if count == 0 || !coefficients.iter().all(fit) => Some("coefficients"),
             _ => None,
         };
         if let Some(option) = unfit {
             return Err(Error::Adaptation { option });
         }
-        if parts.len() != n * count {
-            let (expected, found) = (n * count, parts.len());
+        if basis.len() != n * count {
+            let (expected, found) = (n * count, basis.len());
             return Err(Error::WeightCount { expected, found });
         }
-        let layout = Layout::parts(levels, options.method, count);
+        let layout = Layout::basis(levels, options.method, count);
         let mut estimator = Self::empty(options, model, layout, offset, memory)?;
         let len = everett::table_len(levels);
         let tables = estimator.slices().tables;
         let mut size = T::ZERO;
-        for ((part, table), &share) in parts.chunks(n).zip(tables.chunks_mut(len)).zip(shares) {
-            refuse_negative(levels, part)?;
-            everett::fill(levels, part, table);
-            size = size + share * table[everett::table_index(levels, 0)];
+        for ((member, table), &coefficient) in basis
+            .chunks(n)
+            .zip(tables.chunks_mut(len))
+            .zip(coefficients)
+        {
+            refuse_negative(levels, member)?;
+            everett::fill(levels, member, table);
+            size = size + coefficient * table[everett::table_index(levels, 0)];
         }
         if !(size + size).is_finite() {
-            return Err(Error::Adaptation { option: "shares" });
+            return Err(Error::Adaptation {
+                option: "coefficients",
+            });
         }
-        estimator.begin(shares);
+        estimator.begin(coefficients);
         estimator.rewrite(model);
         estimator.gate = Gate::over(model);
         Ok(estimator)

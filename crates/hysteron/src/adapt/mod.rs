@@ -1,14 +1,14 @@
 //! An estimator over a recording: each sample is predicted, then learned from.
 
 mod adaptive;
+mod basis;
 mod counts;
 mod options;
-mod parts;
 
 pub use adaptive::Adaptive;
+pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
-pub use parts::DriftParts;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start};

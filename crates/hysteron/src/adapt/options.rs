@@ -1,7 +1,7 @@
 //! How a model is adapted to a recording, and what follows from both where nothing is said.
 
 use crate::adapt::adaptive::Adaptive;
-use crate::adapt::parts::DriftParts;
+use crate::adapt::basis::DriftBasis;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::prepare::noise;
@@ -14,9 +14,9 @@ use serde::Serialize;
 const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
-/// Forgetting factor of least squares, for weights and for shares.
+/// Forgetting factor of least squares, for weights and for coefficients.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err more, and alike from sample to
+/// Error of a reading, in parts of the output's range, for weights and for coefficients. So few parts err more, and alike from sample to
 /// sample.
 const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
@@ -25,7 +25,7 @@ const OFFSET: f64 = 0.2;
 const CORRELATION: f64 = 1.0;
 /// By how much the output with every operator on may differ, in parts of its range.
 const DEVIATION: f64 = 0.3;
-/// By how much a share of a part may differ.
+/// By how much a coefficient of a basis may differ.
 const SHARE: f64 = 0.5;
 
 /// Which parameters follow the error, and how.
@@ -38,7 +38,7 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one that errs least on measured recordings.
+    /// The coefficients of [`crate::DriftBasis`] by recursive least squares: with the defaults the one that errs least on measured recordings.
     #[default]
     Drift,
 }
@@ -51,12 +51,12 @@ pub enum Learner {
 /// | --- | --- | --- | --- |
 /// | `learner` | drift | see [`Learner`] | what follows the error, and how |
 /// | `start` | off | off, on, unknown | where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less |
-/// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
+/// | `load` | middle of its range | the model's | load that the coefficients start at, for [`Learner::Drift`] of a model that depends on one |
 /// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
 /// | `span` | 1 | 1/8 to 8 | increments: levels between two updates |
-/// | `forgetting` | weights: 0.999; shares: 0.9999 | above 0, up to 1 | least squares: what a sample counts after the next |
-/// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
-/// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
+/// | `forgetting` | weights: 0.999; coefficients: 0.9999 | above 0, up to 1 | least squares: what a sample counts after the next |
+/// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for coefficients | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
+/// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; coefficients: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
 /// | `correlation` | 1 | from 0 on | least squares of weights: levels over which deviations go together |
 /// | `dead_zone` | twice the output's [`noise`] | from 0 on | errors up to this are noise; in the output's unit |
 /// | `leakage` | 0 | 0 to 1 | share by which the weights return to the off-line ones with each update |
@@ -71,7 +71,7 @@ pub struct AdaptOptions {
     pub learner: Learner,
     /// Where the operators stand before the first sample.
     pub start: Start,
-    /// Load that the shares start at.
+    /// Load that the coefficients start at.
     pub load: Option<f64>,
     /// Gain of the gradient methods.
     pub gain: Option<f64>,
@@ -134,7 +134,7 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_parts`].
+    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
         let mut adaptive = self.estimator(model, self.before(model)?)?;
         if self.start == Start::On {
@@ -143,10 +143,10 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
-    /// An estimator of weights or shares, as the learner asks for.
+    /// An estimator of weights or coefficients, as the learner asks for.
     pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
         match self.learner {
-            Learner::Drift => DriftParts::of(model, self.load)?.adaptive(adaptation),
+            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
             _ => Adaptive::new(model, adaptation),
         }
     }
@@ -156,11 +156,11 @@ impl AdaptOptions {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
-        let shares = usize::from(self.learner == Learner::Drift);
+        let coefficients = usize::from(self.learner == Learner::Drift);
         // An error of zero would be certainty.
-        let misfit = rough.max(MISFIT[shares] * span).max(f64::EPSILON);
+        let misfit = rough.max(MISFIT[coefficients] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
-            forgetting: self.forgetting.unwrap_or(FORGETTING[shares]),
+            forgetting: self.forgetting.unwrap_or(FORGETTING[coefficients]),
             noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
