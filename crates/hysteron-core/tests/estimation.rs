@@ -9,6 +9,7 @@ use common::{
 };
 use hysteron_core::{
     Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_basis, operator_count,
+    operators,
 };
 use rand::{Rng, RngExt};
 
@@ -57,7 +58,7 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
         };
         let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &offline, guards);
         // (Σ φφᵀ/r + P₀⁻¹) (θ − θ₀) = Σ φ (y − φᵀθ₀)/r
-        let places: Vec<_> = (1..=K).flat_map(|j| (1..=j).map(move |i| (i, j))).collect();
+        let places: Vec<_> = operators(K).collect();
         let start = |a: usize, b: usize| match (places.get(a), places.get(b)) {
             _ if a == b => spread * spread,
             (Some(&(i, j)), Some(&(k, l))) if correlation > 0.0 => {
@@ -188,8 +189,8 @@ fn weights_held_at_zero_do_not_pile_up() {
             (-200.0 * (at(j).powi(2) + (at(i) + 0.2).powi(2))).exp()
         };
         let weights = |levels: usize, middle: f64| -> Vec<f64> {
-            let rows = (1..=levels).flat_map(|j| (1..=j).map(move |i| (j, i)));
-            let mut weights: Vec<f64> = rows.map(|(j, i)| ridge(levels, middle, j, i)).collect();
+            let ridges = operators(levels).map(|(i, j)| ridge(levels, middle, j, i));
+            let mut weights: Vec<f64> = ridges.collect();
             let total: f64 = weights.iter().sum();
             weights.iter_mut().for_each(|weight| *weight /= total);
             weights

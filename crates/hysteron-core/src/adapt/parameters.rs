@@ -3,11 +3,13 @@
 use super::Method;
 use super::least_squares::packed;
 use super::memory::Slices;
-use super::operators;
+use super::operators::outputs;
 use crate::branch::Turn;
 use crate::everett::{fill_row, table_index, table_len};
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
+use crate::plane::operators;
 use crate::scalar::Real;
 use crate::state::State;
 
@@ -20,12 +22,12 @@ pub(super) fn regressor<T, S>(
     state: &State<T, S>,
 ) where
     T: Real,
-    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    S: Memory<Turn<T>>,
 {
     let n = slices.phi.len() - 1;
     slices.phi[n] = share;
     if slices.tables.is_empty() {
-        operators::outputs(operator, slices.gamma, &mut slices.phi[..n]);
+        outputs(operator, slices.gamma, &mut slices.phi[..n]);
         return;
     }
     let len = table_len(levels);
@@ -55,7 +57,7 @@ pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
 }
 
 /// Writes the model's whole table from the parameters.
-pub(super) fn rewrite<T: Real, C: AsRef<[T]> + AsMut<[T]>>(
+pub(super) fn rewrite<T: Real, C: Memory<T>>(
     slices: &Slices<'_, T>,
     levels: usize,
     model: &mut Model<T, C>,
@@ -96,11 +98,10 @@ pub(super) fn start_covariance<T: Real>(
         slices.start[packed(n, n)] = variance;
     }
     if slices.tables.is_empty() && correlation > T::ZERO {
-        let operators = || (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
         let square = |n: usize| T::from_index(n) * T::from_index(n);
         let mut entries = slices.start.iter_mut();
-        for (a, (i, j)) in operators().enumerate() {
-            for ((k, l), entry) in operators().take(a + 1).zip(entries.by_ref()) {
+        for (a, (i, j)) in operators(levels).enumerate() {
+            for ((k, l), entry) in operators(levels).take(a + 1).zip(entries.by_ref()) {
                 let distance = square(i.abs_diff(k)) + square(j.abs_diff(l));
                 *entry = variance / (T::ONE + distance / (correlation * correlation));
             }

@@ -268,17 +268,16 @@ fn together(levels: usize, correlation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::together;
+    use hysteron_core::operators;
 
     #[test]
     fn the_variance_of_the_sum_is_that_of_all_pairs() {
-        let levels = 6_i32;
-        let places: Vec<(i32, i32)> = (1..=levels)
-            .flat_map(|j| (1..=j).map(move |i| (i, j)))
-            .collect();
+        let all: Vec<_> = operators(6).collect();
         let mut sum = 0.0;
-        for (i, j) in &places {
-            for (k, l) in &places {
-                sum += 1.0 / (1.0 + f64::from((i - k).pow(2) + (j - l).pow(2)) / 4.0);
+        for (i, j) in &all {
+            for (k, l) in &all {
+                let squared = i.abs_diff(*k).pow(2) + j.abs_diff(*l).pow(2);
+                sum += 1.0 / (1.0 + squared as f64 / 4.0);
             }
         }
         // A few hundred terms in another order.
