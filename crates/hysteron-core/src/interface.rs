@@ -2,6 +2,7 @@
 
 use crate::branch::Turn;
 use crate::error::Error;
+use crate::memory::Memory;
 use crate::operator::mkp;
 use crate::plane::Plane;
 use crate::scalar::Real;
@@ -18,7 +19,7 @@ pub enum Region {
     Max,
 }
 
-impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
+impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
     /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`, by equation (5) over the turning points. `O(depth)`.
     ///
     /// # Errors

@@ -8,6 +8,7 @@
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett::{Grid, Split, table_index};
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
 use crate::relay;
@@ -202,7 +203,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// ```
     pub fn step<S>(&self, state: &mut State<T, S>, target: Target<T>) -> Result<Solution<T>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let solution = self.solve(state, target)?;
         self.model.step(state, solution.input)?;
@@ -215,7 +216,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// As [`Inverse::step`].
     pub fn solve<S>(&self, state: &State<T, S>, target: Target<T>) -> Result<Solution<T>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.model.check(state)?;
         let Target {
@@ -280,7 +281,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The input that switches every operator on. For a relay that fell to `T_max` this is no longer `T_max`.
     fn top<S>(&self, state: &State<T, S>) -> T
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
         match self.model.operator() {
@@ -295,7 +296,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// stands, because on the way back it switches at that end.
     fn stay<S>(&self, state: &State<T, S>) -> T
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
         match self.model.operator() {
@@ -314,7 +315,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
         (tolerance, reach): (T, T),
     ) -> Option<T>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let now = state.branch_position().y;
         let rest = match state.turns().last() {
@@ -341,7 +342,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way up that meets `goal`.
     fn rising<S>(&self, state: &State<T, S>, goal: Goal<T>) -> Landing<T>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
         let branch = Branch::find(state, 0, |maximum| goal.met_rising(maximum));
@@ -367,7 +368,7 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
     /// The first input on the way down that meets `goal`.
     fn falling<S>(&self, state: &State<T, S>, goal: Goal<T>) -> Landing<T>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let plane = self.model.plane();
         let branch = Branch::find(state, 1, |minimum| goal.met_falling(minimum));

@@ -3,6 +3,7 @@
 use crate::branch::Turn;
 use crate::error::{Error, NegativeWeights};
 use crate::everett;
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::plane::{Clipped, Plane};
 use crate::scalar::Real;
@@ -58,7 +59,7 @@ pub struct ClippedCount {
     pub high: usize,
 }
 
-impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
+impl<T: Real, C: Memory<T>> Model<T, C> {
     /// Builds the Everett table of `weights` (`N = K(K + 1)/2`, row by row: `j = 1…K`, `i = 1…j`) in `table`. `O(K²)`.
     ///
     /// # Errors
@@ -122,7 +123,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::MemoryTooSmall`].
     pub fn state<S>(&self, memory: S) -> Result<State<T, S>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         State::new(&self.plane, self.operator, self.stamp, memory)
     }
@@ -134,7 +135,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::StateMismatch`].
     pub fn reset_off<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         state.reset_off(&self.plane, self.stamp);
@@ -147,7 +148,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::StateMismatch`].
     pub fn reset_on<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.reset_off(state)?;
         self.step(state, self.plane.max())?;
@@ -166,7 +167,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         input: T,
     ) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         if !input.is_finite() {
@@ -196,7 +197,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline]
     pub fn step<S>(&self, state: &mut State<T, S>, input: T) -> Result<Output<T>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.check(state)?;
         if !input.is_finite() {
@@ -221,7 +222,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         output: &mut [T],
     ) -> Result<ClippedCount, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.check(state)?;
         let found = output.len();
@@ -253,7 +254,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[must_use]
     pub fn output<S>(&self, state: &State<T, S>) -> T
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.outward(state.branch_position().y)
     }
@@ -289,7 +290,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline(always)]
     pub(crate) fn check<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         if state.stamp() == self.stamp {
             self.fits(state)
@@ -302,7 +303,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline(always)]
     pub(crate) fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         if state.levels() == self.plane.levels() && state.operator() == self.operator {
             Ok(())

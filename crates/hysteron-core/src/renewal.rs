@@ -3,12 +3,13 @@
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::plane::operator_index;
 use crate::scalar::Real;
 use crate::state::State;
 
-impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
+impl<T: Real, C: Memory<T>> Model<T, C> {
     /// Puts other weights in the place of the present ones. `O(K²)`. States of the model have to be
     /// [rebased](Model::rebase) after it.
     ///
@@ -107,7 +108,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     /// [`Error::StateMismatch`].
     pub fn rebase<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         state.rebase(self.table(), self.stamp);

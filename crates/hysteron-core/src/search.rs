@@ -1,6 +1,7 @@
 //! Where on a branch a goal for the output is met: what both directions of the inverse share.
 
 use crate::branch::Turn;
+use crate::memory::Memory;
 use crate::scalar::Real;
 use crate::state::State;
 
@@ -19,7 +20,7 @@ impl<T: Real> Branch<T> {
     /// innermost whose output meets the goal: all further in are passed, a virtual pop.
     pub(crate) fn find<S>(state: &State<T, S>, kind: usize, met: impl Fn(T) -> bool) -> Self
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let turns = state.turns();
         let here = Turn {

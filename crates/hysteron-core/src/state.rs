@@ -3,6 +3,7 @@
 use crate::branch::{Position, START, Turn};
 use crate::error::Error;
 use crate::everett::{Grid, Split, Triangle};
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::plane::Plane;
 use crate::relay;
@@ -39,7 +40,7 @@ pub struct State<T, S> {
     position: Position<T>,
 }
 
-impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
+impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
     pub(crate) fn new(
         plane: &Plane<T>,
         operator: Operator,

@@ -9,6 +9,7 @@ use crate::branch::Position;
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
 use crate::scalar::Real;
@@ -68,7 +69,7 @@ pub struct Estimator<T, M> {
     pub(super) frozen: bool,
 }
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
     /// Moves `state` to `input`, tells the output that `model` expects there, and learns from the one `measured`.
     ///
     /// `model` is the one that the estimator was made with; others leave its weights alone. The outputs include the offset. A
@@ -85,8 +86,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         measured: T,
     ) -> Result<Learning<T>, Error>
     where
-        C: AsRef<[T]> + AsMut<[T]>,
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        C: Memory<T>,
+        S: Memory<Turn<T>>,
     {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
@@ -166,7 +167,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     }
 
     /// Goes back to the last good weights.
-    pub fn roll_back<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
+    pub fn roll_back<C: Memory<T>>(&mut self, model: &mut Model<T, C>) {
         self.take_back();
         self.gate.restart();
         self.rewrite(model);
@@ -186,7 +187,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// Takes the operators' states from `state`, unless it is where it was left.
     fn align<S>(&mut self, state: &State<T, S>)
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         if self
             .aligned
@@ -205,7 +206,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
 
     fn follow<S>(&mut self, from: T, state: &State<T, S>)
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let levels = self.levels;
         let slices = self.slices();
@@ -217,7 +218,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
 
     /// Lets the model's table follow the parameters, and takes them back where it would not be one of numbers; says what
     /// came of the sample, and whether the model changed.
-    fn renew<C: AsRef<[T]> + AsMut<[T]>>(
+    fn renew<C: Memory<T>>(
         &mut self,
         model: &mut Model<T, C>,
         outcome: Outcome,
@@ -260,7 +261,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         }
     }
 
-    pub(super) fn rewrite<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
+    pub(super) fn rewrite<C: Memory<T>>(&mut self, model: &mut Model<T, C>) {
         let levels = self.levels;
         parameters::rewrite(&self.slices(), levels, model);
         self.rows_due = 0;

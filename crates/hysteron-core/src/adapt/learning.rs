@@ -7,6 +7,7 @@ use super::trial::{Errors, Trial};
 use super::vector::dot;
 use super::{Method, gradient, parameters};
 use crate::branch::Turn;
+use crate::memory::Memory;
 use crate::plane::Clipped;
 use crate::plane::operator_count;
 use crate::scalar::Real;
@@ -73,7 +74,7 @@ impl Outcome {
     }
 }
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
     /// Learns from a reading, if there is anything to learn and it is to be believed. `above` is
     /// what was measured above `H`.
     pub(super) fn judge<S>(
@@ -83,7 +84,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         (above, error): (T, T),
     ) -> Outcome
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let position = state.position();
         let moved = self.moves(position);
@@ -117,7 +118,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
 
     fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let (options, floor) = (self.options, self.floor);
         let mut slices = self.layout.cut(self.memory.as_mut());

@@ -1,6 +1,7 @@
 //! The states of all operators, kept up to date from sample to sample: what an estimator regresses on.
 
 use crate::branch::Turn;
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::operator::{mkp, ridge};
 use crate::plane::operator_index;
@@ -39,7 +40,7 @@ pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
 pub(super) fn align<T, S>(gamma: &mut [T], levels: usize, state: &State<T, S>)
 where
     T: Real,
-    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    S: Memory<Turn<T>>,
 {
     gamma.fill(T::ZERO);
     for x in state.turning_points() {

@@ -7,18 +7,19 @@ use super::trial::Trial;
 use super::{Adaptation, Method, least_squares, parameters};
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::plane::operator_count;
 use crate::scalar::Real;
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
     /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.
     ///
     /// # Errors
     /// [`Error::Adaptation`], [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::NegativeWeights`];
     /// [`Error::InputNotFinite`] for the offset; [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for
     /// the model's table, which has to be twice as large.
-    pub fn new<C: AsRef<[T]> + AsMut<[T]>>(
+    pub fn new<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
         weights: &[T],
@@ -45,7 +46,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
     /// # Errors
     /// As [`Estimator::new`]; [`Error::Adaptation`] for [`Method::Increments`], for a correlation,
     /// and for shares that are negative or not finite, or overflow with their parts.
-    pub fn of_basis<C: AsRef<[T]> + AsMut<[T]>>(
+    pub fn of_basis<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
         basis: &[T],
