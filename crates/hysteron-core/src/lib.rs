@@ -16,6 +16,7 @@
 
 mod adapt;
 mod branch;
+mod crossing;
 mod definition;
 mod error;
 mod everett;
@@ -29,7 +30,9 @@ mod relay;
 mod renewal;
 mod scalar;
 mod search;
+mod solution;
 mod state;
+mod target;
 
 pub use adapt::{
     Adaptation, Estimator, Learning, Method, Outcome, estimator_len, estimator_len_of_basis,
@@ -39,10 +42,12 @@ pub use definition::Definition;
 pub use error::{Error, NegativeWeights};
 pub use everett::{table_index, table_len};
 pub use interface::Region;
-pub use inverse::{Direction, Inverse, Solution, Status, Target};
+pub use inverse::Inverse;
 pub use memory::Memory;
 pub use model::{ClippedCount, Model, Output};
 pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, MAX_LEVELS, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
+pub use solution::{Solution, Status};
 pub use state::{State, turn_capacity};
+pub use target::{Direction, Target};
