@@ -1,6 +1,7 @@
 //! The exact inverse: the input that gives a wanted output, in `O(log K)` (equations 6 to 14).
 //!
-//! With weights that are not negative, the output is monotone along a branch. Three searches follow:
+//! With weights that are not negative, the output is monotone along a branch. Three searches
+//! follow:
 //!
 //! 1. The outputs stored at the turning points tell which of the nested branches has the target.
 //! 2. A bisection over one row or column of the Everett table finds the grid cell.
@@ -172,8 +173,8 @@ impl<T: Real, C: AsRef<[T]>> Inverse<'_, T, C> {
 
     /// The present input.
     ///
-    /// An input beyond the plane is given as the nearest end, except for relays: a relay switches
-    /// only where the input moves, so the end and the present input are different states.
+    /// An input beyond the plane is given as the nearest end. Relays are the exception: on the way
+    /// back a relay switches at that end, so that the end and the present input act differently.
     fn stay<S>(&self, state: &State<T, S>) -> T
     where
         S: Memory<Turn<T>>,

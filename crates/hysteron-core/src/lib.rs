@@ -1,16 +1,20 @@
-//! The real-time core of hysteron: hysteresis models that run anywhere.
+//! The real-time core of hysteron: hysteresis models for hosts and microcontrollers.
 //!
-//! The model is a weighted sum of elementary operators on a triangular plane (equation 2 of the
-//! chapter): MKP, KP or relay. [`Definition`] computes it as written, in `O(K²)` per sample;
-//! [`Model`] computes the same numbers in amortised `O(1)`, and [`Inverse`] solves it for the
-//! input, exactly, in `O(log K)`.
+//! The model is a weighted sum of elementary operators (MKP, KP or relay) on a triangular plane of
+//! `K` levels (equation 2 of the chapter).
 //!
-//! *The chapter*, whose equations the docs number, is
-//! "Hysteresis behaviour and modeling of SMA actuators", in *Shape Memory Alloys*, ed. C. Cismasiu, 2010.
-//! Its misprints: (4) reads `−x/a` for `x/a`; (8) and (9) swap the indices of `s` in places; the upper
-//! index in (13) should be `f + 1`; the plane needs `α ≤ β ≤ T_max`.
+//! - [`Definition`] computes it as written, in `O(K²)` per sample.
+//! - [`Model`] computes the same output in amortised `O(1)` per sample.
+//! - [`Inverse`] finds the input that gives a wanted output, exactly, in `O(log K)`.
+//! - [`Estimator`] adapts the weights while the model runs.
 //!
-//! No allocation, no unsafe code, no panic on any input, `f32` or `f64`; all memory is the caller's.
+//! The core does not allocate: the caller provides all memory. It has no unsafe code and does not
+//! panic on any input. Numbers are `f32` or `f64`.
+//!
+//! The equation numbers in these docs are those of *the chapter*: "Hysteresis behaviour and
+//! modeling of SMA actuators", in *Shape Memory Alloys*, ed. C. Cismasiu, 2010. Its misprints: (4)
+//! reads `−x/a` for `x/a`; (8) and (9) swap the indices of `s` in some places; the upper index in
+//! (13) should be `f + 1`; the plane needs `α ≤ β ≤ T_max`.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -2,8 +2,8 @@
 
 /// Memory for elements of type `T`, provided by the caller.
 ///
-/// Arrays, `Vec`, `Box<[T]>` and `&mut [T]` are memory; no type has to implement this trait by hand.
-/// Whoever writes a function over a [`State`](crate::State), a [`Model`](crate::Model) or an
+/// Arrays, `Vec`, `Box<[T]>` and `&mut [T]` are memory; no type has to implement this trait by
+/// hand. Whoever writes a function over a [`State`](crate::State), a [`Model`](crate::Model) or an
 /// [`Estimator`](crate::Estimator) names one bound in place of two.
 ///
 /// ```

@@ -1,4 +1,5 @@
-//! What the estimators find: known plants, known solutions; and what brings them back from wrong readings.
+//! What the estimators find: known plants, known solutions; and what brings them back from wrong
+//! readings.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -104,7 +105,8 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
     }
 }
 
-/// Root mean square error, in shares of the output's range, of a learner against a plant while it learns from it.
+/// Root mean square error, in shares of the output's range, of a learner against a plant while it
+/// learns from it.
 fn error(
     learner: &mut Learner,
     plant: &mut common::Owned<f64>,
@@ -177,8 +179,8 @@ fn least_squares_finds_the_weights_themselves() {
     assert!(learner.estimator.offset().abs() < 1e-3);
 }
 
-/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero must not come back as an error of
-/// the estimate, which grew without bound where it did.
+/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero
+/// must not come back as an error of the estimate, which grew without bound where it did.
 #[test]
 fn weights_held_at_zero_do_not_pile_up() {
     for forgetting in [0.9999, 1.0] {
@@ -269,7 +271,8 @@ fn coefficients_of_a_basis_are_found() {
     }
 }
 
-/// What a burst of wrong readings does to a learner: its error before and after, and how often it was rolled back.
+/// What a burst of wrong readings does to a learner: its error before and after, and how often it
+/// was rolled back.
 fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
     const K: usize = 20;
     let mut rng = rng(15);

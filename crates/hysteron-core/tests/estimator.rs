@@ -212,7 +212,8 @@ fn readings_that_are_no_numbers_change_nothing() {
     }
 }
 
-/// Largest error by the end, in ranges, of least squares at ten levels in either precision, and the weights.
+/// Largest error by the end, in ranges, of least squares at ten levels in either precision, and the
+/// weights.
 fn in_precision<T: Real>(number: impl Fn(f64) -> T, back: impl Fn(T) -> f64) -> (f64, Vec<f64>) {
     const K: usize = 10;
     let mut rng = rng(70);

@@ -1,4 +1,4 @@
-//! What the parameters are: all weights, or shares of parts; and what follows from that.
+//! What depends on the kind of parameters: all weights, or the coefficients of a basis.
 
 use super::Method;
 use super::least_squares::packed;
@@ -13,7 +13,8 @@ use crate::plane::operators;
 use crate::scalar::Real;
 use crate::state::State;
 
-/// Writes the derivative of the output with respect to each parameter, `share` for the offset.
+/// Writes the regressor: the derivative of the output with respect to each parameter. That of the
+/// offset is `share`.
 pub(super) fn regressor<T, S>(
     slices: &mut Slices<'_, T>,
     operator: Operator,
@@ -37,7 +38,7 @@ pub(super) fn regressor<T, S>(
             *phi = *phi + factor * table[index];
         }
     });
-    // From Σ μ γ to the sum of the operators' own outputs.
+    // From Σ μ γ to the sum of the operators' outputs.
     for (phi, table) in slices.phi.iter_mut().zip(slices.tables.chunks(len)) {
         *phi = match operator {
             Operator::Mkp => *phi,
@@ -46,7 +47,7 @@ pub(super) fn regressor<T, S>(
     }
 }
 
-/// `φᵀφ` with every operator on, the offset apart.
+/// `φᵀφ` with every operator on, without the offset.
 pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
     if slices.tables.is_empty() {
         return T::from_index(slices.gamma.len());
@@ -78,7 +79,7 @@ pub(super) fn rewrite<T: Real, C: Memory<T>>(
     });
 }
 
-/// Writes the covariance at the start; nothing for methods without one.
+/// Writes the covariance at the start, for methods that have one.
 pub(super) fn start_covariance<T: Real>(
     slices: &mut Slices<'_, T>,
     levels: usize,

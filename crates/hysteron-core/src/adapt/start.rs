@@ -1,4 +1,4 @@
-//! How an estimator is set up.
+//! How an estimator is made.
 
 use super::estimator::Estimator;
 use super::gate::Gate;
@@ -13,12 +13,17 @@ use crate::plane::operator_count;
 use crate::scalar::Real;
 
 impl<T: Real, M: Memory<T>> Estimator<T, M> {
-    /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.
+    /// An estimator of all weights and the offset.
+    ///
+    /// It starts from the off-line `weights` (`N = K(K + 1)/2`, row by row) and `offset`, both in
+    /// the output's unit, and writes these weights to `model`. `memory` has at least
+    /// [`estimator_len`](crate::estimator_len) elements.
     ///
     /// # Errors
-    /// [`Error::Adaptation`], [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::NegativeWeights`];
-    /// [`Error::InputNotFinite`] for the offset; [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for
-    /// the model's table, which has to be twice as large.
+    /// [`Error::Adaptation`] for options out of range, [`Error::WeightCount`],
+    /// [`Error::WeightNotFinite`], [`Error::NegativeWeights`], [`Error::InputNotFinite`] for the
+    /// offset. [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for the
+    /// model's memory: that method needs room for two tables.
     pub fn new<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
@@ -39,13 +44,18 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         Ok(estimator)
     }
 
-    /// An estimator of the shares of `parts`, which stand for the ways in which weights can change (loads, drift), and the offset:
-    /// `μ = Σ_k shares_k parts_k`. `parts` holds `N` weights for each of the shares, one part after the other. A
-    /// step is `O(P K²)` for the table.
+    /// An estimator of the coefficients of a basis, and of the offset: `μ = Σ_k coefficients_k
+    /// basis_k`.
+    ///
+    /// The members of the basis stand for the ways in which the weights can change (load, drift).
+    /// `basis` has `N = K(K + 1)/2` weights for each of the `P` coefficients, one member after the
+    /// other. `memory` has at least [`estimator_len_of_basis`](crate::estimator_len_of_basis)
+    /// elements. A step takes `O(P K²)` for the table.
     ///
     /// # Errors
-    /// As [`Estimator::new`]; [`Error::Adaptation`] for [`Method::Increments`], for a correlation,
-    /// and for shares that are negative or not finite, or overflow with their parts.
+    /// As [`Estimator::new`]. [`Error::Adaptation`] also for [`Method::Increments`], for a
+    /// correlation above 0, and for coefficients that are none, negative, not finite, or too large
+    /// for their members.
     pub fn of_basis<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
@@ -97,6 +107,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         Ok(estimator)
     }
 
+    /// Checks options and memory. The parameters are not written yet.
     fn empty<C: AsRef<[T]>>(
         options: Adaptation<T>,
         model: &Model<T, C>,
@@ -131,6 +142,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         })
     }
 
+    /// Writes the off-line parameters, and what follows from them.
     fn begin(&mut self, parameters: &[T]) {
         let (levels, method) = (self.levels, self.options.method);
         let mut slices = self.slices();
