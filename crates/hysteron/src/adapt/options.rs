@@ -16,7 +16,7 @@ const GAIN: f64 = 0.3;
 const SPAN: f64 = 1.0;
 /// Forgetting factor of least squares, for weights and for coefficients.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading, in parts of the output's range, for weights and for coefficients. So few parts err more, and alike from sample to
+/// Error of a reading, in parts of the output's range, for weights and for coefficients. So few coefficients err more, and alike from sample to
 /// sample.
 const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
@@ -156,11 +156,11 @@ impl AdaptOptions {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
-        let coefficients = usize::from(self.learner == Learner::Drift);
+        let drift = usize::from(self.learner == Learner::Drift);
         // An error of zero would be certainty.
-        let misfit = rough.max(MISFIT[coefficients] * span).max(f64::EPSILON);
+        let misfit = rough.max(MISFIT[drift] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
-            forgetting: self.forgetting.unwrap_or(FORGETTING[coefficients]),
+            forgetting: self.forgetting.unwrap_or(FORGETTING[drift]),
             noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
