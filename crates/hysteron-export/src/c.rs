@@ -169,7 +169,7 @@ fn write<T: Number>(
     name: String,
 ) -> Result<CExport> {
     let constants = Constants::<T>::of(model)?;
-    if options.adaptation && constants.slack.is_none() {
+    if options.adaptation && constants.rounding.is_none() {
         let what = "adaptation keeps weights at zero or above, but there are some below zero";
         let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
         return Err(Error::Export(what.into()).remedied(remedy));
@@ -188,7 +188,7 @@ fn write<T: Number>(
         name,
         real: options.real,
         levels,
-        inverse: constants.slack.is_some(),
+        inverse: constants.rounding.is_some(),
         memory: constants.memory(options.adaptation),
         worst_case: CWorstCase::of(levels),
     };

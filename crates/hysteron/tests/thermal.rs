@@ -5,7 +5,8 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign, evaluate,
+    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign,
+    evaluate, operators,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -34,9 +35,8 @@ const BODY: FirstOrder = FirstOrder {
 /// Weights by the distance from the diagonal: a band of hysteresis.
 fn truth() -> Model {
     let plane = Plane::new(0.1, 1.0, 10).unwrap();
-    let rows = (1..=10_i32).flat_map(|j| (1..=j).map(move |i| (i, j)));
-    let weight = |(i, j): (i32, i32)| if j - i == 3 { 1.0 } else { 0.02 };
-    let weights = rows.map(weight).collect();
+    let weight = |(i, j): (usize, usize)| if j - i == 3 { 1.0 } else { 0.02 };
+    let weights = operators(10).map(weight).collect();
     let mut model = Model::new(Operator::Mkp, plane, weights, -2.0, Sign::Positive).unwrap();
     model.thermal = Some(BODY);
     model

@@ -5,7 +5,7 @@ use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
-    Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
+    Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_basis, table_len,
 };
 use hysteron_core::{Solution, Target};
 
@@ -37,7 +37,7 @@ pub struct Adaptive {
     wanted: OperatorState,
     estimator: Estimator<f64, Vec<f64>>,
     /// The basis that the parameters are coefficients of; empty if the parameters are the weights.
-    parts: Vec<Vec<f64>>,
+    basis: Vec<Vec<f64>>,
 }
 
 impl Adaptive {
@@ -51,35 +51,40 @@ impl Adaptive {
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
         let offset = model.sign().factor() * model.offset();
         let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
-        Self::from_parts(model, core, estimator, Vec::new())
+        Self::over(model, core, estimator, Vec::new())
     }
 
-    /// Adapts the coefficients (`shares`) of a basis (`parts`, each `N` weights) and the offset.
-    /// `shares` are the coefficients of `model`. If it is known in which ways the weights can
+    /// Adapts the coefficients of `basis` (each member `N` weights) and the offset.
+    /// `coefficients` are those of `model`. If it is known in which ways the weights can
     /// change, this needs far fewer unknowns than adapting all weights.
     ///
     /// # Errors
     /// As [`Adaptive::new`].
-    pub fn of_parts(
+    pub fn of_basis(
         model: &Model,
-        parts: Vec<Vec<f64>>,
-        shares: &[f64],
+        basis: Vec<Vec<f64>>,
+        coefficients: &[f64],
         options: Adaptation<f64>,
     ) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let levels = model.plane().levels();
-        let memory = reserved(estimator_len_of_parts(levels, options.method, shares.len()))?;
+        let memory = reserved(estimator_len_of_basis(
+            levels,
+            options.method,
+            coefficients.len(),
+        ))?;
         let offset = model.sign().factor() * model.offset();
-        let all = parts.concat();
-        let estimator = Estimator::of_parts(options, &mut core, &all, shares, offset, memory)?;
-        Self::from_parts(model, core, estimator, parts)
+        let all = basis.concat();
+        let estimator =
+            Estimator::of_basis(options, &mut core, &all, coefficients, offset, memory)?;
+        Self::over(model, core, estimator, basis)
     }
 
-    fn from_parts(
+    fn over(
         model: &Model,
         core: hysteron_core::Model<f64, Vec<f64>>,
         estimator: Estimator<f64, Vec<f64>>,
-        parts: Vec<Vec<f64>>,
+        basis: Vec<Vec<f64>>,
     ) -> Result<Self> {
         let mut state = model.plain()?.start();
         core.rebase(&mut state)?;
@@ -89,7 +94,7 @@ impl Adaptive {
             wanted: state.clone(),
             state,
             estimator,
-            parts,
+            basis,
         })
     }
 
@@ -185,13 +190,13 @@ impl Adaptive {
     #[must_use]
     pub fn weights(&self) -> Vec<f64> {
         let parameters = self.estimator.parameters();
-        if self.parts.is_empty() {
+        if self.basis.is_empty() {
             return parameters.to_vec();
         }
         let mut weights = vec![0.0; self.offline.weights().len()];
-        for (share, part) in parameters.iter().zip(&self.parts) {
-            for (weight, part) in weights.iter_mut().zip(part) {
-                *weight += share * part;
+        for (coefficient, member) in parameters.iter().zip(&self.basis) {
+            for (weight, member) in weights.iter_mut().zip(member) {
+                *weight += coefficient * member;
             }
         }
         weights

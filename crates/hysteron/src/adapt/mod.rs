@@ -6,14 +6,14 @@
 //! was done with the samples.
 
 mod adaptive;
+mod basis;
 mod counts;
 mod options;
-mod parts;
 
 pub use adaptive::Adaptive;
+pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
-pub use parts::DriftParts;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start};

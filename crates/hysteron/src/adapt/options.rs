@@ -1,7 +1,7 @@
 //! Options of an adaptation, with defaults that follow from the model and the recording.
 
 use crate::adapt::adaptive::Adaptive;
-use crate::adapt::parts::DriftParts;
+use crate::adapt::basis::DriftBasis;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::prepare::noise;
@@ -14,10 +14,10 @@ use serde::Serialize;
 const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
-/// Forgetting factor of least squares, for weights and for shares.
+/// Forgetting factor of least squares, for weights and for coefficients.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading as a share of the output's range, for weights and for shares. It is larger
-/// for shares, because a few parts fit less well and their errors are correlated between samples.
+/// Error of a reading as a share of the output's range, for weights and for coefficients. It is larger
+/// for coefficients, because a few coefficients fit less well and their errors are correlated between samples.
 const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, relative to all weights together.
 const OFFSET: f64 = 0.2;
@@ -25,7 +25,7 @@ const OFFSET: f64 = 0.2;
 const CORRELATION: f64 = 1.0;
 /// Standard deviation of the output with every operator on, as a share of its range.
 const DEVIATION: f64 = 0.3;
-/// Standard deviation of each share.
+/// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
 
 /// Which parameters are adapted, and by which method.
@@ -38,7 +38,7 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The coefficients of [`crate::DriftParts`] by recursive least squares. With the defaults it
+    /// The coefficients of [`crate::DriftBasis`] by recursive least squares. With the defaults it
     /// has the smallest errors on measured recordings.
     #[default]
     Drift,
@@ -52,10 +52,10 @@ pub enum Learner {
 /// | --- | --- | --- | --- |
 /// | `learner` | drift | see [`Learner`] | parameters and method |
 /// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load of the first shares (drift) |
+/// | `load` | middle of its range | the model's range | load of the first coefficients (drift) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
-/// | `forgetting` | weights: 0.999, shares: 0.9999 | up to 1 | forgetting (least squares) |
+/// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
 /// | `noise` | see the field | above 0 | error of a reading (least squares) |
 /// | `spread` | see the field | above 0 | deviation of a parameter (least squares) |
 /// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
@@ -73,7 +73,7 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the shares start at, for [`Learner::Drift`] with a model that depends on a load.
+    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a load.
     pub load: Option<f64>,
     /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
@@ -143,7 +143,7 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_parts`].
+    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
         let mut adaptive = self.estimator(model, self.before(model)?)?;
         if self.start == Start::On {
@@ -152,10 +152,10 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
-    /// An estimator of the weights or of the shares, depending on the learner.
+    /// An estimator of the weights or of the coefficients, depending on the learner.
     pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
         match self.learner {
-            Learner::Drift => DriftParts::of(model, self.load)?.adaptive(adaptation),
+            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
             _ => Adaptive::new(model, adaptation),
         }
     }
@@ -165,11 +165,11 @@ impl AdaptOptions {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
-        let shares = usize::from(self.learner == Learner::Drift);
+        let drift = usize::from(self.learner == Learner::Drift);
         // An error of zero would mean certainty and stop all learning.
-        let misfit = rough.max(MISFIT[shares] * span).max(f64::EPSILON);
+        let misfit = rough.max(MISFIT[drift] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
-            forgetting: self.forgetting.unwrap_or(FORGETTING[shares]),
+            forgetting: self.forgetting.unwrap_or(FORGETTING[drift]),
             noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
@@ -278,17 +278,16 @@ fn variance_of_sum(levels: usize, correlation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::together;
+    use hysteron_core::operators;
 
     #[test]
     fn the_variance_of_the_sum_is_that_of_all_pairs() {
-        let levels = 6_i32;
-        let places: Vec<(i32, i32)> = (1..=levels)
-            .flat_map(|j| (1..=j).map(move |i| (i, j)))
-            .collect();
+        let all: Vec<_> = operators(6).collect();
         let mut sum = 0.0;
-        for (i, j) in &places {
-            for (k, l) in &places {
-                sum += 1.0 / (1.0 + f64::from((i - k).pow(2) + (j - l).pow(2)) / 4.0);
+        for (i, j) in &all {
+            for (k, l) in &all {
+                let squared = i.abs_diff(*k).pow(2) + j.abs_diff(*l).pow(2);
+                sum += 1.0 / (1.0 + squared as f64 / 4.0);
             }
         }
         // A few hundred terms, summed in another order.

@@ -1,7 +1,7 @@
 //! One controller for all schemes: inverse feedforward, PID feedback, or both, with an optional
 //! inner loop around the input.
 
-use super::pid::limited;
+use super::pid::clamp;
 use super::sensor::{Sensed, Sensor};
 use super::{LoopStatus, Pid, Reading, Scheme};
 use crate::error::Result;
@@ -227,7 +227,7 @@ impl Controller {
         };
         let (low, high) = scheme.commands;
         Ok(match (&mut self.pid, measured) {
-            (None, _) => limited(feedforward, low, high),
+            (None, _) => clamp(feedforward, low, high),
             (Some(pid), None) => pid.hold(feedforward, scheme.commands),
             (Some(pid), Some(measured)) => pid.step(
                 target.output - measured,
@@ -242,7 +242,7 @@ impl Controller {
     fn drive(&mut self, command: f64, input: Option<Sensed>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
-            return limited(command, low, high);
+            return clamp(command, low, high);
         };
         let square = |drive: f64| match inner.square_root {
             true => drive * drive,
@@ -270,7 +270,7 @@ impl Controller {
         } else {
             power
         };
-        limited(drive, low, high)
+        clamp(drive, low, high)
     }
 }
 

@@ -114,9 +114,9 @@ impl Pid {
                 self.integral += growth;
             }
             // The integral never needs to exceed the limits on its own.
-            self.integral = limited(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
+            self.integral = clamp(self.integral, (low - bias).min(0.0), (high - bias).max(0.0));
         }
-        let out = limited(fixed + self.integral, low, high);
+        let out = clamp(fixed + self.integral, low, high);
         self.correction = out - bias;
         out
     }
@@ -126,11 +126,11 @@ impl Pid {
     /// derivative starts again.
     pub fn hold(&mut self, bias: f64, (low, high): (f64, f64)) -> f64 {
         self.last = None;
-        limited(bias + self.correction, low, high)
+        clamp(bias + self.correction, low, high)
     }
 }
 
 /// As [`f64::clamp`], without its panic for limits in the wrong order. NaN gives `low`.
-pub(super) fn limited(value: f64, low: f64, high: f64) -> f64 {
+pub(super) fn clamp(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)
 }

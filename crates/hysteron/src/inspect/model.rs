@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::model::{Confidence, Excitation, Model};
+use hysteron_core::operators;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -87,9 +88,8 @@ const NAMED: usize = 5;
 
 impl ConfidenceSummary {
     fn new(model: &Model, confidence: &Confidence) -> Self {
-        let rows = (1..=model.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
         let weights = model.weights().iter().zip(&confidence.standard_error);
-        let mut least_certain: Vec<Uncertain> = rows
+        let mut least_certain: Vec<Uncertain> = operators(model.plane().levels())
             .zip(weights)
             .map(|((i, j), (&weight, &standard_error))| Uncertain {
                 i,

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::model::Plane;
 use crate::model::sign::Sign;
 use crate::series::NOISE;
-use hysteron_core::{Operator, Turn, table_len, turn_capacity};
+use hysteron_core::{Operator, Turn, operators, table_len, turn_capacity};
 
 /// The state of weighted operators: their turning points.
 pub type OperatorState = hysteron_core::State<f64, Vec<Turn<f64>>>;
@@ -224,8 +224,9 @@ impl Operators {
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     pub fn operator_states(&self, state: &OperatorState) -> Result<Vec<f64>> {
-        let rows = (1..=self.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        rows.map(|(i, j)| Ok(state.gamma(i, j)?)).collect()
+        operators(self.plane().levels())
+            .map(|(i, j)| Ok(state.gamma(i, j)?))
+            .collect()
     }
 
     fn outward(&self, sum: f64) -> f64 {

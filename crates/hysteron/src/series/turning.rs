@@ -273,7 +273,7 @@ mod tests {
                 let (mut whole, mut short) = (start.clone(), start);
                 model.run(&mut whole, &series, &mut vec![0.0; length])?;
                 model.run(&mut short, &kept, &mut vec![0.0; kept.len()])?;
-                for (i, j) in (1..=9).flat_map(|j| (1..=j).map(move |i| (i, j))) {
+                for (i, j) in hysteron_core::operators(9) {
                     assert_eq!(whole.gamma(i, j)?, short.gamma(i, j)?, "{series:?}");
                 }
             }

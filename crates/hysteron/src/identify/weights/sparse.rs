@@ -11,7 +11,7 @@ use crate::identify::weights::rows::{Rows, Term};
 use crate::model::Plane;
 use crate::progress::Progress;
 use hysteron_core::Operator;
-use hysteron_core::{Model, operator_index, table_index, table_len};
+use hysteron_core::{Model, operator_index, operators, table_index, table_len};
 
 /// State of the operators before the first sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,8 +77,7 @@ impl SparseForm {
         let (mut off, mut on) = (self.rows(Initial::Off)?, self.rows(Initial::On)?);
         off.leaves_branch(first)?;
         on.leaves_branch(first)?;
-        let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        operators
+        operators(levels)
             .map(|(i, j)| Ok(on.state().gamma(i, j)? - off.state().gamma(i, j)?))
             .collect()
     }
