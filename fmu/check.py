@@ -30,7 +30,7 @@ def core(folder, model, run_, inverse):
     column = "target" if inverse else "input"
     table.write_text("\n".join([column, *map(repr, run_[column])]) + "\n")
     if inverse:
-        run(HYSTERON, "invert", model, table, "--target", column, "--band", run_["tolerance"], "-o", out)
+        run(HYSTERON, "invert", model, table, "--target", column, "--tolerance", run_["tolerance"], "-o", out)
     else:
         run(HYSTERON, "simulate", model, table, "--input", column, "-o", out)
     with out.open() as rows:
@@ -159,7 +159,7 @@ def driven(folder, fmus):
         for fmu, vector in replays:
             for run_ in vector["runs"][:2]:
                 if run_.get("tolerance"):
-                    continue  # `band` is not the C program's affair
+                    continue  # the C program does not set `tolerance`
                 signal = run_["target" if fmu.inverse else "input"]
                 rows, out = folder / "rows.txt", folder / "out.txt"
                 headings = run_["heading"] if fmu.inverse else [9] * len(signal)

@@ -227,7 +227,7 @@ static mxArray *quantity(uint64_t model, int32_t which) {
 
 static mxArray *info(const struct block *block) {
     static const char *names[] = {"operator", "levels", "range",  "input",  "output",
-                                  "offset",   "sign",   "output_off", "output_on", "noise_band"};
+                                  "offset",   "sign",   "output_off", "output_on", "usual_tolerance"};
     static const char *operators[] = {"mkp", "kp", "relay"};
     mxArray *result = mxCreateStructMatrix(1, 1, 10, names), *range = mxCreateDoubleMatrix(1, 2, mxREAL);
     struct HysteronModelInfo info;
@@ -243,7 +243,7 @@ static mxArray *info(const struct block *block) {
     mxSetField(result, 0, "sign", mxCreateDoubleScalar(info.sign));
     mxSetField(result, 0, "output_off", mxCreateDoubleScalar(info.output_off));
     mxSetField(result, 0, "output_on", mxCreateDoubleScalar(info.output_on));
-    mxSetField(result, 0, "noise_band", mxCreateDoubleScalar(info.noise_band));
+    mxSetField(result, 0, "usual_tolerance", mxCreateDoubleScalar(info.usual_tolerance));
     return result;
 }
 

@@ -266,7 +266,7 @@ fn wrong_usage_is_code_two() {
         "fit run.csv --input x --output y -o m.json --levels 1000000",
         "fit run.csv --input x --output y -o m.json --offset nan",
         "fit run.csv --input x --output y -o m.json --range 0,inf",
-        "invert model.json run.csv --target y --band -1",
+        "invert model.json run.csv --target y --tolerance -1",
     ] {
         let done = bench.run(line);
         assert_eq!(done.code, 2, "{line}: {}", done.err);

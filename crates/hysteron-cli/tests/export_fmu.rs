@@ -41,7 +41,7 @@ fn both_blocks_in_both_standards() {
     );
     assert_eq!(
         inverse["parameters"],
-        serde_json::json!(["band", "start_on"])
+        serde_json::json!(["tolerance", "start_on"])
     );
     assert_ne!(forward["token"], inverse["token"]);
     let size = std::fs::metadata(here.join("back.fmu")).unwrap().len();

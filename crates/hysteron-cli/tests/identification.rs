@@ -269,7 +269,7 @@ fn what_cannot_be_is_refused_and_nothing_is_replaced() {
             "samples, more than",
         ),
         (
-            "prepare run.csv --input x --output y --band 1e9 -o n.csv".into(),
+            "prepare run.csv --input x --output y --dead-band 1e9 -o n.csv".into(),
             "the whole range of the input",
         ),
     ] {

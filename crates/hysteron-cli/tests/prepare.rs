@@ -65,11 +65,11 @@ fn a_rough_recording_is_prepared_and_what_was_done_is_said() {
 
     let done = run(
         folder.path(),
-        &format!("prepare {COLUMNS} --low-pass 0.2 --band off --spikes off -o other.csv --json"),
+        &format!("prepare {COLUMNS} --low-pass 0.2 --dead-band off --spikes off -o other.csv --json"),
     );
     let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
     assert_eq!(json["preparation"]["low_pass"]["input"]["cutoff"], 0.2);
-    assert_eq!(json["preparation"]["band"], Value::Null);
+    assert_eq!(json["preparation"]["dead_band"], Value::Null);
     assert_eq!(json["preparation"]["spikes"], Value::Null);
     assert_eq!(json["rate_dependent"], false);
 }
@@ -125,7 +125,7 @@ fn what_cannot_be_done_is_said_and_leaves_nothing() {
             "above zero",
         ),
         (
-            "prepare run.csv --input x --output y --band often -o no.csv",
+            "prepare run.csv --input x --output y --dead-band often -o no.csv",
             2,
             "`auto`, `off` or a number",
         ),

@@ -29,7 +29,7 @@ fn prepare_keeps_names_and_all_columns() {
     )
     .unwrap();
     let line =
-        "prepare run.csv --input T --output lift --time zeit --low-pass off --band off -o out.csv";
+        "prepare run.csv --input T --output lift --time zeit --low-pass off --dead-band off -o out.csv";
     let done = run(folder.path(), line);
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert!(text(&done.stderr).contains("is in ms: turned into seconds"));

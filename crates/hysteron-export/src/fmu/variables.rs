@@ -78,7 +78,7 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
                 "whether the wanted output is reached: 0; -1 below and 1 above every output; 2 where a relay jumps past it",
             ),
             heading(),
-            band(&model.output),
+            tolerance(&model.output),
             start_on(),
         ],
     };
@@ -154,7 +154,7 @@ fn heading() -> Variable {
     }
 }
 
-fn band(output: &Quantity) -> Variable {
+fn tolerance(output: &Quantity) -> Variable {
     Variable {
         name: "tolerance".into(),
         reference: 5,
