@@ -65,7 +65,9 @@ fn a_rough_recording_is_prepared_and_what_was_done_is_said() {
 
     let done = run(
         folder.path(),
-        &format!("prepare {COLUMNS} --low-pass 0.2 --dead-band off --spikes off -o other.csv --json"),
+        &format!(
+            "prepare {COLUMNS} --low-pass 0.2 --dead-band off --spikes off -o other.csv --json"
+        ),
     );
     let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
     assert_eq!(json["preparation"]["low_pass"]["input"]["cutoff"], 0.2);
