@@ -70,7 +70,8 @@ struct Course {
 
 fn controller(known: &Known, with: With) -> Controller {
     let adapting = |model: &Model| {
-        Compensator::adaptive(Adaptive::new(model, known.scenario.adaptation.into()).unwrap())
+        let adaptation = known.scenario.adaptation.resolve(model).unwrap();
+        Compensator::adaptive(Adaptive::new(model, adaptation).unwrap())
     };
     let compensator = match with {
         With::Pid => None,

@@ -203,11 +203,11 @@ fn controller(
 ) -> Result<Controller> {
     let compensator = match kind {
         Kind::Pid => None,
-        _ if kind.adapts() => Some(Compensator::adaptive(Adaptive::new(
-            model,
-            scenario.adaptation.into(),
-        )?)),
-        _ => Some(Compensator::fixed(&model)?),
+        _ if kind.adapts() => {
+            let adaptation = scenario.adaptation.resolve(model)?;
+            Some(Compensator::adaptive(Adaptive::new(model, adaptation)?))
+        }
+        _ => Some(Compensator::fixed(model)?),
     };
     Controller::new(Scheme {
         compensator,
