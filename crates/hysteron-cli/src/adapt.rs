@@ -16,7 +16,8 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         }
     }
     let model = Model::read(&args.model)?;
-    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
+    // The model begins before the table and is whole after it: where one cannot be written, neither
+    // is there.
     let inputs = [args.model.as_path(), &args.data];
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let table = args.table.as_ref().map(|table| {

@@ -46,7 +46,8 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     print(&lines.join("\n"))
 }
 
-/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to standard error; it is returned for the JSON.
+/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to
+/// standard error; it is returned for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
     args: &args::PrepareBeforeFit,

@@ -7,7 +7,8 @@ use common::{json, refused, run, text};
 use serde_json::Value;
 use std::fs;
 
-/// A play operator with some slope, and the same with half as much slope again; a model of the first.
+/// A play operator with some slope, and the same with half as much slope again; a model of the
+/// first.
 fn wires() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, slope) in [("before.csv", 0.2), ("after.csv", 0.3)] {
@@ -36,7 +37,8 @@ fn every_method_prints_and_writes_what_it_learned() {
         let said = json(folder.path(), &line);
         let rmse = |value: &Value| value["rmse"].as_f64().unwrap();
         let last = &said["thirds"][2];
-        // The loops get smaller and their middle is known; a third of the error is far from what is left.
+        // The loops get smaller and their middle is known; a third of the error is far from what is
+        // left.
         assert!(
             rmse(&last["adapting"]) < 0.33 * rmse(&last["fixed"]),
             "{method}: {said}"

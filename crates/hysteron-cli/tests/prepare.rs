@@ -7,7 +7,8 @@ use common::{run, text};
 use serde_json::Value;
 use std::fs;
 
-/// Loops of a play whose readings are a little rough; in lines 102 and 103 the input dropped to zero.
+/// Loops of a play whose readings are a little rough; in lines 102 and 103 the input dropped to
+/// zero.
 fn rough_recording() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut play = 0.0_f64;

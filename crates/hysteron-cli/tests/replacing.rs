@@ -107,7 +107,8 @@ fn held(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Refused for its place, with nothing in the folder changed, and told of `--force` where that helps.
+/// Refused for its place, with nothing in the folder changed, and told of `--force` where that
+/// helps.
 fn keeps_all(folder: &Path, line: &str, force_helps: bool) {
     let before = held(folder);
     let done = run(folder, line);
@@ -231,7 +232,8 @@ fn a_folder_keeps_what_is_not_ours() {
             keeps_all(path, &line, true);
             fs::write(file, &ours[file]).unwrap();
         }
-        // Files and folders of others stay, whoever's the rest is; the folder above is another's too.
+        // Files and folders of others stay, whoever's the rest is; the folder above is another's
+        // too.
         fs::create_dir(out.join("empty")).unwrap();
         passes(path, &line);
         let note = some[1].with_file_name("note.txt");

@@ -7,7 +7,8 @@ use common::{run, text};
 use serde_json::Value;
 use std::fs;
 
-/// A wire of 2 s heating and 5 s cooling with a play, under a slow ramp and steps; irregular in time.
+/// A wire of 2 s heating and 5 s cooling with a play, under a slow ramp and steps; irregular in
+/// time.
 fn wire() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let (mut theta, mut play, mut drive, mut before) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);

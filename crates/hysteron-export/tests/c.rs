@@ -29,8 +29,8 @@ fn compare(exported: &Exported, program: &mut Command, cases: &[(&Model, Vec<Cal
 /// Compilers that are there, with flags under which the header promises the digits.
 fn compilers() -> Vec<(&'static str, Vec<&'static str>)> {
     let mut found = Vec::new();
-    // What a compiler may be told of fused products without other digits: the source forbids them. GCC heeds that under
-    // every flag, Clang under all but `fast`, which the header excludes.
+    // What a compiler may be told of fused products without other digits: the source forbids them.
+    // GCC heeds that under every flag, Clang under all but `fast`, which the header excludes.
     for (cc, most) in [("gcc", "-ffp-contract=fast"), ("clang", "-ffp-contract=on")] {
         if !has(cc) {
             continue;

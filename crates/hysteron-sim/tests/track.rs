@@ -1,4 +1,5 @@
-//! Scenarios: what they may say, the references they make, tuning, and comparisons that can be repeated.
+//! Scenarios: what they may say, the references they make, tuning, and comparisons that can be
+//! repeated.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod loops;

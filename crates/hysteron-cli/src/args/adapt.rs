@@ -27,21 +27,22 @@ pub(crate) struct Adapt {
     /// What follows the error, and how
     #[arg(long, value_enum, default_value = "drift")]
     pub(crate) method: Learner,
-    /// With `drift`, for a model that depends on a load: the load to start at [default: the middle of
-    /// its range]
+    /// With `drift`, for a model that depends on a load: the load to start at [default: the middle
+    /// of its range]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) tuning: Tuning,
-    /// Where the adapted model goes; with --force also one that ended worse than the model left alone
+    /// Where the adapted model goes; with --force also one that ended worse than the model left
+    /// alone
     #[arg(short, value_name = "ADAPTED")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
-    /// Write the recording with the columns `output_model` (predicted before each sample was learned
-    /// from), `error` and `outcome`; CSV, or Parquet where the name ends with .parquet
+    /// Write the recording with the columns `output_model` (predicted before each sample was
+    /// learned from), `error` and `outcome`; CSV, or Parquet where the name ends with .parquet
     #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]
@@ -67,8 +68,8 @@ pub(crate) struct Tuning {
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
     noise: Option<f64>,
     /// least-squares, drift: standard deviation by which a weight (in the output's unit) or a
-    /// coefficient may differ from the model's [default: such that the sum of the weights may differ
-    /// by 0.3 of the range; of a coefficient 0.5]
+    /// coefficient may differ from the model's [default: such that the sum of the weights may
+    /// differ by 0.3 of the range; of a coefficient 0.5]
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = parse_finite)]
     spread: Option<f64>,
     /// least-squares: levels over which deviations of weights go together [default: 1]

@@ -49,7 +49,8 @@ pub(crate) enum Command {
         after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
     )]
     Simulate(Simulate),
-    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low, high)
+    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low,
+    /// high)
     #[command(
         after_help = "Example:\n  hysteron invert spring.json wanted.csv --target displacement -o inputs.csv"
     )]
@@ -110,7 +111,8 @@ impl Force {
 
 #[derive(Args)]
 pub(crate) struct Repair {
-    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and tell of it
+    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and
+    /// tell of it
     #[arg(long)]
     repair: bool,
     #[command(flatten)]
@@ -119,7 +121,8 @@ pub(crate) struct Repair {
 
 #[derive(Args)]
 pub(crate) struct Memory {
-    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is refused
+    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is
+    /// refused
     #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_bytes)]
     pub(crate) max_memory: u64,
 }
@@ -145,7 +148,8 @@ impl Repair {
 
 #[derive(Args)]
 pub(crate) struct Load {
-    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the column of it
+    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the
+    /// column of it
     #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
     load: Option<String>,
 }
@@ -175,14 +179,15 @@ pub(crate) struct Simulate {
     pub(crate) input: String,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
+    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted
+    /// with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
     /// Column of time, in seconds or with its unit in its name, for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
-    /// --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
+    /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -214,8 +219,8 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
-    /// --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
+    /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -238,7 +243,8 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a model with a thermal body
+    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a
+    /// model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample

@@ -6,7 +6,8 @@ use std::path::Path;
 /// As many letters of an external name as C99 tells apart (5.2.4.1).
 const LONGEST: usize = 31;
 
-/// Words of C and C++, and what C99 reserves (7.1.3): a global object of that name does not compile or replaces a function.
+/// Words of C and C++, and what C99 reserves (7.1.3): a global object of that name does not compile
+/// or replaces a function.
 const TAKEN: &str = "auto break case char const continue default do double else enum extern float for goto if inline int long \
     register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while \
     alignas alignof and and_eq asm bitand bitor bool catch class compl concept const_cast constexpr constinit consteval \
@@ -70,7 +71,8 @@ fn is_taken(name: &str) -> bool {
         .any(|word| word == name || word == sister)
 }
 
-/// Types and macros of the headers that `hysteron_mcu.h` includes, and what C99 reserves for more of them (7.26.8).
+/// Types and macros of the headers that `hysteron_mcu.h` includes, and what C99 reserves for more
+/// of them (7.26.8).
 fn is_of_headers(name: &str) -> bool {
     let begins = |starts: &[&str]| starts.iter().any(|start| name.starts_with(start));
     let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));

@@ -1,4 +1,5 @@
-//! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines are.
+//! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines
+//! are.
 
 use hysteron::{Model, Operator, Sign};
 use std::fmt::Write;

@@ -22,7 +22,8 @@ const LEARNERS: [(&str, Learner); 4] = [
     ("drift", Learner::Drift),
 ];
 
-/// Beginning and end of the names of recordings of one loop at each of several stresses, and the column of the output.
+/// Beginning and end of the names of recordings of one loop at each of several stresses, and the
+/// column of the output.
 const MATERIALS: [(&str, &[f64], &str); 2] = [
     ("flexinol", &[50.0, 150.0, 200.0], "strain"),
     (
@@ -250,7 +251,8 @@ impl Loops {
             options: FitOptions {
                 range: Some((plane.min(), plane.max())),
                 levels: LEVELS,
-                // A strain is recovered on heating; at the lowest stress there is hardly any to tell that from.
+                // A strain is recovered on heating; at the lowest stress there is hardly any to
+                // tell that from.
                 sign: Some(Sign::Negative),
                 ..FitOptions::default()
             },

@@ -1,5 +1,5 @@
-//! How fast weights are identified, against SciPy's dense way in the same run, and how time and memory grow:
-//! `cargo run --release -p hysteron-measure --bin fit-speed`
+//! How fast weights are identified, against SciPy's dense way in the same run, and how time and
+//! memory grow: `cargo run --release -p hysteron-measure --bin fit-speed`
 
 #[path = "../scipy/mod.rs"]
 mod scipy;

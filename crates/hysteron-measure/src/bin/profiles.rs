@@ -1,5 +1,5 @@
-//! Compares designed profiles with other experiments at the same rates, and prints `docs/profiles.md`:
-//! `cargo run --release -p hysteron-measure --bin profiles`
+//! Compares designed profiles with other experiments at the same rates, and prints
+//! `docs/profiles.md`: `cargo run --release -p hysteron-measure --bin profiles`
 
 use hysteron::{DesignOptions, Excitation, Operator, Plane, Rates, design, excitation, ramps};
 use hysteron_sim::rig::{Experiment, LEVELS, RANGE_DEGC};

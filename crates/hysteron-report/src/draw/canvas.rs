@@ -31,7 +31,8 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// An SVG document under construction. Its ids begin with `stem`, so that figures can share one HTML page.
+/// An SVG document under construction. Its ids begin with `stem`, so that figures can share one
+/// HTML page.
 #[derive(Debug)]
 pub(crate) struct Canvas {
     stem: &'static str,

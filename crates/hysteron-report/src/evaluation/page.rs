@@ -10,7 +10,8 @@ use crate::stack::Figures;
 use hysteron::{Confidence, Errors};
 use maud::{Markup, html};
 
-/// The sections of the page and their figures; figures in one group stand side by side where there is room.
+/// The sections of the page and their figures; figures in one group stand side by side where there
+/// is room.
 const SECTIONS: [(&str, &[&[Figure]]); 5] = [
     (
         "The model",

@@ -6,8 +6,8 @@ use hysteron::{AtomicFolder, Quantity};
 use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
 
-/// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one. See
-/// [`TrackReport::write_into`].
+/// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one.
+/// See [`TrackReport::write_into`].
 ///
 /// # Errors
 /// As [`TrackReport::write`].

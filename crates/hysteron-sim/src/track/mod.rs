@@ -1,7 +1,9 @@
-//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come out of [`track`].
+//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come
+//! out of [`track`].
 //!
-//! For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with the
-//! same disturbances. The gains of all PIDs come from one test on the same plant.
+//! For each seed a model is identified from an experiment of its own, and every controller runs
+//! over the same reference with the same disturbances. The gains of all PIDs come from one test on
+//! the same plant.
 
 mod check;
 mod identify;
@@ -55,8 +57,9 @@ pub struct Comparison {
 /// Runs every controller of the scenario with every seed. `progress` is told of each finished run.
 ///
 /// # Errors
-/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
-/// [`Error::Plant`] for a plant outside its physics, and as [`hysteron::fit`] for a model that cannot be identified.
+/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is
+/// tuned by; otherwise as the parts: [`Error::Plant`] for a plant outside its physics, and as
+/// [`hysteron::fit`] for a model that cannot be identified.
 ///
 /// ```
 /// use hysteron::Progress;

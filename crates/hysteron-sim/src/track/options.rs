@@ -38,8 +38,8 @@ impl ModelOptions {
 pub struct LoopOptions {
     /// Time constant of the filter on the readings, s, from 0. Default 0: none.
     pub filter_s: f64,
-    /// The inverse does not follow reversals of the reference up to this size, in the output's unit,
-    /// from 0. Default 0.
+    /// The inverse does not follow reversals of the reference up to this size, in the output's
+    /// unit, from 0. Default 0.
     pub tolerance: f64,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,
