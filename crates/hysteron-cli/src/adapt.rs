@@ -62,8 +62,8 @@ fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
     let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
     format!(
         "{}: the model is not written, for it ended worse: over the last third it erred by {} \
-         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of --table, \
-         try another --method, or keep the model as it is; --force writes it",
+         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of \
+         --table, try another --method, or keep the model as it is; --force writes it",
         args.out.display(),
         error(late.adapting),
         error(late.fixed)
@@ -114,7 +114,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let drift = &adapted.drift;
     let mut lines = vec![
         format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} readings rejected, {} times rolled back",
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
+             readings rejected, {} times rolled back",
             match refused {
                 true => "not written".into(),
                 false => args.out.display().to_string(),
@@ -127,7 +128,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
         ),
         text::table(&rows),
         format!(
-            "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of their sum",
+            "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
+             their sum",
             text::number(drift.weights.0),
             text::with_unit(drift.weights.1, output),
             text::number(drift.offset.0),
@@ -137,7 +139,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     ];
     if adapted.probation > 0 {
         lines.push(format!(
-            "the last {} samples are on probation, as none judge them: the model has nothing of them",
+            "the last {} samples are on probation, as none judge them: the model has nothing of \
+             them",
             adapted.probation
         ));
     }

@@ -124,7 +124,8 @@ fn summary(design: &Design, args: &args::Design) -> String {
     }
     if design.legs.is_empty() {
         lines.push(format!(
-            "nothing is missing: the recordings determine all {count} operators, and no profile was written"
+            "nothing is missing: the recordings determine all {count} operators, and no profile \
+             was written"
         ));
         return lines.join("\n");
     }

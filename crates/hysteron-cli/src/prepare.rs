@@ -192,7 +192,8 @@ fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
 
 fn rate_line(rate: &RateDependence) -> String {
     format!(
-        "rate: {} % of the output's range, of {} % that a static model misses (R² {:.3} by time, {:.3} by the input's path; {} s){}",
+        "rate: {} % of the output's range, of {} % that a static model misses (R² {:.3} by time, \
+         {:.3} by the input's path; {} s){}",
         text::number(rate.percent),
         text::number(rate.nrmse_percent),
         rate.r2_time,

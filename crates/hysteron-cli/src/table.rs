@@ -12,7 +12,10 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         false => None,
         true => Some(model.band()?.ok_or_else(|| {
             let model = args.model.display();
-            format!("{model}: the model does not say how certain it is: fit it again with --bootstrap 200")
+            format!(
+                "{model}: the model does not say how certain it is: fit it again with \
+                     --bootstrap 200"
+            )
         })?),
     };
     let what = ["inputs above the plane", "inputs below its active range"];

@@ -176,7 +176,8 @@ fn a_model_that_ended_worse_is_not_written_without_force() {
         table += &format!("{x},{}\n", play * 0.2 + 0.3 * (1.7 * f64::from(n)).sin());
     }
     fs::write(folder.path().join("same.csv"), table).unwrap();
-    let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv --method gradient --gain 1.5 --dead-zone 0";
+    let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv \
+                --method gradient --gain 1.5 --dead-zone 0";
     let said = refused(folder.path(), line);
     assert!(
         said.contains("adapted.json: the model is not written"),

@@ -5,7 +5,8 @@ use hysteron::{Error, Model, Remedy, Result, Setting};
 /// Refuses what runs nowhere but here: a model is exported at one load and without a thermal body.
 pub(crate) fn check(model: &Model) -> Result<()> {
     if model.thermal.is_some() {
-        let text = "the model has a thermal body, which needs the time of each sample: only the model behind it can be exported";
+        let text = "the model has a thermal body, which needs the time of each sample: only the \
+                    model behind it can be exported";
         return Err(Error::Export(text.into()));
     }
     if let Some(load) = &model.load {

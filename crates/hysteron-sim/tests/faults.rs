@@ -227,7 +227,8 @@ fn faults(
         };
         let (tracking, prediction) = (ratio(|r| &r.error), ratio(|r| &r.prediction));
         println!(
-            "{fault:?}, {with:?}, {load_n:.1} N, {from}..{to}: tracking {tracking:.3}, prediction {prediction:.3}"
+            "{fault:?}, {with:?}, {load_n:.1} N, {from}..{to}: tracking {tracking:.3}, prediction \
+             {prediction:.3}"
         );
         worst = (worst.0.max(tracking), worst.1.max(prediction));
     }
@@ -289,7 +290,8 @@ fn minutes_of_saturation_leave_nothing_behind() {
         let (lifted, saturated, back) = five_minutes(with, 12.0, 1.35);
         let (_, _, free) = five_minutes(with, lifted, 2.0);
         println!(
-            "{with:?}: {lifted:.2} mm, at the limit {saturated:.2}, back after {back:.0} s; never limited {free:.0} s"
+            "{with:?}: {lifted:.2} mm, at the limit {saturated:.2}, back after {back:.0} s; never \
+             limited {free:.0} s"
         );
         assert!(saturated > 0.7);
         // A period of the loop's own lags is what may be in between.

@@ -19,7 +19,8 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
     };
     let (offset, weights) = (model.offset(), model.weights());
     let mut text = format!(
-        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} {levels}\n\
+        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} \
+         {levels}\n\
          output {offset:?} {sign}\nweights {}\n",
         weights.len()
     );

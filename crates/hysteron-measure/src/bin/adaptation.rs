@@ -43,7 +43,8 @@ fn main() -> Result<()> {
     print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least squares, forgetting 1 |"
+        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least \
+         squares, forgetting 1 |"
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {

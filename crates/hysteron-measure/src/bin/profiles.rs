@@ -33,7 +33,8 @@ fn outcome(plane: Plane, turns: &[f64]) -> Result<Outcome, Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     print!("{}", include_str!("profiles.md"));
     println!(
-        "| K | operators N | profile | duration, min | of the spiral's | operators determined | of N |"
+        "| K | operators N | profile | duration, min | of the spiral's | operators determined | of \
+         N |"
     );
     println!("| ---: | ---: | --- | ---: | ---: | ---: | ---: |");
     let (min, max) = RANGE_DEGC;

@@ -144,7 +144,8 @@ impl Scenario {
             require(
                 fine,
                 &format!("{field}.at_s"),
-                "must be in order, the same as before or two samples later at least, and two samples before the end",
+                "must be in order, the same as before or two samples later at least, and two \
+                 samples before the end",
             )?;
             last = event.at_s;
             let whats = event.disturbances();

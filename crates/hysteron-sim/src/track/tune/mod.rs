@@ -40,8 +40,9 @@ fn no_answer(what: &str, samples: usize, scenario: &Scenario) -> Error {
     refused(
         "plant",
         format!(
-            "its {what} does not answer a step within {time} s ({samples} samples), or less than its noise, so that no PID can be tuned: \
-             a longer interval_s, a stronger drive or a better sensor is needed"
+            "its {what} does not answer a step within {time} s ({samples} samples), or less than \
+             its noise, so that no PID can be tuned: a longer interval_s, a stronger drive or a \
+             better sensor is needed"
         ),
     )
 }
