@@ -105,7 +105,11 @@ fn to_json(design: &Design, profile: Option<&Path>) -> Value {
         "samples": design.time.len(),
         "duration_s": design.duration_s(),
         "full_duration_s": design.full_duration_s,
-        "plane": {"min": design.plane.min(), "max": design.plane.max(), "levels": design.plane.levels()},
+        "plane": {
+            "min": design.plane.min(),
+            "max": design.plane.max(),
+            "levels": design.plane.levels(),
+        },
         "operators": design.plane.operators(),
         "excitation": excitation(&design.excitation),
         "recorded": design.recorded.as_ref().map(excitation),

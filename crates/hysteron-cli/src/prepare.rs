@@ -27,10 +27,13 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         ));
     }
     if args.json.json {
-        return print(
-            &json!({"table": args.out, "preparation": report, "rate": rate, "rate_dependent": is_material(&rate)})
-                .to_string(),
-        );
+        let object = json!({
+            "table": args.out,
+            "preparation": report,
+            "rate": rate,
+            "rate_dependent": is_material(&rate),
+        });
+        return print(&object.to_string());
     }
     let mut lines = lines(&report, &recording);
     lines.insert(

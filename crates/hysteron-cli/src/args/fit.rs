@@ -23,7 +23,13 @@ pub(crate) struct Fit {
     pub(crate) levels: Levels,
     /// Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; `auto` chooses it as
     /// the levels
-    #[arg(long, value_name = "STRENGTH", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
+    #[arg(
+        long,
+        value_name = "STRENGTH",
+        default_value = "off",
+        allow_hyphen_values = true,
+        value_parser = parse_step
+    )]
     pub(crate) smooth: Step,
     /// Where the operators stand before the first sample
     #[arg(long, value_enum, default_value = "off")]
@@ -32,7 +38,14 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
     /// Order of that function
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "load", allow_hyphen_values = true, value_parser = up_to(5))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        requires = "load",
+        allow_hyphen_values = true,
+        value_parser = up_to(5)
+    )]
     pub(crate) load_degree: usize,
     /// Put a thermal body in front of the operators and identify it with the weights: for an input
     /// that heats, where the temperature is not known. The input is taken as proportional to the

@@ -20,11 +20,14 @@ pub(crate) use value::*;
     name = "hysteron",
     version,
     arg_required_else_help = true,
-    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs; decimal points or commas;\n\
-                  a row of units; # and % comments; loggers and LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
-                  A column goes by its name, without its unit if there is no other, or by its number from 1.\n\
+    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs;\n\
+                  decimal points or commas; a row of units; # and % comments; loggers and\n\
+                  LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
+                  A column goes by its name, without its unit if there is no other, or by its\n\
+                  number from 1.\n\
                   `-` reads CSV from standard input.\n\
-                  Results of earlier runs are replaced; any other file is kept, unless --force is given.\n\
+                  Results of earlier runs are replaced; any other file is kept, unless --force\n\
+                  is given.\n\
                   Exit codes: 0 done, 1 the work failed, 2 wrong usage."
 )]
 pub(crate) struct Cli {
@@ -35,50 +38,51 @@ pub(crate) struct Cli {
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Identify a model from a recording
-    #[command(
-        after_help = "Example:\n  hysteron fit run1.csv --input temperature --output displacement -o spring.json"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron fit run1.csv --input temperature --output displacement \
+        -o spring.json")]
     Fit(Fit),
     /// Ready a recording for a fit: spikes, noise, a sensor's lag, false reversals
-    #[command(
-        after_help = "Example:\n  hysteron prepare run1.csv --input temperature --output displacement --time time -o clean.csv"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron prepare run1.csv --input temperature --output displacement \
+        --time time -o clean.csv")]
     Prepare(Prepare),
     /// Run a model over an input: adds the column `output_model`
-    #[command(
-        after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron simulate spring.json run2.csv --input temperature -o modelled.csv")]
     Simulate(Simulate),
     /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low,
     /// high)
-    #[command(
-        after_help = "Example:\n  hysteron invert spring.json wanted.csv --target displacement -o inputs.csv"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron invert spring.json wanted.csv --target displacement -o inputs.csv")]
     Invert(Invert),
     /// Judge a model on a recording: forward and inverse errors, and a report
-    #[command(
-        after_help = "Example:\n  hysteron evaluate spring.json run2.csv --input temperature --output displacement --report report"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron evaluate spring.json run2.csv --input temperature \
+        --output displacement --report report")]
     Evaluate(Evaluate),
     /// Let a model learn from a recording, sample by sample, and write the adapted one
-    #[command(
-        after_help = "Example:\n  hysteron adapt spring.json run3.csv --input temperature --output displacement -o adapted.json"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron adapt spring.json run3.csv --input temperature \
+        --output displacement -o adapted.json")]
     Adapt(Adapt),
     /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
-    #[command(
-        after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron inspect run1.csv --input temperature --output displacement\n\
+        \x20 hysteron inspect spring.json")]
     Inspect(Inspect),
     /// Plan a recording: the input profile that determines every operator in the shortest time
-    #[command(
-        after_help = "Examples:\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 -o profile.csv\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron design --range 20,80 --levels 20 --heating-rate 2 \
+        --cooling-rate 0.5 -o profile.csv\n\
+        \x20 hysteron design --range 20,80 --levels 20 --heating-rate 2 \
+        --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv")]
     Design(Design),
     /// Compare controllers on a simulated plant: PID, inverse, both, and an inverse that adapts
-    #[command(
-        after_help = "Examples:\n  hysteron track load-step -o load-step\n  hysteron track load-step --show > mine.toml\n  hysteron track mine.toml --seeds 5 -o mine"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron track load-step -o load-step\n\
+        \x20 hysteron track load-step --show > mine.toml\n\
+        \x20 hysteron track mine.toml --seeds 5 -o mine")]
     Track(Track),
     /// Carry a model to where it runs: C for a microcontroller, a block for Simulink and others
     #[command(subcommand)]
