@@ -86,7 +86,8 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     if args.json.json {
         let object = json!({
             "file": file, "name": name, "fmi": options.fmi.version(),
-            "token": token, "bytes": bytes, "inputs": inputs, "outputs": outputs, "parameters": parameters,
+            "token": token, "bytes": bytes,
+            "inputs": inputs, "outputs": outputs, "parameters": parameters,
         });
         return print(&object.to_string());
     }

@@ -66,7 +66,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     )
 }
 
-/// What is told how many bytes or rows were read.
+/// What is told how many bytes were read.
 type Told<'a> = &'a dyn Fn(u64);
 
 /// Opens both ends, runs `work` between them and says what came of it.

@@ -90,8 +90,9 @@ fn what_a_body_cannot_do_is_refused_with_a_reason() {
     let folder = wire();
     fs::write(
         folder.path().join("wire.json"),
-        r#"{"format": "hysteron-model", "version": 1, "operator": "mkp", "plane": {"min": 0.5, "max": 1, "levels": 2},
-            "weights": [1, 0, 1], "thermal": {"kind": "first-order", "gain": 1, "tau_heating": 2, "tau_cooling": 5}}"#,
+        r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
+            "plane": {"min": 0.5, "max": 1, "levels": 2}, "weights": [1, 0, 1],
+            "thermal": {"kind": "first-order", "gain": 1, "tau_heating": 2, "tau_cooling": 5}}"#,
     )
     .unwrap();
     fs::write(folder.path().join("back.csv"), "t,duty\n0,0\n2,1\n1,1\n").unwrap();

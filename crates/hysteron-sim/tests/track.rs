@@ -131,7 +131,7 @@ fn a_refusal_names_the_field() {
         ),
         (
             SPRING,
-            format!("adaptation = {{ noise = 0 }}\n{SPRING_SINE}"),
+            format!("adaptation.noise = 0\n{SPRING_SINE}"),
             "`adaptation`",
         ),
         (

@@ -18,8 +18,8 @@ fn main() -> hysteron::Result<()> {
     // Reversals smaller than this are noise, and are not followed.
     let tolerance = 0.01;
 
-    // While the wanted output rests, *hold* keeps the input. *Anticipate* uses that time: it crosses
-    // the dead band at once, because it looks ahead to where the wanted output goes next.
+    // While the wanted output rests, *hold* keeps the input. *Anticipate* uses that time: it looks
+    // ahead to where the wanted output goes next, and crosses the dead band at once.
     let solve = |policy| inverse.series(&mut model.start(), &wanted, policy, tolerance);
     let hold = solve(Policy::Hold)?;
     let anticipate = solve(Policy::Anticipate)?;

@@ -60,8 +60,8 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
         footer {
             "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of \
-             SMA actuators”, which introduces the MKP model; its figure numbers are given with each \
-             caption."
+             SMA actuators”, which introduces the MKP model; its figure numbers are given with \
+             each caption."
         }
     };
     frame::html(

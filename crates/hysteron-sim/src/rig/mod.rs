@@ -7,7 +7,7 @@
 //!
 //! | Part | Law |
 //! | --- | --- |
-//! | [`Transformation`] | cosine branches (Liang & Rogers 1990, Brinson 1993), partial loops (Ivshin & Pence 1994) |
+//! | [`Transformation`] | cosine branches (Brinson 1993), partial loops (Ivshin & Pence 1994) |
 //! | [`Spring`] | torsion of rings with two moduli (Waram 1993) |
 //! | [`Wire`] | Joule heat, latent heat, natural convection (Churchill & Chu 1975) |
 //! | [`Sensor`] | Gaussian noise within the accuracy that the chapter's section 7 gives |

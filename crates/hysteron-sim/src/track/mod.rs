@@ -84,7 +84,8 @@ pub struct Comparison {
 /// "#;
 /// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
 /// let comparison = track(&scenario, Progress::NONE)?;
-/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
+/// // µm, of the first seed and window
+/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse);
 /// assert!(inverse_pid < pid);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
