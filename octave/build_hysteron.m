@@ -13,7 +13,8 @@ if nargin < 1
     end
 end
 if exist(library, 'file') ~= 2
-    error('hysteron:notBuilt', '%s is not there: run `cargo build --release -p hysteron-capi` first', library);
+    error('hysteron:notBuilt', ...
+        '%s is not there: run `cargo build --release -p hysteron-capi` first', library);
 end
 if ispc
     system_libraries = {'-lws2_32', '-luserenv', '-lntdll', '-lbcrypt', '-ladvapi32'};

@@ -74,8 +74,9 @@ finish(folder, 14, policies);
 [~, worst] = max(abs(T_hold - T));
 near = abs(time - time(worst)) <= 75;
 sheet('Close-up of the dead band', 'time (s)', ['temperature (' degC '), displacement (mm)']);
-plot(time(near), T(near), 'color', lines.measured, time(near), T_hold(near), 'color', lines.model, ...
-    time(near), T_ahead(near), 'color', lines.ahead, time(near), y(near), '--', 'color', lines.measured);
+t = time(near);
+plot(t, T(near), 'color', lines.measured, t, T_hold(near), 'color', lines.model, ...
+    t, T_ahead(near), 'color', lines.ahead, t, y(near), '--', 'color', lines.measured);
 finish(folder, 15, ...
     [{'recorded temperature (simulated spring)'}, policies, {'recorded displacement'}]);
 printf('figures 10 to 15 are in %s\n', folder);
@@ -111,7 +112,8 @@ function finish(folder, number, names)
 legend(names, 'location', 'northeast', 'interpreter', 'none');
 axis tight;
 limits = ylim();
-ylim(limits + [-0.05 0.1 + 0.1 * numel(names)] * diff(limits)); % room for the legend above the curves
+% Room for the legend above the curves.
+ylim(limits + [-0.05 0.1 + 0.1 * numel(names)] * diff(limits));
 print(fullfile(folder, sprintf('fig%d.png', number)), '-dpng', '-r120');
 close();
 end

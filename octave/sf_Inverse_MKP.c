@@ -10,7 +10,8 @@ static const char *const NAMES[COUNT] = {"policy", "tolerance", "heading", "load
 static int anticipates(const mxArray *policy) {
     const char *word = policy == NULL ? "hold" : text(policy, "policy");
     if (strcmp(word, "hold") != 0 && strcmp(word, "anticipate") != 0) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`policy` is 'hold' or 'anticipate', not '%s'", word);
+        mexErrMsgIdAndTxt("hysteron:argument", "`policy` is 'hold' or 'anticipate', not '%s'",
+                          word);
     }
     return word[0] == 'a';
 }
@@ -54,7 +55,8 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     }
     if (anticipate && values[HEADING] == NULL && count == 1 && !mxIsChar(prhs[0])) {
         mexErrMsgIdAndTxt("hysteron:argument",
-                          "one target does not tell where the next one goes: give `heading`, 1 or -1");
+                          "one target does not tell where the next one goes: "
+                          "give `heading`, 1 or -1");
     }
     if (values[TOLERANCE] != NULL) {
         tolerance = number(values[TOLERANCE], "tolerance");
@@ -80,8 +82,8 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
         status = hysteron_headings(mxGetPr(target), count, tolerance, heading);
     }
     if (status == HYSTERON_OK) {
-        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, tolerance, mxGetPr(plhs[0]),
-                                      flags, count);
+        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, tolerance,
+                                      mxGetPr(plhs[0]), flags, count);
     }
     for (n = 0; n < count && nlhs > 1; n++) {
         ((int8_t *)mxGetData(plhs[1]))[n] = (int8_t)flags[n];

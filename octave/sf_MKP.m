@@ -24,5 +24,6 @@
 %
 %   See also SF_INVERSE_MKP.
 function varargout = sf_MKP(varargin)
-error('hysteron:notBuilt', 'sf_MKP is not built yet: run octave/build in a shell, or build_hysteron here');
+error('hysteron:notBuilt', ...
+    'sf_MKP is not built yet: run octave/build in a shell, or build_hysteron here');
 end

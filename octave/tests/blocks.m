@@ -36,7 +36,8 @@ wanted = 12 + 1.5 * sin((0:300) / 15);
 [T, status] = sf_Inverse_MKP(model, wanted);
 assert(max(abs(sf_MKP(model, T) - wanted)) < 1e-12 && ~any(status));
 ahead = sf_Inverse_MKP(model, wanted, 'policy', 'anticipate');
-assert(max(abs(sf_MKP(model, ahead) - wanted)) <= info.usual_tolerance + 1e-12 && ~isequal(ahead, T));
+assert(max(abs(sf_MKP(model, ahead) - wanted)) <= info.usual_tolerance + 1e-12);
+assert(~isequal(ahead, T));
 assert(isequal(sf_Inverse_MKP(model, wanted, 'heading', 0), T));
 write_model(model, '[0, 1, 0, 1, 1, 0]'); % no operator without memory: a dead band everywhere
 rises = sf_Inverse_MKP(model, [12 12], 'heading', [1 1]);

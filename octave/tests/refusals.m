@@ -51,15 +51,18 @@ refused('hysteron:block', @() sf_MKP('reset', model));
 refused('hysteron:file', @() sf_MKP('/no/such/model.json', 1));
 refused('hysteron:file', @() sf_MKP('', 1));
 refused('hysteron:load', @() sf_MKP(model, 1, 'load', 200));
-refused('hysteron:turningPoints', @() sf_MKP('restore', block, struct('turning_points', [1 2 3], 'input', 1)));
-refused('hysteron:notFinite', @() sf_MKP('restore', block, struct('turning_points', [1 NaN], 'input', 1)));
+no_nest = struct('turning_points', [1 2 3], 'input', 1);
+refused('hysteron:turningPoints', @() sf_MKP('restore', block, no_nest));
+not_finite = struct('turning_points', [1 NaN], 'input', 1);
+refused('hysteron:notFinite', @() sf_MKP('restore', block, not_finite));
 
 text = fileread(model);
 for length = [0, 1, 40, numel(text) - 2]
     write_text(bad, text(1:length));
     refused('hysteron:modelFile', @() sf_MKP(bad, 1));
 end
-thermal = '"thermal": {"kind": "first-order", "gain": 1, "tau_heating": 1, "tau_cooling": 1}, "weights"';
+thermal = ['"thermal": {"kind": "first-order", "gain": 1, ' ...
+    '"tau_heating": 1, "tau_cooling": 1}, "weights"'];
 write_text(bad, strrep(text, '"weights"', thermal));
 refused('hysteron:thermal', @() sf_MKP(bad, 1), 'thermal body');
 write_model(bad, '[1, 0.5, 1, 0, 0.5]');
