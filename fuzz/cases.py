@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 FIXTURES = ROOT / "crates/hysteron/tests/fixtures"
-SCENARIOS = ROOT / "crates/hysteron/src/track/builtin"
+SCENARIOS = ROOT / "crates/hysteron-sim/src/track/builtin"
 
 
 @dataclass
