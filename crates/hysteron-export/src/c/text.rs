@@ -123,7 +123,8 @@ pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> S
 #include \"{name}.h\"
 
 /* The constants below are of {real}. */
-typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} ? 1 : -1];
+typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} \
+? 1 : -1];
 
 static const hys_real table[] = ",
         version = env!("CARGO_PKG_VERSION"),
