@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Identification the plain way, to compare with: the dense regressor from the definition, and SciPy's NNLS.
+"""A plain identification to compare with: dense regressor from the definition, and SciPy's NNLS.
 
-Reads one JSON object {"min", "max", "levels", "input", "output", "fold"} from standard input; `fold` (a number a
-sample, or null) names what is left out together. Prints one JSON object: errors in the output's unit, the squared error at
-the optimum of a fit of everything, and the seconds that the regressor and that fit took. Needs NumPy and SciPy.
+Reads one JSON object {"min", "max", "levels", "input", "output", "fold"} from standard input.
+`fold` (a number for each sample, or null) tells which samples are left out together.
+
+Prints one JSON object: errors in the output's unit, the squared error at the optimum of a fit of
+everything, and the seconds that the regressor and that fit took. Needs NumPy and SciPy.
 """
 import json
 import sys
@@ -14,7 +16,7 @@ from scipy.optimize import nnls
 
 
 def regressor(minimum, maximum, levels, samples):
-    """The states of all MKP operators at every sample, from all off: equation (5), operator by operator."""
+    """The states of all MKP operators at every sample, from all off, by equation (5)."""
     step = (maximum - minimum) / (levels - 1)
     j, i = np.tril_indices(levels)  # row by row: j = 1…K, i = 1…j
     x = np.clip((np.asarray(samples) - minimum) / step + 1.0, 0.0, levels)

@@ -30,15 +30,22 @@ def check(condition, text):
 
 
 def run(*command, **options):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
-    check(done.returncode == 0, f"{command}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    done = subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, **options
+    )
+    check(
+        done.returncode == 0, f"{command}: exit code {done.returncode}\n{done.stdout}{done.stderr}"
+    )
     return done.stdout
 
 
 def has(tool, package):
     found = shutil.which(tool)
     if not found:
-        run(ROOT / "tools/skipped", f"fmu/check.py: there is no `{tool}` (apt-get install {package})")
+        run(
+            ROOT / "tools/skipped",
+            f"fmu/check.py: there is no `{tool}` (apt-get install {package})",
+        )
         SKIPPED.append(tool)
     return found
 
@@ -50,7 +57,9 @@ class Fmu:
         self.inverse, self.fmi = inverse, fmi
         self.path = folder / f"{model.stem}-{'inverse' if inverse else 'forward'}-{fmi}.fmu"
         options = ["--inverse"] * inverse + ["--fmi", fmi]
-        self.about = json.loads(run(HYSTERON, "export", "fmu", model, "-o", self.path, "--json", *options))
+        self.about = json.loads(
+            run(HYSTERON, "export", "fmu", model, "-o", self.path, "--json", *options)
+        )
         self.description = fmpy.read_model_description(str(self.path))
         self.folder = Path(fmpy.extract(str(self.path), unzipdir=str(self.path.with_suffix(""))))
         self.signal, self.result = self.about["inputs"][0], self.about["outputs"][0]
@@ -63,21 +72,36 @@ class Fmu:
         columns = [np.arange(len(signal)), signal]
         start = {}
         if self.inverse:
-            names, formats, columns = [*names, "heading"], [*formats, int], [*columns, run_["heading"]]
+            names, formats, columns = (
+                [*names, "heading"],
+                [*formats, int],
+                [*columns, run_["heading"]],
+            )
             start = {"tolerance": run_["tolerance"]}
         table = np.array(list(zip(*columns)), dtype=list(zip(names, formats)))
         result = fmpy.simulate_fmu(
-            str(self.folder), model_description=self.description, input=table, start_values=start,
-            stop_time=len(signal), step_size=1, output_interval=1, output=[self.result, self.flag])
-        # The start follows from the first input already; the first step, with the same input again, is row 1.
+            str(self.folder),
+            model_description=self.description,
+            input=table,
+            start_values=start,
+            stop_time=len(signal),
+            step_size=1,
+            output_interval=1,
+            output=[self.result, self.flag],
+        )
+        # The start follows from the first input; row 1 is the first step, with that input again.
         rows = np.arange(len(signal) + 1) != 1
         return result[self.result][rows], result[self.flag][rows]
 
     def instance(self, name="spring", logger=None):
         """An instance past initialisation, through FMPy's raw interface."""
         kind = FMU2Slave if self.fmi == 2 else FMU3Slave
-        slave = kind(guid=self.description.guid, unzipDirectory=str(self.folder),
-                     modelIdentifier=self.description.coSimulation.modelIdentifier, instanceName=name)
+        slave = kind(
+            guid=self.description.guid,
+            unzipDirectory=str(self.folder),
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName=name,
+        )
         slave.instantiate()
         self.start(slave)
         return slave
@@ -105,4 +129,7 @@ class Fmu:
 
 
 def vectors():
-    return {path.stem: json.loads(path.read_text()) for path in sorted((ROOT / "vectors").glob("*.json"))}
+    return {
+        path.stem: json.loads(path.read_text())
+        for path in sorted((ROOT / "vectors").glob("*.json"))
+    }

@@ -1,8 +1,12 @@
-/* Drives an FMU (FMI 2.0) through C alone: replays a table, misuses it, or times it against the plain double loop.
+/* Drives an FMU (FMI 2.0) through C alone: replays a table, misuses it, or times it against the
+ * plain double loop.
  *
- *   driver replay LIBRARY URI GUID ROWS OUT    ROWS: lines "input heading"; OUT: lines "output flag", output as hexadecimal float
+ *   driver replay LIBRARY URI GUID ROWS OUT
  *   driver misuse LIBRARY URI GUID
- *   driver time   LIBRARY URI GUID PLANE       PLANE: "min max levels weights..."
+ *   driver time   LIBRARY URI GUID PLANE
+ *
+ * ROWS: lines "input heading". OUT: lines "output flag", the output as hexadecimal float.
+ * PLANE: "min max levels weights...".
  */
 #include <math.h>
 #include <stdarg.h>
@@ -56,10 +60,24 @@ static void load(const char *path) {
 #endif
     NEED(library);
     const char *names[] = {
-        "fmi2Instantiate", "fmi2FreeInstance", "fmi2SetupExperiment", "fmi2EnterInitializationMode",
-        "fmi2ExitInitializationMode", "fmi2Terminate", "fmi2Reset", "fmi2SetReal", "fmi2GetReal", "fmi2SetInteger",
-        "fmi2GetInteger", "fmi2DoStep", "fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate",
-        "fmi2SerializedFMUstateSize", "fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate",
+        "fmi2Instantiate",
+        "fmi2FreeInstance",
+        "fmi2SetupExperiment",
+        "fmi2EnterInitializationMode",
+        "fmi2ExitInitializationMode",
+        "fmi2Terminate",
+        "fmi2Reset",
+        "fmi2SetReal",
+        "fmi2GetReal",
+        "fmi2SetInteger",
+        "fmi2GetInteger",
+        "fmi2DoStep",
+        "fmi2GetFMUstate",
+        "fmi2SetFMUstate",
+        "fmi2FreeFMUstate",
+        "fmi2SerializedFMUstateSize",
+        "fmi2SerializeFMUstate",
+        "fmi2DeSerializeFMUstate",
     };
     NEED(sizeof names / sizeof *names == sizeof fmu / sizeof(void *));
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
@@ -71,18 +89,20 @@ static void load(const char *path) {
 
 static char last_message[1000];
 
-static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status, fmi2String category,
-                   fmi2String message, ...) {
+static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status,
+                   fmi2String category, fmi2String message, ...) {
     va_list arguments;
     va_start(arguments, message);
     vsnprintf(last_message, sizeof last_message, message, arguments);
     va_end(arguments);
-    NEED(environment == (void *)last_message && status >= fmi2Error && strcmp(category, "logStatusError") == 0);
+    NEED(environment == (void *)last_message && status >= fmi2Error &&
+         strcmp(category, "logStatusError") == 0);
     NEED(strcmp(instance, "spring") == 0 || *instance == 0);
 }
 
 static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, last_message};
-static const fmi2ValueReference signal_in[] = {1}, signal_out[] = {2}, flag[] = {3}, heading[] = {4};
+static const fmi2ValueReference signal_in[] = {1}, signal_out[] = {2}, flag[] = {3},
+                                heading[] = {4};
 
 static fmi2Component start(const char *uri, const char *guid) {
     fmi2Component c = fmu.instantiate("spring", fmi2CoSimulation, guid, uri, &callbacks, 0, 0);
@@ -105,7 +125,8 @@ static void replay(const char *uri, const char *guid, const char *rows, const ch
         if (ahead != 9) /* a model has no heading */
             NEED(fmu.set_integer(c, heading, 1, &ahead) == fmi2OK);
         NEED(fmu.step(c, time++, 1, fmi2True) == fmi2OK);
-        NEED(fmu.get(c, signal_out, 1, &output) == fmi2OK && fmu.get_integer(c, flag, 1, &found) == fmi2OK);
+        NEED(fmu.get(c, signal_out, 1, &output) == fmi2OK &&
+             fmu.get_integer(c, flag, 1, &found) == fmi2OK);
         unsigned long long bits;
         memcpy(&bits, &output, sizeof bits);
         fprintf(to, "%016llx %d\n", bits, found);
@@ -123,20 +144,23 @@ static void misuse(const char *uri, const char *guid) {
     NEED(!fmu.instantiate("spring", fmi2ModelExchange, guid, uri, &callbacks, 0, 0));
     NEED(!fmu.instantiate("spring", fmi2CoSimulation, "{100% wrong #1}", uri, &callbacks, 0, 0));
     NEED(strstr(last_message, "`{100%% wrong ##1}`") || strstr(last_message, "`{100% wrong ##1}`"));
-    NEED(!fmu.instantiate("spring", fmi2CoSimulation, guid, "file:///no/such/folder", &callbacks, 0, 0));
+    NEED(!fmu.instantiate("spring", fmi2CoSimulation, guid, "file:///no/such/folder", &callbacks, 0,
+                          0));
     NEED(strstr(last_message, "model.txt"));
     fmi2Component c = start(uri, guid);
     NEED(fmu.set(c, signal_in, 1, &bad) == fmi2OK && fmu.step(c, 0, 1, fmi2True) == fmi2Error);
     NEED(strstr(last_message, "fmi2DoStep: "));
     NEED(fmu.set(c, signal_in, 1, &value) == fmi2OK && fmu.step(c, 0, 1, fmi2True) == fmi2OK);
     NEED(fmu.set(c, NULL, 1, &value) == fmi2Error && fmu.get(c, signal_out, 1, NULL) == fmi2Error);
-    NEED(fmu.set(c, signal_out, 1, &value) == fmi2Error && fmu.step(c, 7, 1, fmi2True) == fmi2Error);
+    NEED(fmu.set(c, signal_out, 1, &value) == fmi2Error &&
+         fmu.step(c, 7, 1, fmi2True) == fmi2Error);
     fmi2FMUstate state = NULL, second = NULL;
     NEED(fmu.save(c, &state) == fmi2OK && fmu.save(c, NULL) == fmi2Error);
     size_t size;
     NEED(fmu.size(c, state, &size) == fmi2OK);
     fmi2Byte *bytes = malloc(size);
-    NEED(fmu.serialise(c, state, bytes, size - 1) == fmi2Error && fmu.serialise(c, state, bytes, size) == fmi2OK);
+    NEED(fmu.serialise(c, state, bytes, size - 1) == fmi2Error &&
+         fmu.serialise(c, state, bytes, size) == fmi2OK);
     for (size_t n = 0; n < size; n++) {
         NEED(fmu.deserialise(c, bytes, n, &second) == fmi2Error);
         bytes[n] ^= 1;
@@ -151,7 +175,8 @@ static void misuse(const char *uri, const char *guid) {
     fmu.free(c); /* with `second` still there: it goes with its instance */
     fmu.free(c);
     NEED(fmu.step(c, 0, 1, fmi2True) == fmi2Error && fmu.reset(c) == fmi2Error);
-    NEED(fmu.step(NULL, 0, 1, fmi2True) == fmi2Error && fmu.step((void *)&value, 0, 1, fmi2True) == fmi2Error);
+    NEED(fmu.step(NULL, 0, 1, fmi2True) == fmi2Error &&
+         fmu.step((void *)&value, 0, 1, fmi2True) == fmi2Error);
     fmu.free(NULL);
 }
 
@@ -163,7 +188,8 @@ static double seconds(void) {
 }
 
 /* Equation (5) for every operator, ridges worked out once a level. */
-static double plain(int levels, double min, double per_unit, const double *weights, double *states, double *ridges, double input) {
+static double plain(int levels, double min, double per_unit, const double *weights, double *states,
+                    double *ridges, double input) {
     double x = (input - min) * per_unit + 1, sum = 0;
     for (int k = 0; k < levels; k++) {
         double ridge = x - k;
@@ -198,8 +224,10 @@ static void measure(const char *uri, const char *guid, const char *plane) {
         NEED(fscanf(from, "%lf", &weights[n]) == 1);
     fclose(from);
     for (int n = 0; n < STEPS; n++) /* ever smaller loops, thirty in a run */
-        inputs[n] = min + (max - min) * (0.5 - 0.5 * (1 - n / (1.1 * STEPS)) * cos(n * 2 * acos(-1) * 30 / STEPS));
-    double ratios[RUNS], fmu_times[RUNS], plain_times[RUNS], worst = 0, per_unit = (levels - 1) / (max - min);
+        inputs[n] = min + (max - min) * (0.5 - 0.5 * (1 - n / (1.1 * STEPS)) *
+                                                   cos(n * 2 * acos(-1) * 30 / STEPS));
+    double ratios[RUNS], fmu_times[RUNS], plain_times[RUNS], worst = 0,
+                                                             per_unit = (levels - 1) / (max - min);
     for (int run = 0; run < RUNS; run++) {
         fmi2Component c = start(uri, guid);
         memset(states, 0, count * sizeof *states);
@@ -224,7 +252,8 @@ static void measure(const char *uri, const char *guid, const char *plane) {
     qsort(ratios, RUNS, sizeof *ratios, by_size);
     qsort(fmu_times, RUNS, sizeof *fmu_times, by_size);
     qsort(plain_times, RUNS, sizeof *plain_times, by_size);
-    printf("%.3f %.0f %.0f\n", ratios[RUNS / 2], 1e9 * fmu_times[RUNS / 2], 1e9 * plain_times[RUNS / 2]);
+    printf("%.3f %.0f %.0f\n", ratios[RUNS / 2], 1e9 * fmu_times[RUNS / 2],
+           1e9 * plain_times[RUNS / 2]);
 }
 #endif
 

@@ -1,6 +1,7 @@
-"""Hostile cases for the command: each class is a generator that lays files into an empty folder and yields a Case.
+"""Hostile cases for the command.
 
-No case names a place outside of its folder for a result: run by root, a fault could replace a device.
+Each class is a generator. It writes files into an empty folder and yields a Case. No case names a
+place outside of its folder for a result: run by root, a fault could replace a device.
 """
 
 import json
@@ -12,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 FIXTURES = ROOT / "crates/hysteron/tests/fixtures"
-SCENARIOS = ROOT / "crates/hysteron/src/track/builtin"
+SCENARIOS = ROOT / "crates/hysteron-sim/src/track/builtin"
 
 
 @dataclass
@@ -33,7 +34,8 @@ def model(name="forward-mkp-5"):
 def files(**contents):
     """A function that lays these files; `model.json` is always there."""
     contents = {"model.json": json.dumps(model()).encode()} | {
-        name.replace("_", "."): data for name, data in contents.items()}
+        name.replace("_", "."): data for name, data in contents.items()
+    }
 
     def lay(folder):
         for name, data in contents.items():
@@ -52,8 +54,32 @@ def recording():
 
 
 PIECES = [
-    b'"', b'""', b",", b";", b"\t", b"\n", b"\r", b"\r\n", b"\0", b"\xef\xbb\xbf", b"\xff\xfe", b"\xe9", b"#", b"%", b"-",
-    b"1e999", b"NaN", b"inf", b"1,5", b"1 234,5", b"0x10", b"9" * 400, b"," * 3000, b'"' * 500, b"\n" * 500, b"\x1b[2J",
+    b'"',
+    b'""',
+    b",",
+    b";",
+    b"\t",
+    b"\n",
+    b"\r",
+    b"\r\n",
+    b"\0",
+    b"\xef\xbb\xbf",
+    b"\xff\xfe",
+    b"\xe9",
+    b"#",
+    b"%",
+    b"-",
+    b"1e999",
+    b"NaN",
+    b"inf",
+    b"1,5",
+    b"1 234,5",
+    b"0x10",
+    b"9" * 400,
+    b"," * 3000,
+    b'"' * 500,
+    b"\n" * 500,
+    b"\x1b[2J",
     "\u202e\u00b0".encode(),
 ]
 
@@ -68,31 +94,37 @@ def mutated(rng, data, pieces=()):
             case 0 if at < len(data):
                 data[at] ^= 1 << rng.randrange(8)
             case 1 if at < len(data):
-                data[at:at + length] = bytes(rng.choice((0, 1, 0x7F, 0x80, 0xFF)) for _ in data[at:at + length])
+                data[at : at + length] = bytes(
+                    rng.choice((0, 1, 0x7F, 0x80, 0xFF)) for _ in data[at : at + length]
+                )
             case 2:
-                del data[at:at + length]
+                del data[at : at + length]
             case 3:
-                data[at:at] = data[at:at + length] * rng.choice((1, 2, 50))
+                data[at:at] = data[at : at + length] * rng.choice((1, 2, 50))
             case 4:
                 del data[at:]
             case _ if pieces:
                 data[at:at] = rng.choice(pieces)
             case _:
-                data[at:at + length] = rng.randbytes(min(length, len(data) - at))
+                data[at : at + length] = rng.randbytes(min(length, len(data) - at))
     return bytes(data)
 
 
 def over(rng, name, x, y):
     """A command over the table `name` with these columns."""
     columns = ["--input", x, "--output", y]
-    return rng.choice((
-        Case(["simulate", "model.json", name, "--input", x, "-o", "out.csv"], "out.csv"),
-        Case(["invert", "model.json", name, "--target", y, "-o", "out.csv"], "out.csv"),
-        Case(["prepare", name, *columns, "-o", "out.csv"], "out.csv"),
-        Case(["evaluate", "model.json", name, *columns, "--json"]),
-        Case(["inspect", name, "--json"]),
-        Case(["fit", name, *columns, "--levels", "5", "--repair", "-o", "out.json"], "out.json"),
-    ))
+    return rng.choice(
+        (
+            Case(["simulate", "model.json", name, "--input", x, "-o", "out.csv"], "out.csv"),
+            Case(["invert", "model.json", name, "--target", y, "-o", "out.csv"], "out.csv"),
+            Case(["prepare", name, *columns, "-o", "out.csv"], "out.csv"),
+            Case(["evaluate", "model.json", name, *columns, "--json"]),
+            Case(["inspect", name, "--json"]),
+            Case(
+                ["fit", name, *columns, "--levels", "5", "--repair", "-o", "out.json"], "out.json"
+            ),
+        )
+    )
 
 
 def text(rng):
@@ -115,8 +147,32 @@ def binary(*names):
 
 
 WRONG = [
-    None, True, "", "NaN", "Infinity", "1e999", -1, 0, 1, 0.5, 2**31, 2**53 + 1, 2**64, -2**63, 1e308, 5e-324, [], {},
-    [None], [[]], "\u0000", "../../x", "x" * 100_000, [1e308] * 15, [-1.0] * 15, list(range(100_000)),
+    None,
+    True,
+    "",
+    "NaN",
+    "Infinity",
+    "1e999",
+    -1,
+    0,
+    1,
+    0.5,
+    2**31,
+    2**53 + 1,
+    2**64,
+    -(2**63),
+    1e308,
+    5e-324,
+    [],
+    {},
+    [None],
+    [[]],
+    "\u0000",
+    "../../x",
+    "x" * 100_000,
+    [1e308] * 15,
+    [-1.0] * 15,
+    list(range(100_000)),
 ]
 
 
@@ -132,7 +188,7 @@ def places(value, at=()):
 
 
 def replaced(value, at, other):
-    """`value` with what stands `at` a place replaced by `other`, or left out where that is `...`."""
+    """`value` with the entry `at` a path replaced by `other`, or left out if that is `...`."""
     if not at:
         return other
     value = value.copy()
@@ -144,31 +200,80 @@ def replaced(value, at, other):
 
 
 def model_files(rng):
-    """Each field of a model file left out, named otherwise, and wrong in every way; then texts that are cut or mutated."""
+    """Model files: each field left out, renamed, and with every wrong value; then mutated texts."""
     whole = model("inverse-mkp-5-negative")
     whole |= {"input": {"name": "a", "unit": "b"}}
     parts = [{"weights": whole["weights"], "offset": offset} for offset in (0.0, 1.0)]
     whole["load"] = {"min": 0.0, "max": 1.0, "parts": parts}
-    body = model() | {"thermal": {"kind": "first-order", "gain": 1.0, "tau_heating": 2.0, "tau_cooling": 3.0}}
-    texts = [json.dumps(replaced(whole, at, other))
-             for whole in (whole, body) for at in places(whole) if at for other in (..., *WRONG)]
+    body = model() | {
+        "thermal": {"kind": "first-order", "gain": 1.0, "tau_heating": 2.0, "tau_cooling": 3.0}
+    }
+    texts = [
+        json.dumps(replaced(whole, at, other))
+        for whole in (whole, body)
+        for at in places(whole)
+        if at
+        for other in (..., *WRONG)
+    ]
     rng.shuffle(texts)
     while True:
-        given = texts.pop().encode() if texts else mutated(rng, json.dumps(model()).encode(), PIECES)
-        case = rng.choice((
-            Case(["simulate", "given.json", "table.csv", "--input", "temperature", "-o", "out.csv"], "out.csv"),
-            Case(["invert", "given.json", "table.csv", "--target", "displacement", "-o", "out.csv"], "out.csv"),
-            Case(["inspect", "given.json", "--json"]),
-            Case(["export", "c", "given.json", "-o", "out"], "out"),
-        ))
+        given = (
+            texts.pop().encode() if texts else mutated(rng, json.dumps(model()).encode(), PIECES)
+        )
+        case = rng.choice(
+            (
+                Case(
+                    [
+                        "simulate",
+                        "given.json",
+                        "table.csv",
+                        "--input",
+                        "temperature",
+                        "-o",
+                        "out.csv",
+                    ],
+                    "out.csv",
+                ),
+                Case(
+                    [
+                        "invert",
+                        "given.json",
+                        "table.csv",
+                        "--target",
+                        "displacement",
+                        "-o",
+                        "out.csv",
+                    ],
+                    "out.csv",
+                ),
+                Case(["inspect", "given.json", "--json"]),
+                Case(["export", "c", "given.json", "-o", "out"], "out"),
+            )
+        )
         case.set_up = files(given_json=given, table_csv=recording())
         yield case
 
 
 def scenarios(rng):
-    """Each line of each built-in scenario, cut to two short runs, left out, doubled or with a wrong value."""
-    wrong = ["-1", "0", "1e9", "1e308", "5e-324", "nan", "inf", "-inf", '""', '"x"', "[]", "[1]", "{}", "true",
-             "9223372036854775807", "1979-05-27"]
+    """Built-in scenarios, two short runs: each line left out, doubled or with a wrong value."""
+    wrong = [
+        "-1",
+        "0",
+        "1e9",
+        "1e308",
+        "5e-324",
+        "nan",
+        "inf",
+        "-inf",
+        '""',
+        '"x"',
+        "[]",
+        "[1]",
+        "{}",
+        "true",
+        "9223372036854775807",
+        "1979-05-27",
+    ]
     while True:
         lines = rng.choice(sorted(SCENARIOS.glob("*.toml"))).read_text()
         lines = re.sub(r"(?m)^seeds = .*", "seeds = 1", lines)
@@ -185,20 +290,57 @@ def scenarios(rng):
 
 def options(hysteron):
     """The subcommands with the options that their help tells."""
+
     def help_of(*words):
         return subprocess.run([hysteron, *words, "--help"], capture_output=True, text=True).stdout
 
-    names = re.findall(r"(?m)^  ([a-z]+) ", help_of().partition("Commands:")[2].partition("Options:")[0])
-    return {name: sorted(set(re.findall(r"--[a-z][a-z-]+", help_of(name)))) for name in names if name != "help"}
+    names = re.findall(
+        r"(?m)^  ([a-z]+) ", help_of().partition("Commands:")[2].partition("Options:")[0]
+    )
+    return {
+        name: sorted(set(re.findall(r"--[a-z][a-z-]+", help_of(name))))
+        for name in names
+        if name != "help"
+    }
 
 
 def arguments(hysteron):
     """Subcommands with any of their options and words, in any order."""
     known = options(hysteron)
-    words = ["model.json", "table.csv", "nothing.csv", "-", "--", "", ".", "-1", "0", "1", "5", "20,80", "80,20", "nan", "inf",
-             "1e999", "auto", "off", "on", "temperature", "displacement", "time", "x" * 5000, "\u00b0", "mkp", "relay",
-             "4294967296", "99999999999999999999", ",", "1,2,3"]
-    usual = "model.json table.csv --input temperature --output displacement --target displacement".split()
+    words = [
+        "model.json",
+        "table.csv",
+        "nothing.csv",
+        "-",
+        "--",
+        "",
+        ".",
+        "-1",
+        "0",
+        "1",
+        "5",
+        "20,80",
+        "80,20",
+        "nan",
+        "inf",
+        "1e999",
+        "auto",
+        "off",
+        "on",
+        "temperature",
+        "displacement",
+        "time",
+        "x" * 5000,
+        "\u00b0",
+        "mkp",
+        "relay",
+        "4294967296",
+        "99999999999999999999",
+        ",",
+        "1,2,3",
+    ]
+    usual = "model.json table.csv --input temperature --output displacement".split()
+    usual += ["--target", "displacement"]
 
     def generate(rng):
         while True:
@@ -244,8 +386,20 @@ def situations(rng):
         (folder / name).symlink_to(to)
 
     wrong_places = [
-        *((place, lay()) for place in ("table.csv", ".", "", "no/such/folder/out.csv", "table.csv/out.csv", "out.xlsx",
-                                       "out.mat", "out.parquet", "x" * 300 + ".csv")),
+        *(
+            (place, lay())
+            for place in (
+                "table.csv",
+                ".",
+                "",
+                "no/such/folder/out.csv",
+                "table.csv/out.csv",
+                "out.xlsx",
+                "out.mat",
+                "out.parquet",
+                "x" * 300 + ".csv",
+            )
+        ),
         ("out.csv", lay(lambda f: put(f, "out.csv"))),
         ("out", lay(lambda f: put(f, "out"))),
         ("out.csv", lay(lambda f: (f / "out.csv").mkdir())),
@@ -264,7 +418,14 @@ def situations(rng):
                 yield Case(write[:-1], None, lay(), stdout="/dev/full")
             case 2:
                 gone = rng.choice(("table.csv", "model.json"))
-                becomes = rng.choice((lambda p: p.mkdir(), lambda p: p.touch(), lambda p: p.symlink_to(p.name), lambda p: None))
+                becomes = rng.choice(
+                    (
+                        lambda p: p.mkdir(),
+                        lambda p: p.touch(),
+                        lambda p: p.symlink_to(p.name),
+                        lambda p: None,
+                    )
+                )
 
                 def change(folder, gone=gone, becomes=becomes):
                     (folder / gone).unlink()

@@ -1,10 +1,17 @@
 #!/usr/bin/env python3
-"""Runs hostile cases through the command, and prints what went wrong as a table: class, cases, faults.
+"""Runs hostile cases through the command, and prints a table: class, cases, faults.
 
-    fuzz/hostile.py [CASES] [--seed N] [--hysteron COMMAND]     by default 200 of each class, target/release/hysteron
+    fuzz/hostile.py [CASES] [--seed N] [--hysteron COMMAND]
 
-A fault is a panic, a signal, more than SECONDS or MEMORY, an exit code that there is not, a failure without words or with
-something left behind, a file that was there and changed without being asked for, or success with a result that is not whole.
+By default there are 200 cases of each class, and the command is target/release/hysteron.
+
+A fault is one of these:
+
+- a panic, a signal, more than SECONDS or MEMORY, an exit code that does not exist;
+- a failure without a message, or one that leaves something behind;
+- another file changed;
+- success with a result that is not whole.
+
 Calls of the core and of the C interface are drawn by their fuzz targets (fuzz/run builds them).
 """
 
@@ -30,13 +37,15 @@ TARGETS = ("core_walk", "inverse", "c_calls")
 
 
 def limited(limits):
-    """What the command starts with: a budget of memory, and a disk that is full where the case says so."""
+    """Limits of the process: its memory, and a full disk where the case says so."""
+
     def start():
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if "file_size" in limits:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (limits["file_size"],) * 2)
+
     return start
 
 
@@ -45,7 +54,13 @@ def contents(folder):
     found = {}
     for path in sorted(folder.rglob("*")):
         name = str(path.relative_to(folder))
-        found[name] = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else None
+        found[name] = (
+            os.readlink(path)
+            if path.is_symlink()
+            else path.read_bytes()
+            if path.is_file()
+            else None
+        )
     return found
 
 
@@ -92,7 +107,9 @@ def fault(case, done, before, folder):
     if done.returncode == 0:
         if case.out and case.out not in new:
             return "success, and no result"
-        broken = [not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None]
+        broken = [
+            not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None
+        ]
         return next(filter(None, broken), None)
     if not done.stderr.strip():
         return "a failure without words"
@@ -108,8 +125,15 @@ def run(hysteron, case):
         with open(case.stdout or os.devnull, "wb") as stdout:
             try:
                 done = subprocess.run(
-                    [hysteron, *case.arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=stdout,
-                    stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=limited(case.limits), check=False)
+                    [hysteron, *case.arguments],
+                    cwd=folder,
+                    stdin=subprocess.DEVNULL,
+                    stdout=stdout,
+                    stderr=subprocess.PIPE,
+                    timeout=SECONDS,
+                    preexec_fn=limited(case.limits),
+                    check=False,
+                )
             except subprocess.TimeoutExpired:
                 return f"more than {SECONDS} s"
         return fault(case, done, before, folder)
@@ -125,7 +149,10 @@ def through_the_command(title, generate, count, seed, hysteron):
         problem = run(hysteron, case)
         if problem:
             if not faults[problem]:
-                print(f"{title}: {problem}: {' '.join(case.arguments)[:200]} {case.limits or ''}", file=sys.stderr)
+                print(
+                    f"{title}: {problem}: {' '.join(case.arguments)[:200]} {case.limits or ''}",
+                    file=sys.stderr,
+                )
             faults[problem] += 1
     return title, count, faults.total()
 
@@ -142,7 +169,11 @@ def through_a_target(name, count, seed, target):
         flags = [f"-runs={count}", f"-seed={seed + 1}", f"-artifact_prefix={artifacts}/"]
         done = subprocess.run(
             [found[0], *flags, cases.ROOT / f"fuzz/corpus/{name}"],
-            capture_output=True, text=True, cwd=artifacts, check=False)
+            capture_output=True,
+            text=True,
+            cwd=artifacts,
+            check=False,
+        )
     if done.returncode != 0:
         print(f"{name}: {done.stderr[-2000:]}", file=sys.stderr)
     executions = re.search(r"Done (\d+) runs", done.stderr)
@@ -162,15 +193,29 @@ def main():
     if not hysteron.exists():
         sys.exit(f"{hysteron} is missing: cargo build --release, or name the command")
     fixtures = {
-        "Parquet": ("none.parquet", "snappy.parquet", "gzip.parquet", "zstd.parquet", "lz4.parquet"),
-        "MAT v5": ("v5.mat",), "MAT v7": ("v7.mat",), "MAT v7.3": ("v73.mat",),
+        "Parquet": (
+            "none.parquet",
+            "snappy.parquet",
+            "gzip.parquet",
+            "zstd.parquet",
+            "lz4.parquet",
+        ),
+        "MAT v5": ("v5.mat",),
+        "MAT v7": ("v7.mat",),
+        "MAT v7.3": ("v73.mat",),
     }
     classes = {
-        "delimited text": cases.text, **{title: cases.binary(*names) for title, names in fixtures.items()},
-        "model files": cases.model_files, "scenarios": cases.scenarios,
-        "arguments": cases.arguments(hysteron), "file system": cases.situations,
+        "delimited text": cases.text,
+        **{title: cases.binary(*names) for title, names in fixtures.items()},
+        "model files": cases.model_files,
+        "scenarios": cases.scenarios,
+        "arguments": cases.arguments(hysteron),
+        "file system": cases.situations,
     }
-    rows = [through_the_command(title, generate, count, seed, hysteron) for title, generate in classes.items()]
+    rows = [
+        through_the_command(title, generate, count, seed, hysteron)
+        for title, generate in classes.items()
+    ]
     # A call in the same process is a thousand times as quick.
     rows += [through_a_target(name, 1000 * count, seed, target) for name in TARGETS]
     print("| class | cases | faults |\n| --- | ---: | ---: |")

@@ -31,21 +31,26 @@ static void raise(int32_t status) {
 /* ---- Arguments ---- */
 
 char *text(const mxArray *value, const char *name) {
-    /* Not mxArrayToString: what that gives, Octave does not free. A character takes at most 4 bytes. */
+    /* Not mxArrayToString: Octave does not free its result. A character takes at most 4 bytes. */
     size_t count = mxGetNumberOfElements(value), room = 4 * count + 1;
     char *found = mxIsChar(value) && mxGetM(value) <= 1 ? mxCalloc(room, 1) : NULL;
-    if (found == NULL || (count > 0 && mxGetString(value, found, room) != 0) || strlen(found) < count) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be a text in one row, without a zero in it", name);
+    int fails = found == NULL || (count > 0 && mxGetString(value, found, room) != 0);
+    if (fails || strlen(found) < count) {
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "`%s` has to be a text in one row, without a zero in it", name);
     }
     return found;
 }
 
 static const mxArray *reals(const mxArray *value, const char *name) {
     mxArray *converted, *given = (mxArray *)value;
+    int other = mxIsComplex(value) || mxIsSparse(value);
     /* Of 64 bits, it is likelier a block than a signal, and a double cannot hold it. */
-    if (!mxIsNumeric(value) || mxIsComplex(value) || mxIsSparse(value) || mxIsUint64(value) || mxIsInt64(value)) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has to be an array of real numbers, not %s%s", name,
-                          mxIsComplex(value) ? "complex " : mxIsSparse(value) ? "sparse " : "", mxGetClassName(value));
+    if (!mxIsNumeric(value) || other || mxIsUint64(value) || mxIsInt64(value)) {
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "`%s` has to be an array of real numbers, not %s%s", name,
+                          mxIsComplex(value) ? "complex " : mxIsSparse(value) ? "sparse " : "",
+                          mxGetClassName(value));
     }
     if (mxIsDouble(value)) {
         return value;
@@ -60,8 +65,9 @@ const mxArray *samples(const mxArray *value, const char *name) {
     size_t n, count = mxGetNumberOfElements(array);
     for (n = 0; n < count; n++) {
         if (!(x[n] - x[n] == 0.0)) {
-            mexErrMsgIdAndTxt("hysteron:notFinite", "`%s(%.0f)` is %s: every sample has to be a finite number", name,
-                              (double)n + 1.0, isnan(x[n]) ? "NaN" : "infinite");
+            mexErrMsgIdAndTxt("hysteron:notFinite",
+                              "`%s(%.0f)` is %s: every sample has to be a finite number",
+                              name, (double)n + 1.0, isnan(x[n]) ? "NaN" : "infinite");
         }
     }
     return array;
@@ -75,14 +81,16 @@ double number(const mxArray *value, const char *name) {
     return *mxGetPr(array);
 }
 
-void options(int nrhs, const mxArray *prhs[], int from, const char *const names[], const mxArray *values[], int count) {
+void options(int nrhs, const mxArray *prhs[], int from, const char *const names[],
+             const mxArray *values[], int count) {
     int n, option;
     for (n = from; n < nrhs; n += 2) {
         const char *name = text(prhs[n], "option");
         for (option = 0; option < count && strcmp(name, names[option]) != 0; option++) {
         }
         if (option == count) {
-            mexErrMsgIdAndTxt("hysteron:argument", "there is no option `%s` here: see the help", name);
+            mexErrMsgIdAndTxt("hysteron:argument", "there is no option `%s` here: see the help",
+                              name);
         }
         if (n + 1 == nrhs) {
             mexErrMsgIdAndTxt("hysteron:argument", "the option `%s` needs a value", name);
@@ -92,7 +100,8 @@ void options(int nrhs, const mxArray *prhs[], int from, const char *const names[
 }
 
 mxArray *shaped_like(const mxArray *other, mxClassID type) {
-    return mxCreateNumericArray(mxGetNumberOfDimensions(other), mxGetDimensions(other), type, mxREAL);
+    return mxCreateNumericArray(mxGetNumberOfDimensions(other), mxGetDimensions(other), type,
+                                mxREAL);
 }
 
 /* ---- Blocks ---- */
@@ -115,7 +124,8 @@ static void close_all(void) {
     }
 }
 
-/* Numbers begin anew when the function is cleared and loaded again; a block of before must not be taken for a new one. */
+/* Numbers begin anew when the function is cleared and loaded again. They begin elsewhere then: an
+ * old block must not be taken for a new one. */
 static uint64_t next_id(void) {
     static uint64_t last;
     if (last == 0) {
@@ -165,7 +175,8 @@ static struct block *find(const mxArray *value) {
         }
     }
     if (block == NULL) {
-        mexErrMsgIdAndTxt("hysteron:block", "this is no open block of this function: open one with 'open', or name a model file");
+        mexErrMsgIdAndTxt("hysteron:block", "this is no open block of this function: "
+                                            "open one with 'open', or name a model file");
     }
     return block;
 }
@@ -200,7 +211,7 @@ static mxArray *saved(const struct block *block) {
     mxArray *result = mxCreateStructMatrix(1, 1, 2, names), *points;
     double input, none;
     size_t count;
-    hysteron_state_save(block->state, &none, 0, &count, &input); /* too small for any: tells how many */
+    hysteron_state_save(block->state, &none, 0, &count, &input); /* no room: tells how many */
     points = mxCreateDoubleMatrix(1, count, mxREAL);
     raise(hysteron_state_save(block->state, mxGetPr(points), count, &count, &input));
     mxSetField(result, 0, "turning_points", points);
@@ -211,11 +222,14 @@ static mxArray *saved(const struct block *block) {
 static void restore(const struct block *block, const mxArray *from) {
     const mxArray *points, *input;
     if (!mxIsStruct(from) || mxGetNumberOfElements(from) != 1 ||
-        (points = mxGetField(from, 0, "turning_points")) == NULL || (input = mxGetField(from, 0, "input")) == NULL) {
-        mexErrMsgIdAndTxt("hysteron:argument", "what to restore has to be a struct that 'save' gave");
+        (points = mxGetField(from, 0, "turning_points")) == NULL ||
+        (input = mxGetField(from, 0, "input")) == NULL) {
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "what to restore has to be a struct that 'save' gave");
     }
     points = samples(points, "turning_points");
-    raise(hysteron_state_restore(block->state, mxGetPr(points), mxGetNumberOfElements(points), number(input, "input")));
+    raise(hysteron_state_restore(block->state, mxGetPr(points), mxGetNumberOfElements(points),
+                                 number(input, "input")));
 }
 
 static mxArray *quantity(uint64_t model, int32_t which) {
@@ -226,10 +240,12 @@ static mxArray *quantity(uint64_t model, int32_t which) {
 }
 
 static mxArray *info(const struct block *block) {
-    static const char *names[] = {"operator", "levels", "range",  "input",  "output",
-                                  "offset",   "sign",   "output_off", "output_on", "noise_band"};
+    static const char *names[] = {"operator", "levels", "range",      "input",     "output",
+                                  "offset",   "sign",   "output_off", "output_on",
+                                  "usual_tolerance"};
     static const char *operators[] = {"mkp", "kp", "relay"};
-    mxArray *result = mxCreateStructMatrix(1, 1, 10, names), *range = mxCreateDoubleMatrix(1, 2, mxREAL);
+    mxArray *result = mxCreateStructMatrix(1, 1, 10, names);
+    mxArray *range = mxCreateDoubleMatrix(1, 2, mxREAL);
     struct HysteronModelInfo info;
     raise(hysteron_model_info(block->model, &info));
     mxGetPr(range)[0] = info.min;
@@ -243,7 +259,7 @@ static mxArray *info(const struct block *block) {
     mxSetField(result, 0, "sign", mxCreateDoubleScalar(info.sign));
     mxSetField(result, 0, "output_off", mxCreateDoubleScalar(info.output_off));
     mxSetField(result, 0, "output_on", mxCreateDoubleScalar(info.output_on));
-    mxSetField(result, 0, "noise_band", mxCreateDoubleScalar(info.noise_band));
+    mxSetField(result, 0, "usual_tolerance", mxCreateDoubleScalar(info.usual_tolerance));
     return result;
 }
 
@@ -251,7 +267,8 @@ static mxArray *info(const struct block *block) {
 static const struct {
     const char *word;
     int least, most;
-} COMMANDS[] = {{"open", 1, 3}, {"reset", 1, 2}, {"save", 1, 1}, {"restore", 2, 2}, {"info", 1, 1}, {"close", 1, 1}};
+} COMMANDS[] = {{"open", 1, 3},    {"reset", 1, 2}, {"save", 1, 1},
+                {"restore", 2, 2}, {"info", 1, 1},  {"close", 1, 1}};
 
 enum { OPEN, RESET, SAVE, RESTORE, INFO, CLOSE, COUNT };
 
@@ -262,8 +279,9 @@ int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs
     struct block *block;
     int which;
     if (nrhs < 2) {
-        mexErrMsgIdAndTxt("hysteron:argument", "%s needs a model and samples, or a command and a block: see help %s", function,
-                          function);
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "%s needs a model and samples, or a command and a block: see help %s",
+                          function, function);
     }
     if (!mxIsChar(prhs[0])) {
         return 0;
@@ -275,8 +293,8 @@ int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs
         return 0;
     }
     if (nrhs - 1 < COMMANDS[which].least || nrhs - 1 > COMMANDS[which].most) {
-        mexErrMsgIdAndTxt("hysteron:argument", "'%s' takes %d to %d arguments: see help %s", word, COMMANDS[which].least,
-                          COMMANDS[which].most, function);
+        mexErrMsgIdAndTxt("hysteron:argument", "'%s' takes %d to %d arguments: see help %s", word,
+                          COMMANDS[which].least, COMMANDS[which].most, function);
     }
     if (which == OPEN) {
         options(nrhs, prhs, 2, names, &load, 1);
@@ -289,11 +307,12 @@ int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs
     block = which == INFO ? take(prhs[1], NULL) : find(prhs[1]);
     switch (which) {
     case RESET:
-        if (nrhs == 3 && strcmp(text(prhs[2], "start"), "on") != 0 && strcmp(text(prhs[2], "start"), "off") != 0) {
+        word = nrhs == 3 ? text(prhs[2], "start") : "off";
+        if (strcmp(word, "on") != 0 && strcmp(word, "off") != 0) {
             mexErrMsgIdAndTxt("hysteron:argument", "a block is reset to 'off' or 'on'");
         }
-        raise(nrhs == 3 && strcmp(text(prhs[2], "start"), "on") == 0 ? hysteron_state_saturate(block->state)
-                                                                     : hysteron_state_reset(block->state));
+        raise(strcmp(word, "on") == 0 ? hysteron_state_saturate(block->state)
+                                      : hysteron_state_reset(block->state));
         break;
     case SAVE: plhs[0] = saved(block); break;
     case RESTORE: restore(block, prhs[2]); break;

@@ -13,12 +13,12 @@ struct block {
     struct block *next;
 };
 
-/* Does what a call whose first argument is a word (`open`, `reset`, `save`, `restore`, `info`, `close`) asks for; says
- * whether it was one. `function` is the name that errors speak of. */
+/* Runs a call whose first argument is a command (`open`, `reset`, `save`, `restore`, `info`,
+ * `close`). Returns whether it was one. `function` is the name for messages. */
 int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs[]);
 
-/* The block that the first argument names: one that is open, or, of a model file, one made for this call. The latter takes
- * the option `load`. To be given back by `done`. */
+/* The block that the first argument names: an open one, or, for a model file, one made for this
+ * call, which takes the option `load`. Give it back with `done`. */
 struct block *take(const mxArray *first, const mxArray *load);
 
 /* Ends the use of a block: raises the error of `status`, if it is one. */
@@ -30,8 +30,10 @@ const mxArray *samples(const mxArray *value, const char *name);
 /* One real, finite number. */
 double number(const mxArray *value, const char *name);
 
-/* The options, in pairs of name and value from argument `from` on. `values` has a place for each of the `names`. */
-void options(int nrhs, const mxArray *prhs[], int from, const char *const names[], const mxArray *values[], int count);
+/* Reads options: pairs of name and value from argument `from` on. `values` has as many places as
+ * there are `names`, that is `count`. */
+void options(int nrhs, const mxArray *prhs[], int from, const char *const names[],
+             const mxArray *values[], int count);
 
 /* A text without a zero in it, which Octave and MATLAB free when the call ends. */
 char *text(const mxArray *value, const char *name);

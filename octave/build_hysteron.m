@@ -1,7 +1,7 @@
 % BUILD_HYSTERON  Build sf_MKP and sf_Inverse_MKP beside this file, with the compiler of `mex`.
 %
-%   BUILD_HYSTERON takes the C library of `cargo build --release -p hysteron-capi` from target/release.
-%   BUILD_HYSTERON(LIBRARY) takes the static library LIBRARY.
+%   BUILD_HYSTERON takes the C library of `cargo build --release -p hysteron-capi` from
+%   target/release. BUILD_HYSTERON(LIBRARY) takes the static library LIBRARY.
 function build_hysteron(library)
 here = fileparts(mfilename('fullpath'));
 crate = fullfile(fileparts(here), 'crates', 'hysteron-capi');
@@ -13,7 +13,8 @@ if nargin < 1
     end
 end
 if exist(library, 'file') ~= 2
-    error('hysteron:notBuilt', '%s is not there: run `cargo build --release -p hysteron-capi` first', library);
+    error('hysteron:notBuilt', ...
+        '%s is not there: run `cargo build --release -p hysteron-capi` first', library);
 end
 if ispc
     system_libraries = {'-lws2_32', '-luserenv', '-lntdll', '-lbcrypt', '-ladvapi32'};

@@ -1,13 +1,16 @@
 % CHAPTER  Replay the chapter's two simulation tests (its Fig. 9) and draw its Figs. 10 to 15.
 %
-%   CHAPTER(DEMO, FOLDER) takes model.json and recording-2.csv from the folder DEMO, which `hysteron demo -o DEMO` makes,
-%   sends the recorded temperature through sf_MKP and the recorded displacement through sf_Inverse_MKP, prints the errors
-%   and writes fig10.png to fig15.png into FOLDER. The chapter's own recording is not public: the demo's is simulated,
-%   and every figure says so.
+%   CHAPTER(DEMO, FOLDER) takes model.json and recording-2.csv from the folder DEMO, which
+%   `hysteron demo -o DEMO` makes. It sends the recorded temperature through sf_MKP and the recorded
+%   displacement through sf_Inverse_MKP, prints the errors and writes fig10.png to fig15.png into
+%   FOLDER. The chapter's own recording is not public: the demo's is simulated, and every figure
+%   says so.
 %
-%   CHAPTER(DEMO, FOLDER, JSON) also compares the errors with those that `hysteron demo --json` printed.
+%   CHAPTER(DEMO, FOLDER, JSON) also compares the errors with those that `hysteron demo --json`
+%   printed.
 %
-%   The chapter is "Hysteresis behaviour and modeling of SMA actuators", in Shape Memory Alloys, ed. C. Cismasiu, 2010.
+%   The chapter is "Hysteresis behaviour and modeling of SMA actuators", in Shape Memory Alloys, ed.
+%   C. Cismasiu, 2010.
 %
 %   See also SF_MKP, SF_INVERSE_MKP.
 function chapter(demo, folder, json)
@@ -15,11 +18,12 @@ model = fullfile(demo, 'model.json');
 recording = dlmread(fullfile(demo, 'recording-2.csv'), ',', 1, 0);
 [time, T, y] = deal(recording(:, 1), recording(:, 2), recording(:, 3));
 
-% Fig. 9(a): the model; Fig. 9(b): its inverse. Reversals of up to 1 % of the displacement's range are noise.
+% Fig. 9(a): the model; Fig. 9(b): its inverse. Reversals up to 1 % of the displacement's range are
+% noise.
 y_model = sf_MKP(model, T);
-band = 0.01 * (max(y) - min(y));
-T_hold = sf_Inverse_MKP(model, y, 'band', band);
-T_ahead = sf_Inverse_MKP(model, y, 'policy', 'anticipate', 'band', band);
+tolerance = 0.01 * (max(y) - min(y));
+T_hold = sf_Inverse_MKP(model, y, 'tolerance', tolerance);
+T_ahead = sf_Inverse_MKP(model, y, 'policy', 'anticipate', 'tolerance', tolerance);
 
 found = [errors(y_model, y); errors(T_hold, T); errors(T_ahead, T)];
 printf('simulated NiTi spring       RMSE   largest\n');
@@ -30,8 +34,9 @@ if nargin > 2
     expected = jsondecode(fileread(json));
     all = {expected.forward, expected.inverse_hold.all, expected.inverse_anticipate.all};
     expected = cell2mat(cellfun(@(part) [part.rmse part.max_abs], all, 'UniformOutput', false)');
-    % Sums in another order, and the range of a band rounded otherwise: a few digits of the last places.
-    assert(all_close(found, expected, 1e-9), 'chapter: other errors than those of hysteron demo');
+    % Sums in another order, and the tolerance rounded otherwise: the last digits differ.
+    assert(all_close(found, expected, 1e-9), ...
+        'chapter: other errors than those of hysteron demo');
     printf('as hysteron demo prints them\n');
 end
 
@@ -51,11 +56,13 @@ finish(folder, 11, {'recorded (simulated spring)', 'sf_MKP'});
 
 sheet('Modelled less recorded displacement', 'time (s)', 'discrepancy (mm)');
 bounds = [time([1 end]), time([1 end])];
-plot(time, y_model - y, 'color', lines.model, bounds, [0.5 -0.5; 0.5 -0.5], '--', 'color', [0.5 0.5 0.5]);
+plot(time, y_model - y, 'color', lines.model, ...
+    bounds, [0.5 -0.5; 0.5 -0.5], '--', 'color', [0.5 0.5 0.5]);
 finish(folder, 12, {'sf_MKP', 'bound of the chapter, 0.5 mm'});
 
 sheet('Modelled and recorded temperature over time', 'time (s)', ['temperature (' degC ')']);
-plot(time, T, 'color', lines.measured, time, T_hold, 'color', lines.model, time, T_ahead, 'color', lines.ahead);
+plot(time, T, 'color', lines.measured, time, T_hold, 'color', lines.model, ...
+    time, T_ahead, 'color', lines.ahead);
 policies = {'sf_Inverse_MKP, hold', 'sf_Inverse_MKP, anticipate'};
 finish(folder, 13, [{'recorded (simulated spring)'}, policies]);
 
@@ -67,9 +74,11 @@ finish(folder, 14, policies);
 [~, worst] = max(abs(T_hold - T));
 near = abs(time - time(worst)) <= 75;
 sheet('Close-up of the dead band', 'time (s)', ['temperature (' degC '), displacement (mm)']);
-plot(time(near), T(near), 'color', lines.measured, time(near), T_hold(near), 'color', lines.model, ...
-    time(near), T_ahead(near), 'color', lines.ahead, time(near), y(near), '--', 'color', lines.measured);
-finish(folder, 15, [{'recorded temperature (simulated spring)'}, policies, {'recorded displacement'}]);
+t = time(near);
+plot(t, T(near), 'color', lines.measured, t, T_hold(near), 'color', lines.model, ...
+    t, T_ahead(near), 'color', lines.ahead, t, y(near), '--', 'color', lines.measured);
+finish(folder, 15, ...
+    [{'recorded temperature (simulated spring)'}, policies, {'recorded displacement'}]);
 printf('figures 10 to 15 are in %s\n', folder);
 end
 
@@ -103,7 +112,8 @@ function finish(folder, number, names)
 legend(names, 'location', 'northeast', 'interpreter', 'none');
 axis tight;
 limits = ylim();
-ylim(limits + [-0.05 0.1 + 0.1 * numel(names)] * diff(limits)); % room for the legend above the curves
+% Room for the legend above the curves.
+ylim(limits + [-0.05 0.1 + 0.1 * numel(names)] * diff(limits));
 print(fullfile(folder, sprintf('fig%d.png', number)), '-dpng', '-r120');
 close();
 end

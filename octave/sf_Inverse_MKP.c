@@ -1,16 +1,17 @@
-/* The block sf_Inverse_MKP: displacement to temperature. What it does says sf_Inverse_MKP.m. */
+/* The block sf_Inverse_MKP: displacement to temperature. Its help is in sf_Inverse_MKP.m. */
 #include "block.h"
 #include <string.h>
 
-enum { POLICY, BAND, HEADING, LOAD, COUNT };
+enum { POLICY, TOLERANCE, HEADING, LOAD, COUNT };
 
-static const char *const NAMES[COUNT] = {"policy", "band", "heading", "load"};
+static const char *const NAMES[COUNT] = {"policy", "tolerance", "heading", "load"};
 
 /* Whether the policy is to anticipate. */
 static int anticipates(const mxArray *policy) {
     const char *word = policy == NULL ? "hold" : text(policy, "policy");
     if (strcmp(word, "hold") != 0 && strcmp(word, "anticipate") != 0) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`policy` is 'hold' or 'anticipate', not '%s'", word);
+        mexErrMsgIdAndTxt("hysteron:argument", "`policy` is 'hold' or 'anticipate', not '%s'",
+                          word);
     }
     return word[0] == 'a';
 }
@@ -20,12 +21,14 @@ static void given(const mxArray *value, int32_t *heading, size_t count) {
     const mxArray *array = samples(value, "heading");
     size_t n, length = mxGetNumberOfElements(array);
     if (length != 1 && length != count) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`heading` has %.0f numbers for %.0f targets", (double)length, (double)count);
+        mexErrMsgIdAndTxt("hysteron:argument", "`heading` has %.0f numbers for %.0f targets",
+                          (double)length, (double)count);
     }
     for (n = 0; n < count; n++) {
         double way = mxGetPr(array)[length == 1 ? 0 : n];
         if (way != -1.0 && way != 0.0 && way != 1.0) {
-            mexErrMsgIdAndTxt("hysteron:argument", "`heading(%.0f)` is %g: -1, 0 or 1 is needed", (double)n + 1.0, way);
+            mexErrMsgIdAndTxt("hysteron:argument", "`heading(%.0f)` is %g: -1, 0 or 1 is needed",
+                              (double)n + 1.0, way);
         }
         heading[n] = (int32_t)way;
     }
@@ -36,7 +39,7 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     int32_t *heading, *flags, status = HYSTERON_OK;
     struct HysteronModelInfo info;
     struct block *block;
-    double band = 0.0;
+    double tolerance = 0.0;
     int anticipate;
     size_t n, count;
     if (command("sf_Inverse_MKP", plhs, nrhs, prhs)) {
@@ -47,13 +50,19 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     count = mxGetNumberOfElements(target);
     anticipate = anticipates(values[POLICY]);
     if (values[HEADING] != NULL && values[POLICY] != NULL && !anticipate) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`heading` is for the policy 'anticipate', not for 'hold'");
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "`heading` is for the policy 'anticipate', not for 'hold'");
     }
     if (anticipate && values[HEADING] == NULL && count == 1 && !mxIsChar(prhs[0])) {
-        mexErrMsgIdAndTxt("hysteron:argument", "one target does not tell where the next one goes: give `heading`, 1 or -1");
+        mexErrMsgIdAndTxt("hysteron:argument",
+                          "one target does not tell where the next one goes: "
+                          "give `heading`, 1 or -1");
     }
-    if (values[BAND] != NULL && (band = number(values[BAND], "band")) < 0.0) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`band` is %g: 0 or more is needed", band);
+    if (values[TOLERANCE] != NULL) {
+        tolerance = number(values[TOLERANCE], "tolerance");
+    }
+    if (tolerance < 0.0) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`tolerance` is %g: 0 or more is needed", tolerance);
     }
     heading = mxCalloc(count + 1, sizeof *heading);
     flags = mxCalloc(count + 1, sizeof *flags);
@@ -65,14 +74,16 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
         plhs[1] = shaped_like(prhs[1], mxINT8_CLASS);
     }
     block = take(prhs[0], values[LOAD]);
-    if (anticipate && values[BAND] == NULL && (status = hysteron_model_info(block->model, &info)) == HYSTERON_OK) {
-        band = info.noise_band;
+    if (anticipate && values[TOLERANCE] == NULL) {
+        status = hysteron_model_info(block->model, &info);
+        tolerance = status == HYSTERON_OK ? info.usual_tolerance : 0.0;
     }
     if (status == HYSTERON_OK && anticipate && values[HEADING] == NULL) {
-        status = hysteron_headings(mxGetPr(target), count, band, heading);
+        status = hysteron_headings(mxGetPr(target), count, tolerance, heading);
     }
     if (status == HYSTERON_OK) {
-        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, band, mxGetPr(plhs[0]), flags, count);
+        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, tolerance,
+                                      mxGetPr(plhs[0]), flags, count);
     }
     for (n = 0; n < count && nlhs > 1; n++) {
         ((int8_t *)mxGetData(plhs[1]))[n] = (int8_t)flags[n];

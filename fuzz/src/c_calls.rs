@@ -201,9 +201,9 @@ impl User {
                 let (state, count) = (self.handle(handle), a.min(b).min(c).min(d));
                 hysteron_inverse_run(state, target, heading, tolerance.get(), to, status, count)
             },
-            Call::Headings(target, band, to) => unsafe {
+            Call::Headings(target, tolerance, to) => unsafe {
                 let ((target, a), (to, b)) = (self.room.doubles(target), self.room.ints(to));
-                hysteron_headings(target, a.min(b), band.get(), to)
+                hysteron_headings(target, a.min(b), tolerance.get(), to)
             },
             Call::Save(handle, points, input) => unsafe {
                 let ((points, capacity), (input, _)) =

@@ -1,4 +1,5 @@
-% What valgrind watches: every way through both functions, with errors on the way, and the functions cleared.
+% For valgrind: every path through both functions, with errors on the way. At the end the functions
+% are cleared.
 function memory()
 model = [tempname() '.json'];
 tidy = onCleanup(@() delete(model));
@@ -10,7 +11,8 @@ for round = 1:2
         feval(call, block, [12 13 11.5]);
         feval(call, 'restore', block, feval(call, 'save', block));
         feval(call, 'info', model);
-        wrong = {{block, NaN}, {'/no/such/model.json', 1}, {model, 1, 'load', 2}, {model, 1, 'lode', 2}, {block + 1, 1}};
+        wrong = {{block, NaN}, {'/no/such/model.json', 1}, {model, 1, 'load', 2}, ...
+            {model, 1, 'lode', 2}, {block + 1, 1}};
         for k = 1:numel(wrong)
             try
                 feval(call, wrong{k}{:});
@@ -20,7 +22,7 @@ for round = 1:2
             end
         end
     end
-    sf_Inverse_MKP(model, [12 13 11.5], 'policy', 'anticipate', 'band', 0.1);
+    sf_Inverse_MKP(model, [12 13 11.5], 'policy', 'anticipate', 'tolerance', 0.1);
     clear sf_MKP sf_Inverse_MKP % one block of each is still open
 end
 printf('memory: done\n');

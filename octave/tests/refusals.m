@@ -28,8 +28,8 @@ refused(argument, @() sf_MKP('restore', block, struct('input', 1)));
 refused(argument, @() sf_MKP('open', ['ab'; 'cd']));
 refused(argument, @() sf_Inverse_MKP(model, 12, 'policy', 'wait'));
 refused(argument, @() sf_Inverse_MKP(model, 12, 'policy', 3));
-refused(argument, @() sf_Inverse_MKP(model, 12, 'band', -1));
-refused(argument, @() sf_Inverse_MKP(model, 12, 'band', [1 2]));
+refused(argument, @() sf_Inverse_MKP(model, 12, 'tolerance', -1));
+refused(argument, @() sf_Inverse_MKP(model, 12, 'tolerance', [1 2]));
 refused(argument, @() sf_Inverse_MKP(model, [12 13], 'heading', [1 1 1]));
 refused(argument, @() sf_Inverse_MKP(model, [12 13], 'heading', [1 0.5]));
 refused(argument, @() sf_Inverse_MKP(model, [12 13], 'policy', 'hold', 'heading', [1 1]));
@@ -40,7 +40,7 @@ refused(argument, @() sf_MKP([model char(0) 'x'], 50));
 refused('hysteron:notFinite', @() sf_MKP(block, [50 NaN]), 'input(2)');
 refused('hysteron:notFinite', @() sf_MKP(block, [50 60; -Inf 70]), 'input(2)');
 refused('hysteron:notFinite', @() sf_Inverse_MKP(inverse, [12 Inf]), 'target(2)');
-refused('hysteron:notFinite', @() sf_Inverse_MKP(inverse, 12, 'band', NaN), 'band');
+refused('hysteron:notFinite', @() sf_Inverse_MKP(inverse, 12, 'tolerance', NaN), 'tolerance');
 refused('hysteron:block', @() sf_MKP(uint64(0), 1));
 refused('hysteron:block', @() sf_MKP(uint64([1 2]), 1));
 refused('hysteron:block', @() sf_MKP(double(block), 1));
@@ -51,15 +51,18 @@ refused('hysteron:block', @() sf_MKP('reset', model));
 refused('hysteron:file', @() sf_MKP('/no/such/model.json', 1));
 refused('hysteron:file', @() sf_MKP('', 1));
 refused('hysteron:load', @() sf_MKP(model, 1, 'load', 200));
-refused('hysteron:turningPoints', @() sf_MKP('restore', block, struct('turning_points', [1 2 3], 'input', 1)));
-refused('hysteron:notFinite', @() sf_MKP('restore', block, struct('turning_points', [1 NaN], 'input', 1)));
+no_nest = struct('turning_points', [1 2 3], 'input', 1);
+refused('hysteron:turningPoints', @() sf_MKP('restore', block, no_nest));
+not_finite = struct('turning_points', [1 NaN], 'input', 1);
+refused('hysteron:notFinite', @() sf_MKP('restore', block, not_finite));
 
 text = fileread(model);
 for length = [0, 1, 40, numel(text) - 2]
     write_text(bad, text(1:length));
     refused('hysteron:modelFile', @() sf_MKP(bad, 1));
 end
-thermal = '"thermal": {"kind": "first-order", "gain": 1, "tau_heating": 1, "tau_cooling": 1}, "weights"';
+thermal = ['"thermal": {"kind": "first-order", "gain": 1, ' ...
+    '"tau_heating": 1, "tau_cooling": 1}, "weights"'];
 write_text(bad, strrep(text, '"weights"', thermal));
 refused('hysteron:thermal', @() sf_MKP(bad, 1), 'thermal body');
 write_model(bad, '[1, 0.5, 1, 0, 0.5]');

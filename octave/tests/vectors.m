@@ -1,4 +1,5 @@
-% Every vector through both functions: whole signals, steps, and a state saved and restored in mid-run.
+% Every vector through both functions: whole signals, single steps, and a state saved and restored
+% in the middle of a run.
 function vectors()
 folder = fullfile(fileparts(mfilename('fullpath')), '..', '..', 'vectors');
 files = dir(fullfile(folder, '*.json'));
@@ -22,7 +23,8 @@ for n = 1:numel(files)
             name = 'sf_MKP';
         else
             [given, wanted, tolerance] = deal(run.target, run.input, vector.tolerance.input);
-            call = @(block, at) sf_Inverse_MKP(block, given(at), 'heading', run.heading(at), 'band', run.tolerance);
+            call = @(block, at) sf_Inverse_MKP(block, given(at), ...
+                'heading', run.heading(at), 'tolerance', run.tolerance);
             name = 'sf_Inverse_MKP';
             [~, status] = call(model, 1:numel(given));
             assert(isequal(double(status), run.status));

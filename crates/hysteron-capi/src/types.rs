@@ -126,7 +126,10 @@ pub struct HysteronLearning {
     pub clipped: i32,
 }
 
-/// Writes the default options of `method`.
+/// Fills in the usual options, of the method that `method` names.
+///
+/// Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set them
+/// in the output's unit; `docs/options.md` says how the library chooses them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptation_default(
     method: i32,
@@ -141,10 +144,10 @@ pub unsafe extern "C" fn hysteron_adaptation_default(
             trial: usual.trial,
             gain: 0.3,
             span: 1.0,
-            forgetting: 0.99,
+            forgetting: 0.999,
             noise: 0.01,
             spread: 1.0,
-            correlation: 0.0,
+            correlation: 1.0,
             offset_share: usual.offset_share,
             dead_zone: usual.dead_zone,
             leakage: usual.leakage,

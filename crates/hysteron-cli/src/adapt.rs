@@ -16,7 +16,8 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         }
     }
     let model = Model::read(&args.model)?;
-    // The model begins before the table and is whole after it: where one cannot be written, neither is there.
+    // The model begins before the table and is whole after it: where one cannot be written, neither
+    // is there.
     let inputs = [args.model.as_path(), &args.data];
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let table = args.table.as_ref().map(|table| {
@@ -61,8 +62,8 @@ fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
     let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
     format!(
         "{}: the model is not written, for it ended worse: over the last third it erred by {} \
-         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of --table, \
-         try another --method, or keep the model as it is; --force writes it",
+         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of \
+         --table, try another --method, or keep the model as it is; --force writes it",
         args.out.display(),
         error(late.adapting),
         error(late.fixed)
@@ -113,7 +114,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let drift = &adapted.drift;
     let mut lines = vec![
         format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} readings rejected, {} times rolled back",
+            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
+             readings rejected, {} times rolled back",
             match refused {
                 true => "not written".into(),
                 false => args.out.display().to_string(),
@@ -126,7 +128,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
         ),
         text::table(&rows),
         format!(
-            "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of their sum",
+            "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
+             their sum",
             text::number(drift.weights.0),
             text::with_unit(drift.weights.1, output),
             text::number(drift.offset.0),
@@ -136,7 +139,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     ];
     if adapted.probation > 0 {
         lines.push(format!(
-            "the last {} samples are on probation, as none judge them: the model has nothing of them",
+            "the last {} samples are on probation, as none judge them: the model has nothing of \
+             them",
             adapted.probation
         ));
     }

@@ -105,7 +105,11 @@ fn to_json(design: &Design, profile: Option<&Path>) -> Value {
         "samples": design.time.len(),
         "duration_s": design.duration_s(),
         "full_duration_s": design.full_duration_s,
-        "plane": {"min": design.plane.min(), "max": design.plane.max(), "levels": design.plane.levels()},
+        "plane": {
+            "min": design.plane.min(),
+            "max": design.plane.max(),
+            "levels": design.plane.levels(),
+        },
         "operators": design.plane.operators(),
         "excitation": excitation(&design.excitation),
         "recorded": design.recorded.as_ref().map(excitation),
@@ -124,7 +128,8 @@ fn summary(design: &Design, args: &args::Design) -> String {
     }
     if design.legs.is_empty() {
         lines.push(format!(
-            "nothing is missing: the recordings determine all {count} operators, and no profile was written"
+            "nothing is missing: the recordings determine all {count} operators, and no profile \
+             was written"
         ));
         return lines.join("\n");
     }

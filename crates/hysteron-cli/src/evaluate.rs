@@ -50,7 +50,14 @@ pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
     }
     match &evaluation.inverse {
         Ok(inverse) => {
-            let parts = |run: &InverseRun| json!({"all": run.all, "moving": run.moving, "dead_band": run.dead_band, "out_of_reach": run.out_of_reach});
+            let parts = |run: &InverseRun| {
+                json!({
+                    "all": run.all,
+                    "moving": run.moving,
+                    "dead_band": run.dead_band,
+                    "out_of_reach": run.out_of_reach,
+                })
+            };
             object["inverse"] = json!(inverse.hold.all);
             object["inverse_hold"] = parts(&inverse.hold);
             object["inverse_anticipate"] = parts(&inverse.anticipate);

@@ -32,7 +32,11 @@ fn c(args: &args::ExportC) -> Result<()> {
             "levels": export.levels,
             "inverse": export.inverse,
             "flash_bytes": memory.constants,
-            "ram_bytes": {"state": memory.state, "turns": memory.turns, "adaptation": memory.adaptation},
+            "ram_bytes": {
+                "state": memory.state,
+                "turns": memory.turns,
+                "adaptation": memory.adaptation,
+            },
             "worst_case": {
                 "turning_points_passed": worst.turning_points,
                 "step_loop": worst.step,
@@ -81,7 +85,8 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     } = fmu;
     if args.json.json {
         let object = json!({
-            "file": file, "name": name, "fmi": options.fmi.version(), "token": token, "bytes": bytes,
+            "file": file, "name": name, "fmi": options.fmi.version(),
+            "token": token, "bytes": bytes,
             "inputs": inputs, "outputs": outputs, "parameters": parameters,
         });
         return print(&object.to_string());

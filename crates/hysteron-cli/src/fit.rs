@@ -172,7 +172,8 @@ fn thermal_line(body: &FirstOrder) -> String {
     let [heating, cooling] = [body.tau_heating, body.tau_cooling].map(text::number);
     match body.tau_heating == body.tau_cooling {
         true => format!(
-            "thermal body: time constant {heating} s; heating and cooling are not told apart, which takes drives of different shape, such as a ramp and a step"
+            "thermal body: time constant {heating} s; heating and cooling are not told apart, \
+             which takes drives of different shape, such as a ramp and a step"
         ),
         false => format!("thermal body: time constants {heating} s heating, {cooling} s cooling"),
     }

@@ -87,7 +87,8 @@ fn recording_text(summary: &RecordingSummary) -> String {
     }
     let time = summary.time.as_ref().map_or(String::new(), |time| {
         format!(
-            "time {} to {} s, median step {} s, longest {} s (before sample {}), {} gaps, {} repeated\n",
+            "time {} to {} s, median step {} s, longest {} s (before sample {}), {} gaps, {} \
+             repeated\n",
             text::number(time.start),
             text::number(time.end),
             text::number(time.median_step),

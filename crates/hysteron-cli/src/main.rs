@@ -88,7 +88,8 @@ fn causes<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn
     std::iter::successors(Some(error), |&error| error.source())
 }
 
-/// The arguments. What is wrong with them may repeat them, so that it is shown as other messages are.
+/// The arguments. What is wrong with them may repeat them, so that it is shown as other messages
+/// are.
 fn parse() -> Cli {
     Cli::try_parse().unwrap_or_else(|error| {
         let text = error.to_string();

@@ -27,10 +27,13 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         ));
     }
     if args.json.json {
-        return print(
-            &json!({"table": args.out, "preparation": report, "rate": rate, "rate_dependent": is_material(&rate)})
-                .to_string(),
-        );
+        let object = json!({
+            "table": args.out,
+            "preparation": report,
+            "rate": rate,
+            "rate_dependent": is_material(&rate),
+        });
+        return print(&object.to_string());
     }
     let mut lines = lines(&report, &recording);
     lines.insert(
@@ -46,7 +49,8 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
     print(&lines.join("\n"))
 }
 
-/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to standard error; it is returned for the JSON.
+/// The steps for `fit`: none without `--prepare` or a step's own option. The report goes to
+/// standard error; it is returned for the JSON.
 pub(crate) fn before_fit(
     recording: Recording,
     args: &args::PrepareBeforeFit,
@@ -191,7 +195,8 @@ fn lag_line(lag: &SensorLag, recording: &Recording) -> String {
 
 fn rate_line(rate: &RateDependence) -> String {
     format!(
-        "rate: {} % of the output's range, of {} % that a static model misses (R² {:.3} by time, {:.3} by the input's path; {} s){}",
+        "rate: {} % of the output's range, of {} % that a static model misses (R² {:.3} by time, \
+         {:.3} by the input's path; {} s){}",
         text::number(rate.percent),
         text::number(rate.nrmse_percent),
         rate.r2_time,

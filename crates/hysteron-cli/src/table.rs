@@ -12,7 +12,10 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         false => None,
         true => Some(model.band()?.ok_or_else(|| {
             let model = args.model.display();
-            format!("{model}: the model does not say how certain it is: fit it again with --bootstrap 200")
+            format!(
+                "{model}: the model does not say how certain it is: fit it again with \
+                     --bootstrap 200"
+            )
         })?),
     };
     let what = ["inputs above the plane", "inputs below its active range"];
@@ -63,6 +66,9 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
     )
 }
 
+/// What is told how many bytes were read.
+type Told<'a> = &'a dyn Fn(u64);
+
 /// Opens both ends, runs `work` between them and says what came of it.
 fn through(
     [data, model]: [&Path; 2],
@@ -70,7 +76,7 @@ fn through(
     force: &args::Force,
     (json, max_memory): (bool, u64),
     what: [&str; 2],
-    work: impl FnOnce(&mut TableReader, Option<TableWriter>, &dyn Fn(u64)) -> hysteron::Result<Counts>,
+    work: impl FnOnce(&mut TableReader, Option<TableWriter>, Told<'_>) -> hysteron::Result<Counts>,
 ) -> Result<()> {
     let inputs = [data, model];
     // With --json, standard output is for the JSON alone.
@@ -97,7 +103,14 @@ fn through(
         ));
     }
     if json {
-        print(&json!({"samples": counts.samples, "high": counts.high, "low": counts.low, "passed": counts.passed, "table": out}).to_string())?;
+        let object = json!({
+            "samples": counts.samples,
+            "high": counts.high,
+            "low": counts.low,
+            "passed": counts.passed,
+            "table": out,
+        });
+        print(&object.to_string())?;
     }
     Ok(())
 }

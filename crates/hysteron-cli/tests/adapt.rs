@@ -7,7 +7,8 @@ use common::{json, refused, run, text};
 use serde_json::Value;
 use std::fs;
 
-/// A play operator with some slope, and the same with half as much slope again; a model of the first.
+/// A play operator with some slope, and the same with half as much slope again; a model of the
+/// first.
 fn wires() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, slope) in [("before.csv", 0.2), ("after.csv", 0.3)] {
@@ -36,7 +37,8 @@ fn every_method_prints_and_writes_what_it_learned() {
         let said = json(folder.path(), &line);
         let rmse = |value: &Value| value["rmse"].as_f64().unwrap();
         let last = &said["thirds"][2];
-        // The loops get smaller and their middle is known; a third of the error is far from what is left.
+        // The loops get smaller and their middle is known; a third of the error is far from what is
+        // left.
         assert!(
             rmse(&last["adapting"]) < 0.33 * rmse(&last["fixed"]),
             "{method}: {said}"
@@ -174,7 +176,8 @@ fn a_model_that_ended_worse_is_not_written_without_force() {
         table += &format!("{x},{}\n", play * 0.2 + 0.3 * (1.7 * f64::from(n)).sin());
     }
     fs::write(folder.path().join("same.csv"), table).unwrap();
-    let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv --method gradient --gain 1.5 --dead-zone 0";
+    let line = "adapt model.json same.csv --input x --output y -o adapted.json --table table.csv \
+                --method gradient --gain 1.5 --dead-zone 0";
     let said = refused(folder.path(), line);
     assert!(
         said.contains("adapted.json: the model is not written"),

@@ -639,7 +639,8 @@ fn inputs_outside_the_plane_are_told_of() {
     assert_eq!(statuses, ["high", "low", "high"]);
 }
 
-/// What looks like an option in a path is part of the path; options in the advice are the command's.
+/// What looks like an option in a path is part of the path; options in the advice are the
+/// command's.
 #[test]
 fn a_path_is_printed_as_it_is() {
     let bench = Bench::new();

@@ -11,8 +11,10 @@ fn models() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, first) in [("spring.json", "1"), ("butterfly.json", "-1")] {
         let model = format!(
-            r#"{{"format": "hysteron-model", "version": 1, "operator": "mkp", "plane": {{"min": 20, "max": 80, "levels": 3}},
-                "output": {{"name": "lift", "unit": "mm", "offset": 0.5, "sign": -1}}, "weights": [{first}, 0.5, 1, 0, 0.5, 1]}}"#
+            r#"{{"format": "hysteron-model", "version": 1, "operator": "mkp",
+                "plane": {{"min": 20, "max": 80, "levels": 3}},
+                "output": {{"name": "lift", "unit": "mm", "offset": 0.5, "sign": -1}},
+                "weights": [{first}, 0.5, 1, 0, 0.5, 1]}}"#
         );
         fs::write(folder.path().join(name), model).unwrap();
     }
@@ -127,7 +129,8 @@ fn bad_names_and_folders_are_refused() {
 fn models_that_need_more_than_an_input_are_refused() {
     let folder = models();
     let spring = fs::read_to_string(folder.path().join("spring.json")).unwrap();
-    let thermal = r#""thermal": {"kind": "first-order", "tau_heating": 1.0, "tau_cooling": 1.0, "gain": 1.0}, "weights""#;
+    let thermal = r#""thermal": {"kind": "first-order", "tau_heating": 1.0, "tau_cooling": 1.0,
+        "gain": 1.0}, "weights""#;
     fs::write(
         folder.path().join("wire.json"),
         spring.replace("\"weights\"", thermal),

@@ -6,7 +6,8 @@ use common::{json, refused, run, text};
 
 const MODEL: &str = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
     "plane": {"min": 20, "max": 80, "levels": 2}, "weights": [1, 0.5, 2],
-    "input": {"name": "temperature", "unit": "degC"}, "output": {"name": "displacement", "unit": "mm"}}"#;
+    "input": {"name": "temperature", "unit": "degC"},
+    "output": {"name": "displacement", "unit": "mm"}}"#;
 
 #[test]
 fn both_blocks_in_both_standards() {

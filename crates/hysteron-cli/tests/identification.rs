@@ -1,4 +1,5 @@
-//! Identification as a black box: choices, starts, loads, several files, and what a model says of itself.
+//! Identification as a black box: choices, starts, loads, several files, and what a model says of
+//! itself.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -8,7 +9,8 @@ use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
 
-/// Loops of a play of width `width`, scaled by `gain`, from the middle of the input's range and an output of `first`: columns `x`, `y`, `load`.
+/// Loops of a play of width `width`, scaled by `gain`, from the middle of the input's range and an
+/// output of `first`: columns `x`, `y`, `load`.
 fn play(samples: i32, width: f64, gain: f64, first: f64, load: f64) -> String {
     let mut y = first;
     let rows = (0..samples).map(|n| {

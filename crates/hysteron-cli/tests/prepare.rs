@@ -7,7 +7,8 @@ use common::{run, text};
 use serde_json::Value;
 use std::fs;
 
-/// Loops of a play whose readings are a little rough; in lines 102 and 103 the input dropped to zero.
+/// Loops of a play whose readings are a little rough; in lines 102 and 103 the input dropped to
+/// zero.
 fn rough_recording() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut play = 0.0_f64;
@@ -71,7 +72,7 @@ fn a_rough_recording_is_prepared_and_what_was_done_is_said() {
     );
     let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();
     assert_eq!(json["preparation"]["low_pass"]["input"]["cutoff"], 0.2);
-    assert_eq!(json["preparation"]["band"], Value::Null);
+    assert_eq!(json["preparation"]["dead_band"], Value::Null);
     assert_eq!(json["preparation"]["spikes"], Value::Null);
     assert_eq!(json["rate_dependent"], false);
 }

@@ -28,7 +28,8 @@ fn prepare_keeps_names_and_all_columns() {
         format!("{header}{}", rows(&|n| 500.0 * f64::from(n))),
     )
     .unwrap();
-    let line = "prepare run.csv --input T --output lift --time zeit --low-pass off --dead-band off -o out.csv";
+    let line = "prepare run.csv --input T --output lift --time zeit --low-pass off --dead-band off \
+                -o out.csv";
     let done = run(folder.path(), line);
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert!(text(&done.stderr).contains("is in ms: turned into seconds"));

@@ -27,7 +27,8 @@ const FILES: [(&str, &str); 13] = [
         "csv",
     ),
     (
-        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 -o side.csv --figure OUT",
+        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 -o side.csv \
+         --figure OUT",
         "svg",
     ),
     ("adapt m.json run.csv --input x --output y -o OUT", "json"),
@@ -107,7 +108,8 @@ fn held(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Refused for its place, with nothing in the folder changed, and told of `--force` where that helps.
+/// Refused for its place, with nothing in the folder changed, and told of `--force` where that
+/// helps.
 fn keeps_all(folder: &Path, line: &str, force_helps: bool) {
     let before = held(folder);
     let done = run(folder, line);
@@ -200,7 +202,8 @@ fn a_model_written_by_hand_is_kept() {
     let path = bench.path();
     let fit = "fit run.csv --input x --output y --levels 4 --bootstrap 0 -o m.json";
     let ours = fs::read_to_string(path.join("m.json")).unwrap();
-    let by_hand = r#"{"format":"hysteron-model","version":1,"operator":"mkp","plane":{"min":0.0,"max":1.0,"levels":2},"input":{},"output":{},"weights":[1.0,2.0,3.0]}"#;
+    let by_hand = r#"{"format":"hysteron-model","version":1,"operator":"mkp",
+        "plane":{"min":0.0,"max":1.0,"levels":2},"input":{},"output":{},"weights":[1.0,2.0,3.0]}"#;
     for text in [
         by_hand.to_owned(),
         ours.replace(",\"weights\"", ", \"weights\""),
@@ -231,7 +234,8 @@ fn a_folder_keeps_what_is_not_ours() {
             keeps_all(path, &line, true);
             fs::write(file, &ours[file]).unwrap();
         }
-        // Files and folders of others stay, whoever's the rest is; the folder above is another's too.
+        // Files and folders of others stay, whoever's the rest is; the folder above is another's
+        // too.
         fs::create_dir(out.join("empty")).unwrap();
         passes(path, &line);
         let note = some[1].with_file_name("note.txt");
@@ -306,8 +310,12 @@ fn no_result_replaces_what_is_read() {
     }
     lines.extend([
         "adapt m.json run.csv --input x --output y -o hard.json".into(),
-        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 --from run.csv --input x -o hard.csv".into(),
-        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 --from run.csv --input x -o p.csv --figure here/run.csv".into(),
+        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 --from run.csv \
+         --input x -o hard.csv"
+            .into(),
+        "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 --from run.csv \
+         --input x -o p.csv --figure here/run.csv"
+            .into(),
         "export fmu m.fmu -o ./m.fmu".into(),
     ]);
     for line in lines {

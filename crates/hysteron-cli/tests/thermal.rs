@@ -7,7 +7,8 @@ use common::{run, text};
 use serde_json::Value;
 use std::fs;
 
-/// A wire of 2 s heating and 5 s cooling with a play, under a slow ramp and steps; irregular in time.
+/// A wire of 2 s heating and 5 s cooling with a play, under a slow ramp and steps; irregular in
+/// time.
 fn wire() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let (mut theta, mut play, mut drive, mut before) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
@@ -89,8 +90,9 @@ fn what_a_body_cannot_do_is_refused_with_a_reason() {
     let folder = wire();
     fs::write(
         folder.path().join("wire.json"),
-        r#"{"format": "hysteron-model", "version": 1, "operator": "mkp", "plane": {"min": 0.5, "max": 1, "levels": 2},
-            "weights": [1, 0, 1], "thermal": {"kind": "first-order", "gain": 1, "tau_heating": 2, "tau_cooling": 5}}"#,
+        r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
+            "plane": {"min": 0.5, "max": 1, "levels": 2}, "weights": [1, 0, 1],
+            "thermal": {"kind": "first-order", "gain": 1, "tau_heating": 2, "tau_cooling": 5}}"#,
     )
     .unwrap();
     fs::write(folder.path().join("back.csv"), "t,duty\n0,0\n2,1\n1,1\n").unwrap();

@@ -134,20 +134,23 @@ impl CWorstCase {
     }
 }
 
-/// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as `hysteron_mcu.h`, `.c` and
-/// `hysteron_mcu_inverse.c`, the same for every model of a number type, and the model's constants as files of its name. With
-/// [`COptions::adaptation`] also `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
+/// Writes C99 for `model` into the folder `target`, which is made if need be: the algorithm as
+/// `hysteron_mcu.h`, `.c` and `hysteron_mcu_inverse.c`, the same for every model of a number type,
+/// and the model's constants as files of its name. With [`COptions::adaptation`] also
+/// `hysteron_mcu_adapt.h` and `.c`, by which the model's weights follow the plant as with
 /// [`hysteron_core::Method::Gradient`].
 ///
-/// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign in that type as well. A
-/// model with negative weights has no inverse there either.
+/// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
+/// in that type as well. A model with negative weights has no inverse there either.
 ///
-/// Files that were exported before, and not edited since, are replaced, all together or not at all. A path alone as `target`
-/// replaces others of their names too; [`Destination::keeping_foreign`] keeps them.
+/// Files that were exported before, and not edited since, are replaced, all together or not at all.
+/// A path alone as `target` replaces others of their names too; [`Destination::keeping_foreign`]
+/// keeps them.
 ///
 /// # Errors
-/// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number type; for a name that cannot
-/// be one in C; for files in the folder that are of the other number type. [`Error::File`].
+/// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number
+/// type; for a name that cannot be one in C; for files in the folder that are of the other number
+/// type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,

@@ -1,7 +1,7 @@
 //! An FMU: the model as a block for simulation tools.
 //!
-//! The binaries in it are the same for every model (`binaries/`, made from `hysteron-capi`); they read the model from the
-//! FMU's resources.
+//! The binaries in it are the same for every model (`binaries/`, made from `hysteron-capi`); they
+//! read the model from the FMU's resources.
 
 mod description;
 mod model_text;
@@ -19,7 +19,8 @@ pub struct FmuOptions {
     pub inverse: bool,
     /// The standard that it follows.
     pub fmi: Fmi,
-    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without one.
+    /// The block's name, a C identifier of up to 63 letters; `sf_MKP` or `sf_Inverse_MKP` without
+    /// one.
     pub name: Option<String>,
 }
 
@@ -61,7 +62,8 @@ pub struct Fmu {
     pub parameters: Vec<String>,
 }
 
-/// Writes an FMU of `model` to `target`, whose path must end with `.fmu`. A path alone replaces whatever file is there.
+/// Writes an FMU of `model` to `target`, whose path must end with `.fmu`. A path alone replaces
+/// whatever file is there.
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};
@@ -77,8 +79,9 @@ pub struct Fmu {
 /// ```
 ///
 /// # Errors
-/// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C identifier or a path
-/// that does not end with `.fmu`; [`Error::Core`] for the inverse of a model with weights below zero; [`Error::File`].
+/// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C
+/// identifier or a path that does not end with `.fmu`; [`Error::Core`] for the inverse of a model
+/// with weights below zero; [`Error::File`].
 pub fn fmu<'a>(
     model: &Model,
     options: &FmuOptions,

@@ -1,4 +1,5 @@
-//! Carries a model to where it runs: C99 for a microcontroller ([`c()`]), an FMU for Simulink and other tools ([`fmu()`]).
+//! Carries a model to where it runs: C99 for a microcontroller ([`c()`]), an FMU for Simulink and
+//! other tools ([`fmu()`]).
 #![forbid(unsafe_code)]
 
 mod c;

@@ -35,7 +35,8 @@ struct Case {
     calls: Vec<Call>,
 }
 
-/// What the driver has to print: the core, with offset and sign as the façade's adaptive model has them.
+/// What the driver has to print: the core, with offset and sign as the façade's adaptive model has
+/// them.
 fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 6]) -> (String, String) {
     let of = T::of;
     let (k, sign) = (case.model.plane().levels(), of(case.model.sign().factor()));
@@ -185,7 +186,8 @@ fn options(rng: &mut StdRng) -> Option<Adaptation<f64>> {
     })
 }
 
-/// A walk with the output of another model measured, with noise, and bursts of readings that are far off.
+/// A walk with the output of another model measured, with noise, and bursts of readings that are
+/// far off.
 fn calls(rng: &mut StdRng, model: &Model, count: usize) -> Vec<Call> {
     let plane = model.plane();
     let k = plane.levels() as f64;

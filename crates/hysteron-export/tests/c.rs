@@ -29,8 +29,8 @@ fn compare(exported: &Exported, program: &mut Command, cases: &[(&Model, Vec<Cal
 /// Compilers that are there, with flags under which the header promises the digits.
 fn compilers() -> Vec<(&'static str, Vec<&'static str>)> {
     let mut found = Vec::new();
-    // What a compiler may be told of fused products without other digits: the source forbids them. GCC heeds that under
-    // every flag, Clang under all but `fast`, which the header excludes.
+    // What a compiler may be told of fused products without other digits: the source forbids them.
+    // GCC heeds that under every flag, Clang under all but `fast`, which the header excludes.
     for (cc, most) in [("gcc", "-ffp-contract=fast"), ("clang", "-ffp-contract=on")] {
         if !has(cc) {
             continue;
@@ -271,8 +271,10 @@ fn memory_is_what_is_told() {
             .memory;
         let text = format!(
             "#include \"one.c\"\n#include \"hysteron_mcu_adapt.h\"\n\
-             typedef char constants[sizeof(hys_model) + sizeof table + sizeof one_weights == {} ? 1 : -1];\n\
-             typedef char adapt[sizeof(hys_adaptive) + ONE_ADAPT_NUMBERS * sizeof(hys_real) == {} ? 1 : -1];\n\
+             typedef char constants[sizeof(hys_model) + sizeof table + sizeof one_weights == {} ? \
+             1 : -1];\n\
+             typedef char adapt[sizeof(hys_adaptive) + ONE_ADAPT_NUMBERS * sizeof(hys_real) == {} \
+             ? 1 : -1];\n\
              typedef char state[sizeof(hys_state) == {} ? 1 : -1];\n\
              typedef char turns[ONE_TURNS * sizeof(hys_turn) == {} ? 1 : -1];\n",
             memory.constants,

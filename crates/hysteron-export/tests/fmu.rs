@@ -204,7 +204,7 @@ fn the_description_is_well_formed_and_says_what_the_model_says() {
         assert_eq!(
             differences.count(),
             usize::from(options.inverse),
-            "the band"
+            "the tolerance"
         );
 
         // Starts as numbers: all operators off.

@@ -131,8 +131,9 @@ fn in_double() {
     });
 }
 
-/// In single precision a position on the plane is off by a few of its rounding units, `K ε`, and the output by as much of the
-/// sum of the weights, once for each corner that is remembered: some ten in these runs.
+/// In single precision a position on the plane is off by a few of its rounding units, `K ε`, and
+/// the output by as much of the sum of the weights, once for each corner that is remembered: some
+/// ten in these runs.
 fn output_tolerance(model: &Model) -> f64 {
     let total: f64 = model.weights().iter().map(|mu| mu.abs()).sum();
     let sure = if model.operator() == Operator::Mkp {
@@ -163,7 +164,8 @@ fn in_float() {
             }
             return;
         }
-        // Where the output hardly changes, inputs far apart give it: what counts is the output that the inputs found give.
+        // Where the output hardly changes, inputs far apart give it: what counts is the output that
+        // the inputs found give.
         let outputs = file.model.simulate(&numbers).unwrap();
         for (n, output) in outputs.iter().enumerate() {
             let Call::Inverse(target, ..) = run.calls[n] else {

@@ -1,6 +1,7 @@
 //! Fewer points for the same picture.
 //!
-//! Points are in pixels. A point that is not finite breaks the line, so every function returns the unbroken pieces.
+//! Points are in pixels. A point that is not finite breaks the line, so every function returns the
+//! unbroken pieces.
 
 use std::collections::HashSet;
 
@@ -10,8 +11,8 @@ pub(crate) type Point = [f64; 2];
 /// Beyond this many points, loops drop the segments that lie on pixels already drawn.
 const DENSE: usize = 20_000;
 
-/// For curves over time: of the consecutive points in one pixel column keep the first, lowest, highest and last, so that
-/// no peak is lost and at most four points a column remain.
+/// For curves over time: of the consecutive points in one pixel column keep the first, lowest,
+/// highest and last, so that no peak is lost and at most four points a column remain.
 pub(crate) fn columns(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     pieces(points)
         .into_iter()
@@ -41,8 +42,9 @@ fn extremes(column: &[Point]) -> Vec<Point> {
 /// Width of the columns that a band is drawn in: finer than its light tint shows.
 pub(crate) const COLUMN: f64 = 0.5;
 
-/// For a band between two edges at the same x, between `left` and `right`: of each column of pixels the
-/// stretches `[x, top, bottom]` that it covers, so that a million samples take no more than the picture has room for.
+/// For a band between two edges at the same x, between `left` and `right`: of each column of pixels
+/// the stretches `[x, top, bottom]` that it covers, so that a million samples take no more than the
+/// picture has room for.
 pub(crate) fn covered(
     edges: impl Iterator<Item = (Point, Point)>,
     left: f64,
@@ -105,7 +107,8 @@ fn merge(stretches: &mut Vec<[f64; 2]>) {
     });
 }
 
-/// For curves that are no function of x: drop points closer than half a pixel to the last one kept, except the extremes.
+/// For curves that are no function of x: drop points closer than half a pixel to the last one kept,
+/// except the extremes.
 pub(crate) fn loops(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let thinned: Vec<Vec<Point>> = pieces(points).iter().map(|piece| thin(piece)).collect();
     if thinned.iter().map(Vec::len).sum::<usize>() <= DENSE {

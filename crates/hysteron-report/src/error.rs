@@ -8,7 +8,8 @@ use std::path::PathBuf;
 pub enum ReportError {
     /// A series of the evaluation does not belong to the recording.
     #[error(
-        "{series} has {found} values, but the recording has {expected} samples: evaluate the model on this recording"
+        "{series} has {found} values, but the recording has {expected} samples: evaluate the model \
+         on this recording"
     )]
     Length {
         /// The series, for example `output_model`.
@@ -29,7 +30,8 @@ pub enum ReportError {
     },
     /// A series of a run has another length than the time of the first run.
     #[error(
-        "{series} of {run} has {found} values, but the first run has {expected} samples: give runs over the same samples"
+        "{series} of {run} has {found} values, but the first run has {expected} samples: give runs \
+         over the same samples"
     )]
     RunLength {
         /// The controller's name.
@@ -43,7 +45,8 @@ pub enum ReportError {
     },
     /// A snapshot has more or fewer weights than the plane has operators.
     #[error(
-        "a snapshot of {run} has {found} weights, but the plane has {expected} operators: give the plane of the model that adapted"
+        "a snapshot of {run} has {found} weights, but the plane has {expected} operators: give the \
+         plane of the model that adapted"
     )]
     Snapshot {
         /// The controller's name.

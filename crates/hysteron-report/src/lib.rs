@@ -1,11 +1,15 @@
-//! Figures and a self-contained HTML page from the evaluation of a model on a recording, or from runs of controllers.
+//! Figures and a self-contained HTML page from the evaluation of a model on a recording, or from
+//! runs of controllers.
 //!
-//! [`Report::write`] draws the figures that the chapter on the MKP model shows in its section 6, for any recording, each as
-//! SVG and PNG, and puts them on one page, `index.html`, that needs nothing beside it. [`Report::svg`] draws a single figure.
+//! [`Report::write`] draws the figures that the chapter on the MKP model shows in its section 6,
+//! for any recording, each as SVG and PNG, and puts them on one page, `index.html`, that needs
+//! nothing beside it. [`Report::svg`] draws a single figure.
 //!
-//! [`TrackReport::write`] does the same for control loops: one run of each controller over the same reference.
+//! [`TrackReport::write`] does the same for control loops: one run of each controller over the same
+//! reference.
 //!
-//! The figures stay legible in grey: curves differ in line style and lightness, never in colour alone.
+//! The figures stay legible in grey: curves differ in line style and lightness, never in colour
+//! alone.
 
 mod decimate;
 mod draw;

@@ -1,5 +1,6 @@
-//! Faults in the loop, of random kinds, at random times, on random plants: the drive stays within its limits, the status says
-//! what is wrong while it is, and afterwards the loop is as good as one that never had the fault.
+//! Faults in the loop, of random kinds, at random times, on random plants: the drive stays within
+//! its limits, the status says what is wrong while it is, and afterwards the loop is as good as one
+//! that never had the fault.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod loops;
@@ -70,7 +71,8 @@ struct Course {
 
 fn controller(known: &Known, with: With) -> Controller {
     let adapting = |model: &Model| {
-        Compensator::adaptive(Adaptive::new(model, known.scenario.adaptation.into()).unwrap())
+        let adaptation = known.scenario.adaptation.resolve(model).unwrap();
+        Compensator::adaptive(Adaptive::new(model, adaptation).unwrap())
     };
     let compensator = match with {
         With::Pid => None,
@@ -190,7 +192,8 @@ fn check_status(run: &Run, course: &Course, with: With, senses_input: bool) {
     assert!(after.iter().all(|s| !s.sensor_fault));
 }
 
-/// Runs with faults against the same runs without: `settle` after the fault, and over `window` from there, in samples.
+/// Runs with faults against the same runs without: `settle` after the fault, and over `window` from
+/// there, in samples.
 fn faults(
     known: &Known,
     loads: (f64, f64),
@@ -224,12 +227,14 @@ fn faults(
         };
         let (tracking, prediction) = (ratio(|r| &r.error), ratio(|r| &r.prediction));
         println!(
-            "{fault:?}, {with:?}, {load_n:.1} N, {from}..{to}: tracking {tracking:.3}, prediction {prediction:.3}"
+            "{fault:?}, {with:?}, {load_n:.1} N, {from}..{to}: tracking {tracking:.3}, prediction \
+             {prediction:.3}"
         );
         worst = (worst.0.max(tracking), worst.1.max(prediction));
     }
     println!("worst: tracking {:.3}, prediction {:.3}", worst.0, worst.1);
-    // As good as if nothing had happened, up to what other states of the relays cost: at worst 1.27 in 336 runs.
+    // As good as if nothing had happened, up to what other states of the relays cost: at worst 1.27
+    // in 336 runs.
     assert!(worst.0 < 1.4 && worst.1 < 1.4);
 }
 
@@ -241,13 +246,13 @@ fn the_spring_recovers_from_every_fault() {
 
 #[test]
 fn the_relays_recover_from_every_fault() {
-    // Faults of 2 to 4 s; three periods of 2 s to recover, for after a target out of reach the relays stand as they never did
-    // while the model learned their load; and two to judge.
+    // Faults of 2 to 4 s; three periods of 2 s to recover, for after a target out of reach the
+    // relays stand as they never did while the model learned their load; and two to judge.
     faults(Known::relays(), (5.0, 8.0), (1000, 400), 600, 400);
 }
 
-/// Five minutes of `high` from a source of `limit_a`, then 3 mm: where the spring was at the end of the five minutes, the share of them
-/// at a limit, and the time until it was back, s.
+/// Five minutes of `high` from a source of `limit_a`, then 3 mm: where the spring was at the end of
+/// the five minutes, the share of them at a limit, and the time until it was back, s.
 fn five_minutes(with: With, high: f64, limit_a: f64) -> (f64, f64, f64) {
     let known = Known::spring();
     let mut limited = Controller::new(Scheme {
@@ -280,11 +285,13 @@ fn five_minutes(with: With, high: f64, limit_a: f64) -> (f64, f64, f64) {
 #[test]
 fn minutes_of_saturation_leave_nothing_behind() {
     for with in [With::Pid, With::Fixed, With::Adaptive] {
-        // 1.35 A take minutes to bring the spring to 12 mm, if they do; 2 A bring it as far without a limit being in the way.
+        // 1.35 A take minutes to bring the spring to 12 mm, if they do; 2 A bring it as far without
+        // a limit being in the way.
         let (lifted, saturated, back) = five_minutes(with, 12.0, 1.35);
         let (_, _, free) = five_minutes(with, lifted, 2.0);
         println!(
-            "{with:?}: {lifted:.2} mm, at the limit {saturated:.2}, back after {back:.0} s; never limited {free:.0} s"
+            "{with:?}: {lifted:.2} mm, at the limit {saturated:.2}, back after {back:.0} s; never \
+             limited {free:.0} s"
         );
         assert!(saturated > 0.7);
         // A period of the loop's own lags is what may be in between.

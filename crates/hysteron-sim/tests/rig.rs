@@ -1,4 +1,5 @@
-//! The virtual rig: its integration, its law of transformation, its experiment, its sensors and its filter.
+//! The virtual rig: its integration, its law of transformation, its experiment, its sensors and its
+//! filter.
 #![allow(clippy::unwrap_used)]
 
 use hysteron::filter::{FilterError, low_pass};
@@ -298,15 +299,16 @@ fn more_load_lifts_further_and_transforms_hotter() {
     // von Mises stress at the skin, MPa for a newton.
     let skin = 3f64.sqrt() * 8.0 * spring.coil_diameter_mm
         / (std::f64::consts::PI * spring.wire_diameter_mm.powi(3));
-    // What carries the load lies between half the radius and the skin (J grows with r⁴), so the shift of half the stroke lies
-    // between half of the skin's and all of it.
+    // What carries the load lies between half the radius and the skin (J grows with r⁴), so the
+    // shift of half the stroke lies between half of the skin's and all of it.
     let shifts = |slope: f64| 0.5 * skin * STEP_N / slope..skin * STEP_N / slope;
 
     let runs = [6.0, 8.0, 10.0].map(run);
     println!("{runs:?}");
     for pair in runs.windows(2) {
         let ((stroke, up, down), (more_stroke, more_up, more_down)) = (pair[0], pair[1]);
-        // Nearly in proportion to the load; 1 mm is a third of the 15 % that 2 N in 10 N or more make of 20 mm.
+        // Nearly in proportion to the load; 1 mm is a third of the 15 % that 2 N in 10 N or more
+        // make of 20 mm.
         assert!(more_stroke > stroke + 1.0);
         assert!(shifts(law.austenite_slope_mpa_per_k).contains(&(more_up - up)));
         assert!(shifts(law.martensite_slope_mpa_per_k).contains(&(more_down - down)));
@@ -333,7 +335,8 @@ fn a_seed_makes_a_recording() {
             let errors = || read.iter().zip(truth).map(|(a, b)| (a - b).abs());
             // The sum of truth and noise is rounded.
             assert!(errors().all(|e| e <= accuracy + 1e-12));
-            // The noise is there: of ten thousand readings, some forty lie between 2.7 and 3 standard deviations.
+            // The noise is there: of ten thousand readings, some forty lie between 2.7 and 3
+            // standard deviations.
             assert!(errors().fold(0.0, f64::max) > 0.9 * accuracy);
         }
     }
@@ -348,7 +351,8 @@ fn preparing_takes_the_noise_away() {
         end += phase.duration_s;
         corners.push(end);
     }
-    // The filter's response to a corner dies down by e every 1/(√2 π 0.3 Hz) = 0.75 s: by 800 in 5 s.
+    // The filter's response to a corner dies down by e every 1/(√2 π 0.3 Hz) = 0.75 s: by 800 in 5
+    // s.
     let away = |t: f64| corners.iter().all(|corner| (t - corner).abs() > 5.0);
 
     for seed in [1, 2] {
@@ -403,7 +407,8 @@ fn the_filter_has_no_phase() {
         .map(|k| (-f64::from(k * k) / 200.0).exp())
         .collect();
     let smooth = low_pass(&pulse, 20.0, 0.3).unwrap();
-    // The response has died down to e^(-1.33 · 15) of the pulse where the passes begin, 15 s from it.
+    // The response has died down to e^(-1.33 · 15) of the pulse where the passes begin, 15 s from
+    // it.
     for (a, b) in smooth.iter().zip(smooth.iter().rev()) {
         assert!((a - b).abs() < 1e-8, "{a} and {b}");
     }

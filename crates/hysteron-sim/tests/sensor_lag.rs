@@ -34,8 +34,9 @@ fn with_noise(recording: &Recording, input: f64, output: f64) -> Recording {
     }
 }
 
-/// The thermocouple of the simulated spring, 1.5 s behind, found and undone from a noisy recording. At one current the lag only
-/// widens the loops, which a static model can too; so the spring is heated faster as well.
+/// The thermocouple of the simulated spring, 1.5 s behind, found and undone from a noisy recording.
+/// At one current the lag only widens the loops, which a static model can too; so the spring is
+/// heated faster as well.
 #[test]
 fn the_lag_of_the_rigs_thermocouple_is_found() {
     let mut truth: Option<Recording> = None;

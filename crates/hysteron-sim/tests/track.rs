@@ -1,4 +1,5 @@
-//! Scenarios: what they may say, the references they make, tuning, and comparisons that can be repeated.
+//! Scenarios: what they may say, the references they make, tuning, and comparisons that can be
+//! repeated.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod loops;
@@ -130,7 +131,7 @@ fn a_refusal_names_the_field() {
         ),
         (
             SPRING,
-            format!("adaptation = {{ noise = 0 }}\n{SPRING_SINE}"),
+            format!("adaptation.noise = 0\n{SPRING_SINE}"),
             "`adaptation`",
         ),
         (

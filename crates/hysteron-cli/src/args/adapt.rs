@@ -20,26 +20,29 @@ pub(crate) struct Adapt {
     /// Column of time, in seconds or with its unit in its name, for the table
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the operators stand before the first sample; `unknown` takes off or on, with which the model errs less
+    /// Where the operators stand before the first sample; `unknown` takes off or on, with which the
+    /// model errs less
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: Start,
     /// What follows the error, and how
     #[arg(long, value_enum, default_value = "drift")]
     pub(crate) method: Learner,
-    /// With `drift`, for a model that depends on a load: the load to start at [default: the middle of its range]
+    /// With `drift`, for a model that depends on a load: the load to start at [default: the middle
+    /// of its range]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) tuning: Tuning,
-    /// Where the adapted model goes; with --force also one that ended worse than the model left alone
+    /// Where the adapted model goes; with --force also one that ended worse than the model left
+    /// alone
     #[arg(short, value_name = "ADAPTED")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
-    /// Write the recording with the columns `output_model` (predicted before each sample was learned from), `error` and `outcome`;
-    /// CSV, or Parquet where the name ends with .parquet
+    /// Write the recording with the columns `output_model` (predicted before each sample was
+    /// learned from), `error` and `outcome`; CSV, or Parquet where the name ends with .parquet
     #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]
@@ -49,21 +52,24 @@ pub(crate) struct Adapt {
 #[derive(Args)]
 #[command(next_help_heading = "Tuning")]
 pub(crate) struct Tuning {
-    /// gradient, increments: share of a sample's error that is taken away, above 0 and below 2 [default: 0.3]
+    /// gradient, increments: share of a sample's error that is taken away, above 0 and below 2
+    /// [default: 0.3]
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = parse_finite)]
     gain: Option<f64>,
     /// increments: levels that the input travels between two updates [default: 1]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     span: Option<f64>,
-    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1 [default: 0.999, of drift 0.9999]
+    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1
+    /// [default: 0.999, of drift 0.9999]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = parse_finite)]
     forgetting: Option<f64>,
-    /// least-squares, drift: standard deviation of the error of a reading and of the model, in the output's unit
-    /// [default: the noise found, and at least 2 %, of drift 5 %, of the range]
+    /// least-squares, drift: standard deviation of the error of a reading and of the model, in the
+    /// output's unit [default: the noise found, and at least 2 %, of drift 5 %, of the range]
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
     noise: Option<f64>,
-    /// least-squares, drift: standard deviation by which a weight (in the output's unit) or a share may differ from the
-    /// model's [default: such that the output may differ by 0.3 of its range; of a share 0.5]
+    /// least-squares, drift: standard deviation by which a weight (in the output's unit) or a
+    /// coefficient may differ from the model's [default: such that the sum of the weights may
+    /// differ by 0.3 of the range; of a coefficient 0.5]
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = parse_finite)]
     spread: Option<f64>,
     /// least-squares: levels over which deviations of weights go together [default: 1]
@@ -75,13 +81,16 @@ pub(crate) struct Tuning {
     /// Share by which the weights go back to the model's with each update, 0 to 1 [default: 0]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
     leakage: Option<f64>,
-    /// How freely the offset moves beside one weight or share; with 0 it stays
+    /// How freely the offset moves beside one weight or coefficient; with 0 it stays [default:
+    /// gradient, increments: 0.2 times the root of the number of weights; otherwise such that the
+    /// offset may differ by 0.3 of the range]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
     offset_share: Option<f64>,
     /// Levels that the input has to move before a sample is learned from [default: 0.05]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     movement: Option<f64>,
-    /// Samples learned from after which the weights are judged against the last good ones [default: 256]
+    /// Samples learned from after which the weights are judged against the last good ones
+    /// [default: 256]
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
     /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all

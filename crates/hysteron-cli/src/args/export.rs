@@ -10,9 +10,10 @@ pub(crate) enum Export {
     #[command(after_help = "Example:\n  hysteron export c spring.json -o mcu --real float")]
     C(ExportC),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
-    #[command(
-        after_help = "Examples:\n  hysteron export fmu spring.json -o sf_MKP.fmu\n  hysteron export fmu spring.json --inverse -o sf_Inverse_MKP.fmu\n  hysteron export fmu spring.json --fmi 3 --name spring -o spring.fmu"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron export fmu spring.json -o sf_MKP.fmu\n\
+        \x20 hysteron export fmu spring.json --inverse -o sf_Inverse_MKP.fmu\n\
+        \x20 hysteron export fmu spring.json --fmi 3 --name spring -o spring.fmu")]
     Fmu(ExportFmu),
 }
 

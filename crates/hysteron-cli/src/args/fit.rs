@@ -17,12 +17,19 @@ pub(crate) struct Fit {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Number of levels K of the plane; it has K(K+1)/2 operators. `auto` chooses it by the error on
-    /// branches left out
+    /// Number of levels K of the plane; it has K(K+1)/2 operators. `auto` chooses it by the error
+    /// on branches left out
     #[arg(long, value_name = "K", default_value = "20", value_parser = parse_levels_or_auto)]
     pub(crate) levels: Levels,
-    /// Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; `auto` chooses it as the levels
-    #[arg(long, value_name = "STRENGTH", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
+    /// Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; `auto` chooses it as
+    /// the levels
+    #[arg(
+        long,
+        value_name = "STRENGTH",
+        default_value = "off",
+        allow_hyphen_values = true,
+        value_parser = parse_step
+    )]
     pub(crate) smooth: Step,
     /// Where the operators stand before the first sample
     #[arg(long, value_enum, default_value = "off")]
@@ -31,14 +38,22 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
     /// Order of that function
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "load", allow_hyphen_values = true, value_parser = up_to(5))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        requires = "load",
+        allow_hyphen_values = true,
+        value_parser = up_to(5)
+    )]
     pub(crate) load_degree: usize,
-    /// Put a thermal body in front of the operators and identify it with the weights: for an input that heats, where the
-    /// temperature is not known. The input is taken as proportional to the power, as a duty cycle is; of a current or a voltage give
-    /// the square. Needs --time
+    /// Put a thermal body in front of the operators and identify it with the weights: for an input
+    /// that heats, where the temperature is not known. The input is taken as proportional to the
+    /// power, as a duty cycle is; of a current or a voltage give the square. Needs --time
     #[arg(long, value_enum, value_name = "BODY", requires = "time")]
     pub(crate) thermal: Option<Thermal>,
-    /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45 levels on 0]
+    /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45
+    /// levels on 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
     pub(crate) bootstrap: Option<usize>,
     /// Lowest and highest level [default: so that the active range is that of the input]
@@ -103,7 +118,8 @@ pub(crate) struct Prepare {
 
 #[derive(Args)]
 pub(crate) struct PrepareBeforeFit {
-    /// Column of time, in seconds or with its unit in its name, for the preparation, a thermal body and the warning that loops depend on rate
+    /// Column of time, in seconds or with its unit in its name, for the preparation, a thermal body
+    /// and the warning that loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named
@@ -116,19 +132,24 @@ pub(crate) struct PrepareBeforeFit {
 #[derive(Args)]
 #[command(next_help_heading = "Preparation")]
 pub(crate) struct Steps {
-    /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations make a spike
+    /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute
+    /// deviations make a spike
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) spikes: Option<Step>,
-    /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the step in s
+    /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the
+    /// step in s
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) resample: Option<Step>,
-    /// Zero-phase low-pass: `auto` (as far as the noise goes), `off`, or the cut-off in Hz, without time in cycles a sample
+    /// Zero-phase low-pass: `auto` (as far as the noise goes), `off`, or the cut-off in Hz, without
+    /// time in cycles a sample
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) low_pass: Option<Step>,
-    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend on rate), `off` or its time constant in s [default: off]
+    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend
+    /// on rate), `off` or its time constant in s [default: off]
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Option<Step>,
-    /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches), `off`, or the band in its unit
+    /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches),
+    /// `off`, or the band in its unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) dead_band: Option<Step>,
 }

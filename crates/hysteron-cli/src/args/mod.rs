@@ -20,11 +20,14 @@ pub(crate) use value::*;
     name = "hysteron",
     version,
     arg_required_else_help = true,
-    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs; decimal points or commas;\n\
-                  a row of units; # and % comments; loggers and LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
-                  A column goes by its name, without its unit if there is no other, or by its number from 1.\n\
+    after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs;\n\
+                  decimal points or commas; a row of units; # and % comments; loggers and\n\
+                  LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
+                  A column goes by its name, without its unit if there is no other, or by its\n\
+                  number from 1.\n\
                   `-` reads CSV from standard input.\n\
-                  Results of earlier runs are replaced; any other file is kept, unless --force is given.\n\
+                  Results of earlier runs are replaced; any other file is kept, unless --force\n\
+                  is given.\n\
                   Exit codes: 0 done, 1 the work failed, 2 wrong usage."
 )]
 pub(crate) struct Cli {
@@ -35,49 +38,51 @@ pub(crate) struct Cli {
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Identify a model from a recording
-    #[command(
-        after_help = "Example:\n  hysteron fit run1.csv --input temperature --output displacement -o spring.json"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron fit run1.csv --input temperature --output displacement \
+        -o spring.json")]
     Fit(Fit),
     /// Ready a recording for a fit: spikes, noise, a sensor's lag, false reversals
-    #[command(
-        after_help = "Example:\n  hysteron prepare run1.csv --input temperature --output displacement --time time -o clean.csv"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron prepare run1.csv --input temperature --output displacement \
+        --time time -o clean.csv")]
     Prepare(Prepare),
     /// Run a model over an input: adds the column `output_model`
-    #[command(
-        after_help = "Example:\n  hysteron simulate spring.json run2.csv --input temperature -o modelled.csv"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron simulate spring.json run2.csv --input temperature -o modelled.csv")]
     Simulate(Simulate),
-    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low, high)
-    #[command(
-        after_help = "Example:\n  hysteron invert spring.json wanted.csv --target displacement -o inputs.csv"
-    )]
+    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low,
+    /// high)
+    #[command(after_help = "Example:\n\
+        \x20 hysteron invert spring.json wanted.csv --target displacement -o inputs.csv")]
     Invert(Invert),
     /// Judge a model on a recording: forward and inverse errors, and a report
-    #[command(
-        after_help = "Example:\n  hysteron evaluate spring.json run2.csv --input temperature --output displacement --report report"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron evaluate spring.json run2.csv --input temperature \
+        --output displacement --report report")]
     Evaluate(Evaluate),
     /// Let a model learn from a recording, sample by sample, and write the adapted one
-    #[command(
-        after_help = "Example:\n  hysteron adapt spring.json run3.csv --input temperature --output displacement -o adapted.json"
-    )]
+    #[command(after_help = "Example:\n\
+        \x20 hysteron adapt spring.json run3.csv --input temperature \
+        --output displacement -o adapted.json")]
     Adapt(Adapt),
     /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
-    #[command(
-        after_help = "Examples:\n  hysteron inspect run1.csv --input temperature --output displacement\n  hysteron inspect spring.json"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron inspect run1.csv --input temperature --output displacement\n\
+        \x20 hysteron inspect spring.json")]
     Inspect(Inspect),
     /// Plan a recording: the input profile that determines every operator in the shortest time
-    #[command(
-        after_help = "Examples:\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 -o profile.csv\n  hysteron design --range 20,80 --levels 20 --heating-rate 2 --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron design --range 20,80 --levels 20 --heating-rate 2 \
+        --cooling-rate 0.5 -o profile.csv\n\
+        \x20 hysteron design --range 20,80 --levels 20 --heating-rate 2 \
+        --cooling-rate 0.5 --from run1.csv --input temperature -o next.csv")]
     Design(Design),
     /// Compare controllers on a simulated plant: PID, inverse, both, and an inverse that adapts
-    #[command(
-        after_help = "Examples:\n  hysteron track load-step -o load-step\n  hysteron track load-step --show > mine.toml\n  hysteron track mine.toml --seeds 5 -o mine"
-    )]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron track load-step -o load-step\n\
+        \x20 hysteron track load-step --show > mine.toml\n\
+        \x20 hysteron track mine.toml --seeds 5 -o mine")]
     Track(Track),
     /// Carry a model to where it runs: C for a microcontroller, a block for Simulink and others
     #[command(subcommand)]
@@ -110,7 +115,8 @@ impl Force {
 
 #[derive(Args)]
 pub(crate) struct Repair {
-    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and tell of it
+    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and
+    /// tell of it
     #[arg(long)]
     repair: bool,
     #[command(flatten)]
@@ -119,7 +125,8 @@ pub(crate) struct Repair {
 
 #[derive(Args)]
 pub(crate) struct Memory {
-    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is refused
+    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is
+    /// refused
     #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_bytes)]
     pub(crate) max_memory: u64,
 }
@@ -145,7 +152,8 @@ impl Repair {
 
 #[derive(Args)]
 pub(crate) struct Load {
-    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the column of it
+    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the
+    /// column of it
     #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
     load: Option<String>,
 }
@@ -175,14 +183,15 @@ pub(crate) struct Simulate {
     pub(crate) input: String,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted with --bootstrap
+    /// Add the columns `output_low` and `output_high`, the 95 % prediction band of a model fitted
+    /// with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
     /// Column of time, in seconds or with its unit in its name, for a model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
-    /// --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
+    /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -214,8 +223,8 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default: standard output; with
-    /// --json nowhere]
+    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
+    /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -238,7 +247,8 @@ pub(crate) struct Evaluate {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a model with a thermal body
+    /// Column of time, in seconds or with its unit in its name, for the report's figures and for a
+    /// model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Where the operators stand before the first sample

@@ -10,7 +10,8 @@ pub(super) trait Number: Real {
     const BYTES: usize;
     /// The smallest number that has all its digits.
     const SMALLEST: Self;
-    /// The nearest number; none where digits are lost beyond that: too large, or too small to be exact.
+    /// The nearest number; none where digits are lost beyond that: too large, or too small to be
+    /// exact.
     fn of(number: f64) -> Option<Self>;
     /// As C reads it back to the same bits.
     fn literal(self) -> String;
@@ -72,7 +73,8 @@ impl<T: Number> Constants<T> {
         let core = hysteron_core::Model::new(plane, model.operator(), &weights, table)
             .map_err(|_| unfit("the sum of the weights"))?;
         let rounding = core.inverse().ok().map(|inverse| inverse.rounding());
-        // Outputs of KP and relays reach twice as far, and sums of small weights have small rounding.
+        // Outputs of KP and relays reach twice as far, and sums of small weights have small
+        // rounding.
         let (off, on) = core.output_range();
         let ends = [off + offset, on + offset, off - offset, on - offset];
         let small = rounding.is_some_and(|rounding| rounding > T::ZERO && rounding < T::SMALLEST);

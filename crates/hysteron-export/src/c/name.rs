@@ -6,27 +6,38 @@ use std::path::Path;
 /// As many letters of an external name as C99 tells apart (5.2.4.1).
 const LONGEST: usize = 31;
 
-/// Words of C and C++, and what C99 reserves (7.1.3): a global object of that name does not compile or replaces a function.
-const TAKEN: &str = "auto break case char const continue default do double else enum extern float for goto if inline int long \
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while \
-    alignas alignof and and_eq asm bitand bitor bool catch class compl concept const_cast constexpr constinit consteval \
-    decltype delete dynamic_cast explicit export false friend mutable namespace new noexcept not not_eq nullptr operator or \
-    or_eq private protected public reinterpret_cast requires static_assert static_cast template this thread_local throw true \
-    try typeid typename typeof using virtual wchar_t xor xor_eq linux unix near far interrupt \
-    main errno size_t ptrdiff_t table offsetof assert signal raise setjmp longjmp setlocale localeconv \
-    isalnum isalpha isblank iscntrl isdigit isgraph islower isprint ispunct isspace isupper isxdigit tolower toupper \
-    acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 log1p log2 logb \
-    modf scalbn scalbln cbrt fabs hypot pow sqrt erf erfc gamma lgamma tgamma ceil floor nearbyint rint lrint llrint round lround \
-    llround trunc fmod remainder remquo copysign nan nextafter nexttoward fdim fmax fmin fma j0 j1 jn y0 y1 yn finite drem \
-    significand scalb exp10 pow10 ffs index rindex bcmp bcopy bzero alloca \
-    cabs carg cimag creal conj cproj cacos casin catan ccos csin ctan cexp clog cpow csqrt \
-    remove rename tmpfile tmpnam fclose fflush fopen freopen setbuf setvbuf fprintf fscanf printf scanf snprintf sprintf sscanf \
-    vfprintf vfscanf vprintf vscanf vsnprintf vsprintf vsscanf fgetc fgets fputc fputs getc getchar gets putc putchar puts ungetc \
-    fread fwrite fgetpos fseek fsetpos ftell rewind clearerr feof ferror perror stdin stdout stderr \
-    atof atoi atol atoll strtod strtof strtold strtol strtoll strtoul strtoull rand srand calloc free malloc realloc abort atexit \
-    exit getenv system bsearch qsort abs labs llabs div ldiv lldiv mblen mbtowc wctomb mbstowcs wcstombs \
-    memcpy memmove strcpy strncpy strcat strncat memcmp strcmp strcoll strncmp strxfrm memchr strchr strcspn strpbrk strrchr \
-    strspn strstr strtok memset strerror strlen clock difftime mktime time asctime ctime gmtime localtime strftime";
+/// Words of C and C++, and what C99 reserves (7.1.3): a global object of that name does not compile
+/// or replaces a function.
+const TAKEN: &str = "auto break case char const continue default do double else enum extern float \
+                     for goto if inline int long register restrict return short signed sizeof \
+                     static struct switch typedef union unsigned void volatile while alignas \
+                     alignof and and_eq asm bitand bitor bool catch class compl concept const_cast \
+                     constexpr constinit consteval decltype delete dynamic_cast explicit export \
+                     false friend mutable namespace new noexcept not not_eq nullptr operator or \
+                     or_eq private protected public reinterpret_cast requires static_assert \
+                     static_cast template this thread_local throw true try typeid typename typeof \
+                     using virtual wchar_t xor xor_eq linux unix near far interrupt main errno \
+                     size_t ptrdiff_t table offsetof assert signal raise setjmp longjmp setlocale \
+                     localeconv isalnum isalpha isblank iscntrl isdigit isgraph islower isprint \
+                     ispunct isspace isupper isxdigit tolower toupper acos asin atan atan2 cos sin \
+                     tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log \
+                     log10 log1p log2 logb modf scalbn scalbln cbrt fabs hypot pow sqrt erf erfc \
+                     gamma lgamma tgamma ceil floor nearbyint rint lrint llrint round lround \
+                     llround trunc fmod remainder remquo copysign nan nextafter nexttoward fdim \
+                     fmax fmin fma j0 j1 jn y0 y1 yn finite drem significand scalb exp10 pow10 ffs \
+                     index rindex bcmp bcopy bzero alloca cabs carg cimag creal conj cproj cacos \
+                     casin catan ccos csin ctan cexp clog cpow csqrt remove rename tmpfile tmpnam \
+                     fclose fflush fopen freopen setbuf setvbuf fprintf fscanf printf scanf \
+                     snprintf sprintf sscanf vfprintf vfscanf vprintf vscanf vsnprintf vsprintf \
+                     vsscanf fgetc fgets fputc fputs getc getchar gets putc putchar puts ungetc \
+                     fread fwrite fgetpos fseek fsetpos ftell rewind clearerr feof ferror perror \
+                     stdin stdout stderr atof atoi atol atoll strtod strtof strtold strtol strtoll \
+                     strtoul strtoull rand srand calloc free malloc realloc abort atexit exit \
+                     getenv system bsearch qsort abs labs llabs div ldiv lldiv mblen mbtowc wctomb \
+                     mbstowcs wcstombs memcpy memmove strcpy strncpy strcat strncat memcmp strcmp \
+                     strcoll strncmp strxfrm memchr strchr strcspn strpbrk strrchr strspn strstr \
+                     strtok memset strerror strlen clock difftime mktime time asctime ctime gmtime \
+                     localtime strftime";
 
 /// The name that was asked for, or one after the model's file.
 pub(super) fn choose(asked: Option<&str>, source: &Path) -> Result<String> {
@@ -70,7 +81,8 @@ fn is_taken(name: &str) -> bool {
         .any(|word| word == name || word == sister)
 }
 
-/// Types and macros of the headers that `hysteron_mcu.h` includes, and what C99 reserves for more of them (7.26.8).
+/// Types and macros of the headers that `hysteron_mcu.h` includes, and what C99 reserves for more
+/// of them (7.26.8).
 fn is_of_headers(name: &str) -> bool {
     let begins = |starts: &[&str]| starts.iter().any(|start| name.starts_with(start));
     let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));

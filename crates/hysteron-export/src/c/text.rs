@@ -54,17 +54,18 @@ pub(super) fn header<T: Number>(
         ),
         match export.inverse {
             true => "inverse: yes".to_owned(),
-            false => {
-                "inverse: none, for there are weights below zero (hys_inverse_step returns HYS_NEGATIVE_WEIGHTS)"
-                    .to_owned()
-            }
+            false => "inverse: none, for there are weights below zero (hys_inverse_step returns \
+                 HYS_NEGATIVE_WEIGHTS)"
+                .to_owned(),
         },
         format!(
-            "memory on a 32-bit target: {} bytes of constants (flash); for each state {} bytes and {} for its turning points (RAM)",
+            "memory on a 32-bit target: {} bytes of constants (flash); for each state {} bytes and \
+             {} for its turning points (RAM)",
             memory.constants, memory.state, memory.turns
         ),
         format!(
-            "worst case: {} turning points passed in a step; {} halvings in an inverse step, then a step",
+            "worst case: {} turning points passed in a step; {} halvings in an inverse step, then \
+             a step",
             export.worst_case.turning_points, export.worst_case.halvings
         ),
     ];
@@ -122,7 +123,8 @@ pub(super) fn source<T: Number>(export: &CExport, constants: &Constants<T>) -> S
 #include \"{name}.h\"
 
 /* The constants below are of {real}. */
-typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} ? 1 : -1];
+typedef char {name}_is_{real}[sizeof(hys_real) == sizeof({real}) && sizeof({real}) == {bytes} \
+? 1 : -1];
 
 static const hys_real table[] = ",
         version = env!("CARGO_PKG_VERSION"),

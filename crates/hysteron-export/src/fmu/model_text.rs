@@ -1,4 +1,5 @@
-//! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines are.
+//! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines
+//! are.
 
 use hysteron::{Model, Operator, Sign};
 use std::fmt::Write;
@@ -18,7 +19,8 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
     };
     let (offset, weights) = (model.offset(), model.weights());
     let mut text = format!(
-        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} {levels}\n\
+        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} \
+         {levels}\n\
          output {offset:?} {sign}\nweights {}\n",
         weights.len()
     );

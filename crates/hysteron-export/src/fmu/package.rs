@@ -27,9 +27,11 @@ pub(super) fn zip(files: &Files, name: &str, fmi: Fmi) -> Result<Vec<u8>> {
         Fmi::V3 => ("x86_64-linux", "x86_64-windows"),
     };
     let licence = format!(
-        "The binaries are part of hysteron, under the licence below. They hold parts of Rust's standard library (MIT or Apache-2.0, \
-         https://github.com/rust-lang/rust/blob/HEAD/COPYRIGHT), that for Windows also of mingw-w64 and of GCC's runtime (GCC Runtime \
-         Library Exception). The model in resources/ is its maker's.\n\n{LICENCE}"
+        "The binaries are part of hysteron, under the licence below. They hold parts of Rust's \
+         standard library (MIT or Apache-2.0, \
+         https://github.com/rust-lang/rust/blob/HEAD/COPYRIGHT), that for Windows also of \
+         mingw-w64 and of GCC's runtime (GCC Runtime Library Exception). The model in resources/ \
+         is its maker's.\n\n{LICENCE}"
     );
     let entries: [(String, &[u8]); ENTRIES] = [
         (DESCRIPTION.into(), files.description.as_bytes()),

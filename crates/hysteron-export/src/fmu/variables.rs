@@ -75,10 +75,11 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
             flag(
                 3,
                 "status",
-                "whether the wanted output is reached: 0; -1 below and 1 above every output; 2 where a relay jumps past it",
+                "whether the wanted output is reached: 0; -1 below and 1 above every output; 2 \
+                 where a relay jumps past it",
             ),
             heading(),
-            band(&model.output),
+            tolerance(&model.output),
             start_on(),
         ],
     };
@@ -148,13 +149,14 @@ fn heading() -> Variable {
         variability: "discrete",
         start: Some("0".into()),
         range: SIGN,
-        description: "where the wanted output goes next: 1 or -1, so that the input crosses the dead band at once; 0 if unknown"
+        description: "where the wanted output goes next: 1 or -1, so that the input crosses the \
+                      dead band at once; 0 if unknown"
             .into(),
         ..time()
     }
 }
 
-fn band(output: &Quantity) -> Variable {
+fn tolerance(output: &Quantity) -> Variable {
     Variable {
         name: "tolerance".into(),
         reference: 5,

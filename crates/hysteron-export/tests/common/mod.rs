@@ -75,7 +75,8 @@ impl Exported {
             largest = largest.max(model.plane().levels());
         }
         let mut text = format!(
-            "{includes}#define MOST_TURNS {}\nstatic const hys_model *const models[] = {{{list}}};\n",
+            "{includes}#define MOST_TURNS {}\n\
+             static const hys_model *const models[] = {{{list}}};\n",
             turn_capacity(largest)
         );
         if adaptation {
@@ -83,7 +84,8 @@ impl Exported {
             let numbers = table_len(largest) + 3 * (operators + 1) + operators;
             writeln!(
                 text,
-                "#define MOST_NUMBERS {numbers}\nstatic const hys_real *const weights[] = {{{weights}}};"
+                "#define MOST_NUMBERS {numbers}\n\
+                 static const hys_real *const weights[] = {{{weights}}};"
             )
             .unwrap();
         }
@@ -129,9 +131,13 @@ impl Exported {
             // The corners that one call of `leave` wipes out count as well.
             let corner = "do { /*";
             assert_eq!(text.matches(corner).count(), 1);
+            let counted = format!("static size_t passed; {travel} passed = 0;");
             text.replace(step, &format!("{limit} {step}"))
-                .replace(travel, "static size_t passed; static void travel(hys_state *state, hys_real x)\n{ passed = 0;")
-                .replace("static void leave(", "static size_t passed; static void leave(")
+                .replace(travel, &counted)
+                .replace(
+                    "static void leave(",
+                    "static size_t passed; static void leave(",
+                )
                 .replace(corner, &format!("passed--; do {{ {limit} /*"))
         });
         self.edit("hysteron_mcu_inverse.c", |mut text| {
@@ -156,7 +162,8 @@ impl Exported {
                 let after = after.replacen(bisection, &counted, 1);
                 text = format!("{before}{at} size_t halved = 0;{after}");
             }
-            let log2 = "static size_t log2_of(size_t n) { size_t k = 0; while (n > 1) { n /= 2; k++; } return k; }";
+            let log2 = "static size_t log2_of(size_t n)\n\
+                        { size_t k = 0; while (n > 1) { n /= 2; k++; } return k; }";
             format!("{log2}\n{text}")
         });
     }

@@ -1,4 +1,5 @@
-//! Programs that tests start, and what happens where one is missing. The tests of the C interface share this file.
+//! Programs that tests start, and what happens where one is missing. The tests of the C interface
+//! share this file.
 #![allow(clippy::unwrap_used, dead_code)]
 
 #[path = "../../../hysteron/tests/common/skip.rs"]

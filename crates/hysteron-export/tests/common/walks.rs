@@ -12,7 +12,8 @@ pub fn rng(seed: u64) -> StdRng {
     StdRng::seed_from_u64(seed)
 }
 
-/// A model of any kind: weights dense, mostly zero, one only, of very different size, or of either sign.
+/// A model of any kind: weights dense, mostly zero, one only, of very different size, or of either
+/// sign.
 pub fn model(rng: &mut StdRng, operator: Operator, levels: usize) -> Model {
     let n = operator_count(levels);
     let only = rng.random_range(0..n);

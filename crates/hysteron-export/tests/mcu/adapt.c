@@ -1,4 +1,5 @@
-/* As driver.c, for models that learn. `weights`, an array beside `models`, and MOST_NUMBERS are in models.h. */
+/* As driver.c, for models that learn. models.h has `weights`, an array beside `models`, and
+ * MOST_NUMBERS, too. */
 #include <stdio.h>
 
 #include "hysteron_mcu_adapt.h"
@@ -37,8 +38,10 @@ int main(void)
             /* Exactly what is asked for, in memory that held something else. */
             memset(memory, 0x55, sizeof memory);
             needed = (k + 1) * (k + 2) / 2 + 2 * k * (k + 1) + 3;
-            code = hys_adapt_start(&adaptive, models[n], weights[n], models[n]->offset, &options, memory, needed, turns, 4 * k + 8);
-            printf("m %d\n", code != 0 ? code : hys_start(&adaptive.model, &compensator, others, 4 * k + 8));
+            code = hys_adapt_start(&adaptive, models[n], weights[n], models[n]->offset, &options,
+                                   memory, needed, turns, 4 * k + 8);
+            printf("m %d\n",
+                   code != 0 ? code : hys_start(&adaptive.model, &compensator, others, 4 * k + 8));
             break;
         case 'a':
             x = number(word());
@@ -56,7 +59,8 @@ int main(void)
             heading = atoi(word());
             y = number(word());
             code = hys_rebase(&compensator);
-            code = code != 0 ? code : hys_inverse_step(&compensator, x, heading, y, &input, &status);
+            code =
+                code != 0 ? code : hys_inverse_step(&compensator, x, heading, y, &input, &status);
             printf("i %d %" PRIx64 " %d\n", code, bits(input), status);
             break;
         case 'f':

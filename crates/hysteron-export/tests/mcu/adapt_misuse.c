@@ -12,7 +12,8 @@ static hys_adapt_options options;
 
 static int start(const hys_real *theirs)
 {
-    return hys_adapt_start(&adaptive, models[0], theirs, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS);
+    return hys_adapt_start(&adaptive, models[0], theirs, 0, &options, memory, MOST_NUMBERS, turns,
+                           MOST_TURNS);
 }
 
 int main(void)
@@ -23,23 +24,31 @@ int main(void)
     int outcome = 42;
 
     CHECK(hys_adapt_step(&adaptive, 1, 1, &y, &outcome) == HYS_STATE_MISMATCH);
-    CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH && hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
-    CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH && hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
+    CHECK(hys_adapt_freeze(&adaptive, 1) == HYS_STATE_MISMATCH &&
+          hys_adapt_keep(&adaptive) == HYS_STATE_MISMATCH);
+    CHECK(hys_adapt_roll_back(&adaptive) == HYS_STATE_MISMATCH &&
+          hys_adapt_realign(&adaptive) == HYS_STATE_MISMATCH);
     CHECK(hys_adapt_weights(&adaptive) == NULL && hys_adapt_weights(NULL) == NULL);
     hys_adapt_defaults(NULL);
     hys_adapt_defaults(&options);
-    CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, NULL, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, NULL, memory, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, NULL, MOST_NUMBERS, turns, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, NULL, MOST_TURNS) == HYS_NULL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS - 1, turns, MOST_TURNS) ==
-          HYS_MEMORY_TOO_SMALL);
-    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS - 1) ==
-          HYS_MEMORY_TOO_SMALL);
-    CHECK(hys_adapt_start(&adaptive, model, w, nan, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) ==
-          HYS_INPUT_NOT_FINITE);
+    CHECK(hys_adapt_start(NULL, model, w, 0, &options, memory, MOST_NUMBERS, turns, MOST_TURNS) ==
+          HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, NULL, w, 0, &options, memory, MOST_NUMBERS, turns,
+                          MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, NULL, 0, &options, memory, MOST_NUMBERS, turns,
+                          MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, NULL, memory, MOST_NUMBERS, turns, MOST_TURNS) ==
+          HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, NULL, MOST_NUMBERS, turns,
+                          MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, NULL,
+                          MOST_TURNS) == HYS_NULL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS - 1, turns,
+                          MOST_TURNS) == HYS_MEMORY_TOO_SMALL);
+    CHECK(hys_adapt_start(&adaptive, model, w, 0, &options, memory, MOST_NUMBERS, turns,
+                          MOST_TURNS - 1) == HYS_MEMORY_TOO_SMALL);
+    CHECK(hys_adapt_start(&adaptive, model, w, nan, &options, memory, MOST_NUMBERS, turns,
+                          MOST_TURNS) == HYS_INPUT_NOT_FINITE);
 #define REFUSED(field, value)                 \
     do {                                      \
         hys_adapt_defaults(&options);            \
@@ -78,8 +87,10 @@ int main(void)
     CHECK(hys_adapt_step(&adaptive, nan, 1, &y, &outcome) == HYS_INPUT_NOT_FINITE);
     CHECK(hys_adapt_step(&adaptive, 1, infinity, &y, &outcome) == HYS_INPUT_NOT_FINITE);
     CHECK(hys_adapt_freeze(NULL, 1) == HYS_NULL && hys_adapt_keep(NULL) == HYS_NULL);
-    CHECK(hys_adapt_roll_back(NULL) == HYS_NULL && hys_adapt_realign(NULL) == HYS_NULL && hys_rebase(NULL) == HYS_NULL);
+    CHECK(hys_adapt_roll_back(NULL) == HYS_NULL && hys_adapt_realign(NULL) == HYS_NULL &&
+          hys_rebase(NULL) == HYS_NULL);
     CHECK(y == 42 && outcome == 42);
-    CHECK(hys_adapt_step(&adaptive, model->max, 1, &y, &outcome) == HYS_OK && outcome == HYS_LEARNED);
+    CHECK(hys_adapt_step(&adaptive, model->max, 1, &y, &outcome) == HYS_OK &&
+          outcome == HYS_LEARNED);
     return 0;
 }

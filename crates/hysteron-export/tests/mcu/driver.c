@@ -1,7 +1,9 @@
-/* Runs commands from standard input on the models that models.h names, and prints results as bit patterns. */
+/* Runs commands from standard input on the models that models.h names. Prints results as bit
+ * patterns. */
 #include <stdio.h>
 
-#include "models.h" /* the models' headers; `models`, an array of pointers to them, and MOST_TURNS of the largest */
+/* The models' headers; `models`, an array of pointers to them; MOST_TURNS of the largest. */
+#include "models.h"
 #include "words.h"
 
 #define MOST_POINTS MOST_TURNS

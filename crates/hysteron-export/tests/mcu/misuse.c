@@ -80,15 +80,17 @@ int main(void)
     points[0] = 1;
     points[1] = 2;
     CHECK(hys_restore(&state, points, 2, 1) == HYS_TURNING_POINTS);
-    CHECK(memcmp(&state.top, &before.top, sizeof state.top) == 0 && state.x == before.x && state.y == before.y &&
-          state.end == before.end && state.input == before.input);
+    CHECK(memcmp(&state.top, &before.top, sizeof state.top) == 0 && state.x == before.x &&
+          state.y == before.y && state.end == before.end && state.input == before.input);
 
     /* Nothing of that did any harm. */
     CHECK(hys_step(&state, (model->max + model->min) / 2, &y) == HYS_OK && y == there);
-    CHECK(hys_inverse_step(&state, there, HYS_HOLD, nan, &x, &status) == HYS_OK && status == HYS_REACHED);
+    CHECK(hys_inverse_step(&state, there, HYS_HOLD, nan, &x, &status) == HYS_OK &&
+          status == HYS_REACHED);
     CHECK(hys_inverse_step(&state, there, HYS_HOLD, infinity, &x, &status) == HYS_OK);
     CHECK(hys_restore(&state, NULL, 0, model->bottom) == HYS_OK);
-    CHECK(hys_step(&state, model->bottom, &y) == HYS_OK && y == (model->kind == 0 ? model->offset : y));
+    CHECK(hys_step(&state, model->bottom, &y) == HYS_OK &&
+          y == (model->kind == 0 ? model->offset : y));
     CHECK(hys_step(&other, forward->max, &y) == HYS_OK);
     return 0;
 }

@@ -22,7 +22,8 @@ const LEARNERS: [(&str, Learner); 4] = [
     ("drift", Learner::Drift),
 ];
 
-/// Beginning and end of the names of recordings of one loop at each of several stresses, and the column of the output.
+/// Beginning and end of the names of recordings of one loop at each of several stresses, and the
+/// column of the output.
 const MATERIALS: [(&str, &[f64], &str); 2] = [
     ("flexinol", &[50.0, 150.0, 200.0], "strain"),
     (
@@ -42,7 +43,8 @@ fn main() -> Result<()> {
     print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least squares, forgetting 1 |"
+        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least \
+         squares, forgetting 1 |"
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
@@ -250,7 +252,8 @@ impl Loops {
             options: FitOptions {
                 range: Some((plane.min(), plane.max())),
                 levels: LEVELS,
-                // A strain is recovered on heating; at the lowest stress there is hardly any to tell that from.
+                // A strain is recovered on heating; at the lowest stress there is hardly any to
+                // tell that from.
                 sign: Some(Sign::Negative),
                 ..FitOptions::default()
             },

@@ -47,7 +47,8 @@ fn table(scenario: &Scenario, comparison: &Comparison) {
         );
     }
     println!(
-        "| | tracking RMSE, {unit} | largest | prediction RMSE | frozen | lag after reversals, s | drive travel, % |"
+        "| | tracking RMSE, {unit} | largest | prediction RMSE | frozen | lag after reversals, s | \
+         drive travel, % |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     let medians = comparison.medians();

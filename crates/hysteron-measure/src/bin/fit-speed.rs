@@ -1,5 +1,5 @@
-//! How fast weights are identified, against SciPy's dense way in the same run, and how time and memory grow:
-//! `cargo run --release -p hysteron-measure --bin fit-speed`
+//! How fast weights are identified, against SciPy's dense way in the same run, and how time and
+//! memory grow: `cargo run --release -p hysteron-measure --bin fit-speed`
 
 #[path = "../scipy/mod.rs"]
 mod scipy;
@@ -23,7 +23,8 @@ fn main() -> Result<()> {
         "Simulated material, first-order reversal curves and a walk between levels, noise of 1 %.\n"
     );
     println!(
-        "| levels | samples | time of a fit | SciPy, dense: regressor + NNLS | ratio | difference of squared errors |"
+        "| levels | samples | time of a fit | SciPy, dense: regressor + NNLS | ratio | difference \
+         of squared errors |"
     );
     println!("| ---: | ---: | ---: | ---: | ---: | ---: |");
     for levels in [20, 40] {

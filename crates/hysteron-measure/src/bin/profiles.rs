@@ -1,5 +1,5 @@
-//! Compares designed profiles with other experiments at the same rates, and prints `docs/profiles.md`:
-//! `cargo run --release -p hysteron-measure --bin profiles`
+//! Compares designed profiles with other experiments at the same rates, and prints
+//! `docs/profiles.md`: `cargo run --release -p hysteron-measure --bin profiles`
 
 use hysteron::{DesignOptions, Excitation, Operator, Plane, Rates, design, excitation, ramps};
 use hysteron_sim::rig::{Experiment, LEVELS, RANGE_DEGC};
@@ -33,7 +33,8 @@ fn outcome(plane: Plane, turns: &[f64]) -> Result<Outcome, Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     print!("{}", include_str!("profiles.md"));
     println!(
-        "| K | operators N | profile | duration, min | of the spiral's | operators determined | of N |"
+        "| K | operators N | profile | duration, min | of the spiral's | operators determined | of \
+         N |"
     );
     println!("| ---: | ---: | --- | ---: | ---: | ---: | ---: |");
     let (min, max) = RANGE_DEGC;

@@ -41,7 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("name the folder of the recordings")?;
     print!("{}", include_str!("recordings.md"));
     println!(
-        "| recording | samples, branches | MKP auto | levels, smoothness | MKP, K = 20 | KP | relay | SciPy, K = 20 | auto / best |"
+        "| recording | samples, branches | MKP auto | levels, smoothness | MKP, K = 20 | KP | \
+         relay | SciPy, K = 20 | auto / best |"
     );
     println!("| --- | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |");
     let mut names: Vec<String> = std::fs::read_dir(&folder)?

@@ -20,7 +20,8 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// The range of the finite values; a constant series gets room on both sides, an empty one `0…1`.
+    /// The range of the finite values; a constant series gets room on both sides, an empty one
+    /// `0…1`.
     pub(crate) fn of<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
         let drawable = values.into_iter().filter(|value| value.abs() <= LARGEST);
         let (low, high) = drawable.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
@@ -48,7 +49,8 @@ impl Span {
         }
     }
 
-    /// The range of the finite values with zero in it, as a scale of colours needs; `0…1` where all are zero.
+    /// The range of the finite values with zero in it, as a scale of colours needs; `0…1` where all
+    /// are zero.
     pub(crate) fn from_zero(values: impl IntoIterator<Item = f64>) -> Self {
         let drawable = values.into_iter().filter(|value| value.abs() <= LARGEST);
         let (low, high) = drawable.fold((0.0_f64, 0.0_f64), |(low, high), value| {

@@ -31,7 +31,8 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// An SVG document under construction. Its ids begin with `stem`, so that figures can share one HTML page.
+/// An SVG document under construction. Its ids begin with `stem`, so that figures can share one
+/// HTML page.
 #[derive(Debug)]
 pub(crate) struct Canvas {
     stem: &'static str,
@@ -158,9 +159,11 @@ impl Canvas {
     pub(crate) fn finish(self, width: f64, height: f64, title: &str, label: &str) -> String {
         let (title, label) = (escape(title), escape(label));
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
-             role=\"img\" aria-label=\"{label}\" font-family=\"{FAMILIES}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
-             <title>{title}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{label}\" \
+             font-family=\"{FAMILIES}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
+             <title>{title}</title>\n<rect width=\"{width}\" height=\"{height}\" \
+             fill=\"#ffffff\"/>\n{}</svg>\n",
             self.body
         )
     }

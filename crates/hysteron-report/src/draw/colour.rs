@@ -10,7 +10,8 @@ const SEQUENTIAL: [[f64; 3]; 6] = [
     [9.0, 36.0, 84.0],
 ];
 
-/// The same for weights below zero; their cells also carry a minus sign, which survives a grey print.
+/// The same for weights below zero; their cells also carry a minus sign, which survives a grey
+/// print.
 const NEGATIVE: [[f64; 3]; 6] = [
     [240.0, 243.0, 246.0],
     [250.0, 214.0, 181.0],

@@ -18,7 +18,8 @@ pub(crate) fn room(scale: &Axis, height: f64) -> f64 {
     BESIDE + BAR + left_of(scale, height)
 }
 
-/// Draws the colours of `scale` over `area`, each value relative to `largest`, with ticks and label on the right.
+/// Draws the colours of `scale` over `area`, each value relative to `largest`, with ticks and label
+/// on the right.
 pub(crate) fn colour_bar(canvas: &mut Canvas, area: Rect, scale: &Axis, largest: f64) {
     let Span { low, high } = scale.span;
     let shade = area.height / SHADES as f64;

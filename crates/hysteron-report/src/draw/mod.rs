@@ -1,4 +1,5 @@
-//! A small drawing layer: text that knows its width, an SVG canvas, axes, panels and the sheet around them.
+//! A small drawing layer: text that knows its width, an SVG canvas, axes, panels and the sheet
+//! around them.
 
 pub(crate) mod axis;
 pub(crate) mod canvas;

@@ -36,7 +36,8 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet `width` pixels wide with its title and, at the right, a note; its ids begin with `stem`.
+    /// A sheet `width` pixels wide with its title and, at the right, a note; its ids begin with
+    /// `stem`.
     pub(crate) fn new(stem: &'static str, width: f64, title: &str, note: Option<&str>) -> Self {
         let mut canvas = Canvas::new(stem);
         let baseline = MARGIN + 0.8 * TITLE;

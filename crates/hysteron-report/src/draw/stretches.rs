@@ -20,7 +20,8 @@ pub(crate) fn stretches(moving: &[bool]) -> Vec<Range<usize>> {
     found
 }
 
-/// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one sample has a width.
+/// Where in time a stretch of samples begins and ends: halfway to its neighbours, so that one
+/// sample has a width.
 pub(crate) fn extent(time: &[f64], stretch: &Range<usize>) -> [f64; 2] {
     let between = |before: Option<usize>, after: usize| {
         let after = time.get(after).or(time.last()).copied().unwrap_or(0.0);

@@ -1,4 +1,5 @@
-//! One look for all figures. Lines differ in lightness, width and dash, so that they stay apart in grey.
+//! One look for all figures. Lines differ in lightness, width and dash, so that they stay apart in
+//! grey.
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

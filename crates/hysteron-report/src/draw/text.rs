@@ -3,8 +3,9 @@
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
 
-/// The font of all figures: Arimo, whose widths are those of Arial and Helvetica, so that a viewer without it
-/// keeps the layout. A subset with Latin, Greek, Cyrillic and the signs of units; see `fonts/README.md`.
+/// The font of all figures: Arimo, whose widths are those of Arial and Helvetica, so that a viewer
+/// without it keeps the layout. A subset with Latin, Greek, Cyrillic and the signs of units; see
+/// `fonts/README.md`.
 pub(crate) const FONT: &[u8] = include_bytes!("../../fonts/Arimo-Regular.ttf");
 
 /// The families to look for, best first.

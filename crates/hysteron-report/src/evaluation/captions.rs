@@ -42,12 +42,14 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
         Figure::StandardErrors => standard_errors(view),
         Figure::CrossValidation => cross_validation(view),
         Figure::PlaneEvolution => format!(
-            "Operator states on the plane at telling moments of the {input}. The dashed line is the present {input}: rising, it \
-             switches operators on below it; falling, it switches them off to its right."
+            "Operator states on the plane at telling moments of the {input}. The dashed line is \
+             the present {input}: rising, it switches operators on below it; falling, it switches \
+             them off to its right."
         ),
         Figure::WeightsPlane => format!(
-            "{} of {} weights are not zero. Each stands at the thresholds of its operator: α, where the falling {input} \
-             switches it off, and β, where the rising {input} switches it on.",
+            "{} of {} weights are not zero. Each stands at the thresholds of its operator: α, \
+             where the falling {input} switches it off, and β, where the rising {input} switches \
+             it on.",
             count(view.source.weights_not_zero()),
             count(view.source.weights().len()),
         ),
@@ -68,8 +70,9 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
             )
         }
         Figure::InputTime => format!(
-            "The {input} that the inverse model finds for the {recorded} {output}, beside the {recorded} {input}. While the \
-             {output} rests, hold keeps its {input}; anticipate crosses the dead band as soon as the {output} is known to reverse."
+            "The {input} that the inverse model finds for the {recorded} {output}, beside the \
+             {recorded} {input}. While the {output} rests, hold keeps its {input}; anticipate \
+             crosses the dead band as soon as the {output} is known to reverse."
         ),
         Figure::InputDiscrepancy => {
             format!(
@@ -92,8 +95,8 @@ fn load_loops(view: &View<'_>) -> String {
         return String::new();
     };
     format!(
-        "One model, whose weights depend on the {}: the whole loop at the smallest, the middle and the largest that it was \
-         identified at.",
+        "One model, whose weights depend on the {}: the whole loop at the smallest, the middle and \
+         the largest that it was identified at.",
         load.quantity.name
     )
 }
@@ -119,8 +122,8 @@ fn standard_errors(view: &View<'_>) -> String {
         .copied()
         .fold(0.0, f64::max);
     format!(
-        "Standard errors of the weights, from {} replicates of a bootstrap over branches; the largest is {}. Weights that are held at \
-         zero in every replicate have none.",
+        "Standard errors of the weights, from {} replicates of a bootstrap over branches; the \
+         largest is {}. Weights that are held at zero in every replicate have none.",
         count(confidence.replicates),
         view.output.value(largest)
     )
@@ -131,8 +134,8 @@ fn cross_validation(view: &View<'_>) -> String {
         return String::new();
     };
     format!(
-        "Error on {}branches left out, in {} folds. Chosen is the smoothest that is no worse than the best by more than one standard \
-         error over the folds: {}, {} of the range.",
+        "Error on {}branches left out, in {} folds. Chosen is the smoothest that is no worse than \
+         the best by more than one standard error over the folds: {}, {} of the range.",
         if validation.whole_branches {
             ""
         } else {
@@ -188,7 +191,8 @@ fn dead_band(view: &View<'_>) -> String {
     let [begin, end] = [worst.stretch.start, worst.stretch.end - 1]
         .map(|k| view.time_label.value(at_index(&view.time, k)));
     format!(
-        "The {} rests from {begin} to {end} while the {} travels. At {} the held {} is off by {}, the anticipated one by {}.",
+        "The {} rests from {begin} to {end} while the {} travels. At {} the held {} is off by {}, \
+         the anticipated one by {}.",
         view.output.name,
         view.input.name,
         view.time_label.value(at(&view.time)),

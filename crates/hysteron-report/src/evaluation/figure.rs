@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// A figure of a report, named after what it shows and, where it stands beside a figure of the chapter, numbered after that.
+/// A figure of a report, named after what it shows and, where it stands beside a figure of the
+/// chapter, numbered after that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Figure {
@@ -35,7 +36,8 @@ pub enum Figure {
 }
 
 impl Figure {
-    /// Every figure, in the order of the page: the fitted weights, both tests, then the memory behind them.
+    /// Every figure, in the order of the page: the fitted weights, both tests, then the memory
+    /// behind them.
     pub const ALL: [Self; 13] = [
         Self::WeightsPlane,
         Self::WeightsMap,

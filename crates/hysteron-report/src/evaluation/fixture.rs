@@ -1,4 +1,5 @@
-//! A shape-memory actuator as the tests see it: K = 20 over 20…80 °C, a major loop, then minor loops.
+//! A shape-memory actuator as the tests see it: K = 20 over 20…80 °C, a major loop, then minor
+//! loops.
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
@@ -47,7 +48,8 @@ impl Fixture {
         self.model = model(levels, density);
     }
 
-    /// Gives a model that says how it was chosen and how certain it is: identified from the recording.
+    /// Gives a model that says how it was chosen and how certain it is: identified from the
+    /// recording.
     pub(crate) fn identify(&mut self) {
         let recordings = std::slice::from_ref(&self.recording);
         let candidates = Candidates::new(Some(8), None);

@@ -3,7 +3,8 @@
 use hysteron::Turning;
 
 /// Sample indices at which the picture of the plane is worth drawing, in the order of time: the
-/// reversals of the input by more than `threshold` and the samples midway of the branches between them.
+/// reversals of the input by more than `threshold` and the samples midway of the branches between
+/// them.
 pub(crate) fn candidates(input: &[f64], threshold: f64) -> Vec<usize> {
     let mut turning = Turning::new(threshold);
     let turns = input.iter().filter_map(|&x| turning.push(x));

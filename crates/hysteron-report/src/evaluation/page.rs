@@ -10,7 +10,8 @@ use crate::stack::Figures;
 use hysteron::{Confidence, Errors};
 use maud::{Markup, html};
 
-/// The sections of the page and their figures; figures in one group stand side by side where there is room.
+/// The sections of the page and their figures; figures in one group stand side by side where there
+/// is room.
 const SECTIONS: [(&str, &[&[Figure]]); 5] = [
     (
         "The model",
@@ -48,7 +49,8 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
 /// The page around the figures in `drawn`.
 pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
     let lead = html! {
-        "A hysteresis model of " (view.output.name) " over " (view.input.name) ", tested on a recording of both."
+        "A hysteresis model of " (view.output.name) " over " (view.input.name)
+        ", tested on a recording of both."
     };
     let simulated =
         "Simulated: this recording comes from a simulated plant, not from a measurement.";
@@ -57,8 +59,9 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         (errors(view))
         @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
         footer {
-            "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of SMA actuators”, which \
-             introduces the MKP model; its figure numbers are given with each caption."
+            "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of \
+             SMA actuators”, which introduces the MKP model; its figure numbers are given with \
+             each caption."
         }
     };
     frame::html(
@@ -74,7 +77,10 @@ fn facts(view: &View<'_>) -> Markup {
     let weights = source.weights().len();
     html! {
         div.wide { table.facts {
-            tr { th scope="row" { "Recording" } td { (count(view.recording.input.len())) " samples, " (view.recorded()) } }
+            tr {
+                th scope="row" { "Recording" }
+                td { (count(view.recording.input.len())) " samples, " (view.recorded()) }
+            }
             tr {
                 th scope="row" { "Plane" }
                 td {
@@ -82,7 +88,10 @@ fn facts(view: &View<'_>) -> Markup {
                     (count(source.levels())) " levels " (view.input.value(source.step())) " apart"
                 }
             }
-            tr { th scope="row" { "Weights not zero" } td { (count(source.weights_not_zero())) " of " (count(weights)) } }
+            tr {
+                th scope="row" { "Weights not zero" }
+                td { (count(source.weights_not_zero())) " of " (count(weights)) }
+            }
             @if let Some(confidence) = view.confidence() { (certainty(confidence, view)) }
         } }
     }
@@ -94,11 +103,23 @@ fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
         tr { th scope="row" { "Operators" } td { (classes_counted(&confidence.excitation)) } }
         tr {
             th scope="row" { "Rank" }
-            td { (count(confidence.rank)) " of " (count(confidence.unknowns)) ", condition " (significant(confidence.condition, 3)) }
+            td {
+                (count(confidence.rank)) " of " (count(confidence.unknowns)) ", condition "
+                (significant(confidence.condition, 3))
+            }
         }
-        tr { th scope="row" { "Noise" } td { (view.output.value(confidence.noise)) " (standard deviation of what the fit leaves)" } }
+        tr {
+            th scope="row" { "Noise" }
+            td {
+                (view.output.value(confidence.noise))
+                " (standard deviation of what the fit leaves)"
+            }
+        }
         @if let Some(band) = view.band() {
-            tr { th scope="row" { "95\u{a0}% band" } td { (percent(band.coverage_percent)) " of this recording inside" } }
+            tr {
+                th scope="row" { "95\u{a0}% band" }
+                td { (percent(band.coverage_percent)) " of this recording inside" }
+            }
         }
     }
 }
@@ -118,6 +139,9 @@ fn errors(view: &View<'_>) -> Markup {
         }
     };
     let (input, output) = (&view.input, &view.output);
+    let policies = view
+        .inverse()
+        .map(|inverse| [("hold", &inverse.hold), ("anticipate", &inverse.anticipate)]);
     html! {
         div.wide { table {
             thead { tr {
@@ -127,12 +151,12 @@ fn errors(view: &View<'_>) -> Markup {
             } }
             tbody {
                 (row(&format!("forward: {}", output.name), &view.evaluation.forward, &output.unit))
-                @if let Some(inverse) = view.inverse() {
-                    @for (policy, run) in [("hold", &inverse.hold), ("anticipate", &inverse.anticipate)] {
-                        @for (part, errors) in [("moving", &run.moving), ("dead band", &run.dead_band)] {
-                            @if let Some(errors) = errors {
-                                (row(&format!("inverse, {policy}: {}, {part}", input.name), errors, &input.unit))
-                            }
+                @for (policy, run) in policies.into_iter().flatten() {
+                    @let parts = [("moving", &run.moving), ("dead band", &run.dead_band)];
+                    @for (part, errors) in parts {
+                        @if let Some(errors) = errors {
+                            @let name = format!("inverse, {policy}: {}, {part}", input.name);
+                            (row(&name, errors, &input.unit))
                         }
                     }
                 }
@@ -169,7 +193,9 @@ fn section(
         section {
             h2 { (name) }
             @if inverse {
-                @if let Err(reason) = &view.evaluation.inverse { p { "No inverse test: " (reason) } }
+                @if let Err(reason) = &view.evaluation.inverse {
+                    p { "No inverse test: " (reason) }
+                }
             }
             @for group in groups {
                 @if let &&[figure] = group {
@@ -178,7 +204,11 @@ fn section(
                     div.pair { @for &figure in *group { (picture(figure, view, drawn)) } }
                 }
             }
-            @if inverse && no_dead_band { p { "The output never rests while the input travels: there is no dead band to show." } }
+            @if inverse && no_dead_band {
+                p {
+                    "The output never rests while the input travels: there is no dead band to show."
+                }
+            }
         }
     }
 }

@@ -24,19 +24,21 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Writes `index.html` and, for each figure, `figNN-name.svg` and `figNN-name.png` into `dir`, which is made if absent.
+    /// Writes `index.html` and, for each figure, `figNN-name.svg` and `figNN-name.png` into `dir`,
+    /// which is made if absent.
     ///
-    /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page says why. Figures of
-    /// confidence, cross-validation and load need a model that has them. The report appears whole or not at all. Files of
-    /// an earlier report are replaced or removed, those of others stay; a path alone as `dir` replaces these too
-    /// where they are in the way.
+    /// Figures 13 to 15 need an inverse, and figure 15 a dead band; where they are missing the page
+    /// says why. Figures of confidence, cross-validation and load need a model that has them. The
+    /// report appears whole or not at all. Files of an earlier report are replaced or removed,
+    /// those of others stay; a path alone as `dir` replaces these too where they are in the way.
     ///
     /// Returns the paths written, the page first.
     ///
     /// # Errors
     ///
-    /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything is written;
-    /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
+    /// [`ReportError::Length`] where the evaluation belongs to another recording, before anything
+    /// is written; [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not
+    /// be made.
     pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
         stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }

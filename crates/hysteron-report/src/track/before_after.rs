@@ -1,4 +1,5 @@
-//! The plane before and after: the weights of the first and the last snapshot, and what came and went.
+//! The plane before and after: the weights of the first and the last snapshot, and what came and
+//! went.
 
 use super::figure::Figure;
 use super::stack::{HEADING, Heading, head};

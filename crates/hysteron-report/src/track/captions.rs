@@ -29,27 +29,32 @@ pub(super) fn caption(figure: Figure, view: &View<'_>) -> String {
     };
     let caption = match figure {
         Figure::Tracking => format!(
-            "The {output} that each controller reached, over the wide line of the reference. {BEYOND}{events}"
+            "The {output} that each controller reached, over the wide line of the reference. \
+             {BEYOND}{events}"
         ),
         Figure::Error => format!(
-            "The {output} minus the reference, for every controller on the same axis. {BEYOND}{events}"
+            "The {output} minus the reference, for every controller on the same axis. \
+             {BEYOND}{events}"
         ),
         Figure::Reversal => reversal(view),
         Figure::Input => format!(
-            "The {input} of the plant, over the wide line of the {input} that the controller asked for where it does so.{events}{}",
+            "The {input} of the plant, over the wide line of the {input} that the controller asked \
+             for where it does so.{events}{}",
             if view.has_drive() { "" } else { STRIP }
         ),
         Figure::Drive => format!("What each controller wrote to the device.{events}{STRIP}"),
         Figure::Prediction => format!(
-            "The {output} that the controller's model expected before it learned from the reading, minus the {output} that \
-             came, for the controllers with a model.{events}"
+            "The {output} that the controller's model expected before it learned from the reading, \
+             minus the {output} that came, for the controllers with a model.{events}"
         ),
         Figure::WeightsTime => format!(
-            "Change since the first snapshot of the total weight of the rows of the plane, which are the operators that a rising \
-             {input} switches on at β; below, of the sum of all weights and of the offset.{}{events}",
+            "Change since the first snapshot of the total weight of the rows of the plane, which \
+             are the operators that a rising {input} switches on at β; below, of the sum of all \
+             weights and of the offset.{}{events}",
             start(view)
         ),
-        Figure::BeforeAfter => "The weights of the first and the last snapshot on one scale, and their difference on its own."
+        Figure::BeforeAfter => "The weights of the first and the last snapshot on one scale, and \
+                                their difference on its own."
             .into(),
     };
     let caption = capitalised(&caption);
@@ -60,18 +65,22 @@ pub(super) fn caption(figure: Figure, view: &View<'_>) -> String {
     }
 }
 
-const BEYOND: &str = "Bars at an edge mark samples beyond it: errors that do not last, or of a minority of the controllers, do not set the scale.";
+const BEYOND: &str = "Bars at an edge mark samples beyond it: errors that do not last, or of a \
+                      minority of the controllers, do not set the scale.";
 
-const STRIP: &str = " The strip below a panel marks the samples at which the loop reported a drive at its limit, a reference out of \
-                     the model's reach or a fault of the sensor; rows that no controller needs are left out.";
+const STRIP: &str = " The strip below a panel marks the samples at which the loop reported a drive \
+                     at its limit, a reference out of the model's reach or a fault of the sensor; \
+                     rows that no controller needs are left out.";
 
 fn reversal(view: &View<'_>) -> String {
     let Some(reversal) = &view.reversal else {
         return String::new();
     };
     format!(
-        "The reversal of the reference at {}: of those before the first event, the one with the largest difference of lag. The lag is the \
-         time by which the {} goes back by a twentieth of the range later than the reference, each from its own extreme. The dashed line is the reversal.",
+        "The reversal of the reference at {}: of those before the first event, the one with the \
+         largest difference of lag. The lag is the time by which the {} goes back by a twentieth \
+         of the range later than the reference, each from its own extreme. The dashed line is the \
+         reversal.",
         view.time.value(reversal.time),
         view.output.name
     )

@@ -6,8 +6,8 @@ use hysteron::{AtomicFolder, Quantity};
 use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
 
-/// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one. See
-/// [`TrackReport::write_into`].
+/// Writes the report of `comparison`, which `scenario` gave, into the folder `within` another one.
+/// See [`TrackReport::write_into`].
 ///
 /// # Errors
 /// As [`TrackReport::write`].
@@ -65,8 +65,10 @@ fn table(scenario: &Scenario, comparison: &Comparison, output: &Quantity) -> Tra
         (comparison.controllers[k].words().to_owned(), cells)
     };
     let notes = vec![format!(
-        "Medians over {} runs with different noise, each with a model identified from a recording of its own; the curves are those of the first. \
-         Lag: from when the reference has gone back by a twentieth of its range after a reversal until the output has. Ratios: medians over the runs.",
+        "Medians over {} runs with different noise, each with a model identified from a recording \
+         of its own; the curves are those of the first. Lag: from when the reference has gone back \
+         by a twentieth of its range after a reversal until the output has. Ratios: medians over \
+         the runs.",
         scenario.seeds
     )];
     let known = |value: f64| Some(value).filter(|value| !value.is_nan());

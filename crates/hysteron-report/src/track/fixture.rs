@@ -1,4 +1,5 @@
-//! Made-up runs: a reference of sweeps and steps, controllers that follow it late and with errors of their own.
+//! Made-up runs: a reference of sweeps and steps, controllers that follow it late and with errors
+//! of their own.
 #![allow(clippy::unwrap_used)]
 
 use super::{NamedTrace, TrackReport, TrackTable};

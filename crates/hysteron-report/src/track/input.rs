@@ -63,7 +63,8 @@ pub(super) fn drive(view: &View<'_>) -> Option<String> {
         .then(|| figure(Figure::Drive, view, keys, curves, true))
 }
 
-/// Two curves of each run, the first pale beneath the second, and a strip with the status where `strip`.
+/// Two curves of each run, the first pale beneath the second, and a strip with the status where
+/// `strip`.
 fn figure(
     figure: Figure,
     view: &View<'_>,

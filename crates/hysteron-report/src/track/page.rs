@@ -22,15 +22,17 @@ const SECTIONS: [(&str, &[Figure]); 4] = [
 pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
     let lead = html! {
         "Control of the " (view.output.name)
-        @if view.has_drive() { " by " (view.drive.name) ", through the hysteresis of its " } @else { " through the hysteresis of its " }
-        (view.input.name) ": " (runs(view)) "."
+        @if view.has_drive() { " by " (view.drive.name) "," }
+        " through the hysteresis of its " (view.input.name) ": " (runs(view)) "."
     };
     let simulated = "Simulated: these runs come from a simulated plant, not from a device.";
     let body = html! {
         (table(view))
         (facts(view))
         @for (name, figures) in SECTIONS { (section(name, figures, view, drawn)) }
-        @if view.reversal.is_none() { p { "The reference does not reverse before the first event: there is no lag to show." } }
+        @if view.reversal.is_none() {
+            p { "The reference does not reverse before the first event: there is no lag to show." }
+        }
         @if view.adapting().next().is_none() { p { "No controller adapted its weights." } }
     };
     let simulated = view.report.simulated.then_some(simulated);
@@ -44,6 +46,11 @@ fn runs(view: &View<'_>) -> String {
     }
 }
 
+/// A number of a table; a dash where there is none.
+fn cell(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".into(), |value| significant(value, digits))
+}
+
 fn table(view: &View<'_>) -> Markup {
     let table = view.report.table;
     html! {
@@ -55,17 +62,20 @@ fn table(view: &View<'_>) -> Markup {
                 } }
                 tbody { @for (name, values) in &table.rows { tr {
                     th scope="row" { (name) }
-                    @for value in values { td { (value.map_or("–".into(), |value| significant(value, 3))) } }
+                    @for value in values { td { (cell(*value, 3)) } }
                 } } }
             } }
         }
         @for note in &table.notes { p.lead { (note) } }
         @if !table.ratios.is_empty() {
             div.wide { table {
-                thead { tr { th scope="col" { "Ratio" } @for header in &table.ratio_headers { th scope="col" { (header) } } } }
+                thead { tr {
+                    th scope="col" { "Ratio" }
+                    @for header in &table.ratio_headers { th scope="col" { (header) } }
+                } }
                 tbody { @for (name, values) in &table.ratios { tr {
                     th scope="row" { (name) }
-                    @for value in values { td { (value.map_or("–".into(), |value| significant(value, 2))) } }
+                    @for value in values { td { (cell(*value, 2)) } }
                 } } }
             } }
         }
@@ -83,18 +93,23 @@ fn facts(view: &View<'_>) -> Markup {
                 th scope="row" { "Runs shown" }
                 td {
                     (count(time.len())) " samples each"
-                    @if let [first, .., last] = time { ", " (view.time.value(*first)) " to " (view.time.value(*last)) }
+                    @if let [first, .., last] = time {
+                        ", " (view.time.value(*first)) " to " (view.time.value(*last))
+                    }
                 }
             }
             tr {
                 th scope="row" { "Plane" }
                 td {
-                    (significant(plane.min(), 3)) " to " (view.input.value(plane.max())) ", " (count(plane.levels())) " levels"
+                    (significant(plane.min(), 3)) " to " (view.input.value(plane.max())) ", "
+                    (count(plane.levels())) " levels"
                 }
             }
             @if !report.events.is_empty() { tr {
                 th scope="row" { "Events" }
-                td { @for (time, words) in report.events { div { "at " (view.time.value(*time)) ": " (words) } } }
+                td { @for (time, words) in report.events {
+                    div { "at " (view.time.value(*time)) ": " (words) }
+                } }
             } }
         } }
     }

@@ -78,9 +78,11 @@ pub struct TrackReport<'a> {
     pub input: Quantity,
     /// The output, which follows the reference.
     pub output: Quantity,
-    /// What the controllers write to the device; the same as `input` where the drive itself is the input.
+    /// What the controllers write to the device; the same as `input` where the drive itself is the
+    /// input.
     pub drive: Quantity,
-    /// One run of each controller, in the order of the figures; all have the same number of samples.
+    /// One run of each controller, in the order of the figures; all have the same number of
+    /// samples.
     pub runs: &'a [NamedTrace<'a>],
     /// Disturbances: when, s, and what.
     pub events: &'a [(f64, String)],
@@ -91,19 +93,22 @@ pub struct TrackReport<'a> {
 }
 
 impl TrackReport<'_> {
-    /// Writes `index.html` and the figures `track-*.svg` and `track-*.png` into `dir`, which is made if absent.
+    /// Writes `index.html` and the figures `track-*.svg` and `track-*.png` into `dir`, which is
+    /// made if absent.
     ///
-    /// Samples that are not finite leave gaps. What no run has (predictions, snapshots, reversals of the reference) has no
-    /// figure. The report appears whole or not at all. Files of an earlier report are replaced or removed, those of
-    /// others stay; a path alone as `dir` replaces these too where they are in the way.
+    /// Samples that are not finite leave gaps. What no run has (predictions, snapshots, reversals
+    /// of the reference) has no figure. The report appears whole or not at all. Files of an earlier
+    /// report are replaced or removed, those of others stay; a path alone as `dir` replaces these
+    /// too where they are in the way.
     ///
     /// Returns the paths written, the page first.
     ///
     /// # Errors
     ///
-    /// [`ReportError::NoRun`], [`ReportError::EmptyRun`], [`ReportError::RunLength`], [`ReportError::Snapshot`] and
-    /// [`ReportError::Row`] where the parts do not fit together, before anything is written;
-    /// [`ReportError::Write`] and [`ReportError::Raster`] name the file that could not be made.
+    /// [`ReportError::NoRun`], [`ReportError::EmptyRun`], [`ReportError::RunLength`],
+    /// [`ReportError::Snapshot`] and [`ReportError::Row`] where the parts do not fit together,
+    /// before anything is written; [`ReportError::Write`] and [`ReportError::Raster`] name the file
+    /// that could not be made.
     pub fn write<'t>(&self, dir: impl Into<Destination<'t>>) -> Result<Vec<PathBuf>, ReportError> {
         stack::write_folder(dir, |folder, within| self.write_into(folder, within))
     }

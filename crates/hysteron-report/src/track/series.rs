@@ -135,9 +135,11 @@ fn rms_and_largest(view: &View<'_>, values: &[f64]) -> String {
     )
 }
 
-/// A range around zero in which most of the values of most panels can be told apart, and whether it leaves some out.
+/// A range around zero in which most of the values of most panels can be told apart, and whether it
+/// leaves some out.
 ///
-/// Half of the panels decide: a few controllers that are far off throughout must not make the others illegible.
+/// Half of the panels decide: a few controllers that are far off throughout must not make the
+/// others illegible.
 pub(super) fn robust<'a>(panels: impl Iterator<Item = &'a [f64]> + Clone) -> (Span, bool) {
     let all = Span::of(panels.clone().flatten()).with(0.0).padded(0.06);
     let mut seen: Vec<f64> = panels.filter_map(far).collect();

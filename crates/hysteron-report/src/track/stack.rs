@@ -34,8 +34,9 @@ pub(super) fn height(count: usize) -> f64 {
     }
 }
 
-/// Draws a panel for each of `headings`, with `below` pixels left free under each and `beside` to its left at least, the events of the report across
-/// all, and one label for the `y` axis that they share. Returns the panels and the height of the figure.
+/// Draws a panel for each of `headings`, with `below` pixels left free under each and `beside` to
+/// its left at least, the events of the report across all, and one label for the `y` axis that they
+/// share. Returns the panels and the height of the figure.
 pub(super) fn stack(
     sheet: &mut Sheet,
     view: &View<'_>,
@@ -101,8 +102,8 @@ fn place(x: &Axis, area: Rect, time: f64) -> Option<f64> {
         .then_some(area.x + share * area.width)
 }
 
-/// The words of the events, in rows where they would overlap. Words that find no place in them are left to the page. Returns
-/// where the panels can begin.
+/// The words of the events, in rows where they would overlap. Words that find no place in them are
+/// left to the page. Returns where the panels can begin.
 fn events(sheet: &mut Sheet, view: &View<'_>, x: &Axis, area: Rect) -> f64 {
     let mut taken: [Vec<[f64; 2]>; ROWS] = Default::default();
     let mut used = 0;

@@ -1,4 +1,5 @@
-//! What every figure and caption reads: the parts of the report in the words and units that are shown.
+//! What every figure and caption reads: the parts of the report in the words and units that are
+//! shown.
 
 use super::figure::Figure;
 use super::report::{NamedTrace, TrackReport};

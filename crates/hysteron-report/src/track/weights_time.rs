@@ -1,4 +1,5 @@
-//! How the weights change over time: the rows of the plane as a map, their sum and the offset as curves.
+//! How the weights change over time: the rows of the plane as a map, their sum and the offset as
+//! curves.
 
 use super::figure::Figure;
 use super::report::NamedTrace;
@@ -27,7 +28,8 @@ const COLUMNS: usize = 160;
 const ROWS: usize = 48;
 /// Shades on each side of zero.
 const SHADES: f64 = 24.0;
-/// Minus signs stand this many pixels apart where the change is below zero, in rows at least this far apart.
+/// Minus signs stand this many pixels apart where the change is below zero, in rows at least this
+/// far apart.
 const SPACING: f64 = 16.0;
 const LEADING: f64 = 6.0;
 
@@ -274,7 +276,8 @@ mod tests {
         let plane = Plane::new(0.0, 1.0, 100).unwrap();
         let [before, after] = [0.0, 1.0].map(|w| snapshot(w, 0.0, &vec![w; plane.operators()]));
         let change = Change::of(&trace(vec![before, after]), &plane);
-        // Blocks of three rows: 1 + 2 + 3 operators in the first, the 100 of row 100 alone in the last.
+        // Blocks of three rows: 1 + 2 + 3 operators in the first, the 100 of row 100 alone in the
+        // last.
         assert_eq!(change.rows[1].len(), 34);
         assert_eq!((change.rows[1][0], change.rows[1][33]), (6.0, 100.0));
     }

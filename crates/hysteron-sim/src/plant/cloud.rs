@@ -1,22 +1,24 @@
 //! The cloud of relays: what no model of the toolkit can hold exactly.
 //!
-//! Its relays lie in centre and half-width, not on the grid of a plane; they are dense where the density is high; the
-//! density is asymmetric and has two lobes; and a load moves and deforms it. All numbers are invented, in the size of a stack
-//! actuator of 100 µm at 150 V.
+//! Its relays lie in centre and half-width, not on the grid of a plane; they are dense where the
+//! density is high; the density is asymmetric and has two lobes; and a load moves and deforms it.
+//! All numbers are invented, in the size of a stack actuator of 100 µm at 150 V.
 
 use super::relays::Relay;
 
 /// Load at which the cloud is as [`LOBES`] say, N.
 pub(super) const NOMINAL_LOAD_N: f64 = 6.0;
 
-/// A part of the cloud. Centres and half-widths follow Kumaraswamy's distribution (1980), which is skewed and bounded.
+/// A part of the cloud. Centres and half-widths follow Kumaraswamy's distribution (1980), which is
+/// skewed and bounded.
 struct Lobe {
     /// Share of the relays.
     share: f64,
     /// Range of the centres, V, and the shape of their distribution.
     centre_v: (f64, f64),
     centre_shape: (f64, f64),
-    /// Largest half-width at the lowest and at the highest centre, V, and the shape of the half-widths' distribution.
+    /// Largest half-width at the lowest and at the highest centre, V, and the shape of the
+    /// half-widths' distribution.
     half_width_v: (f64, f64),
     half_width_shape: (f64, f64),
 }
@@ -60,7 +62,8 @@ pub(super) fn cloud(levels: usize, load_n: f64) -> Vec<Relay> {
             let widest = between(lobe.half_width_v, place);
             for j in 0..levels {
                 let half = widest * quantile(lobe.half_width_shape, middle(j, levels));
-                // A load asks for more drive, spreads the switching and widens most what switches late.
+                // A load asks for more drive, spreads the switching and widens most what switches
+                // late.
                 let centre = centre + load * (5.0 + 0.08 * (centre - 75.0));
                 let half = half * (1.0 + load * 0.3 * place);
                 relays.push(Relay {

@@ -1,21 +1,24 @@
 //! Functional fatigue: what cycling does to a shape-memory alloy.
 //!
-//! On each transformation dislocations stay behind. They shift the transformation temperatures (Miyazaki, Igo & Otsuka 1986, thermal
-//! cycles of NiTi) and leave strain that does not come back, more slowly from cycle to cycle until the alloy is trained (Bo &
-//! Lagoudas 1999). The measure of cycling is the transformed fraction that has accumulated, `ζ = ∫ |dξ|`, 2 for a complete
-//! cycle; what changes follows `X = X_∞ (1 − exp(−ζ/ζ₀))`, the law of Lagoudas & Entchev 2004. So partial cycles count in part,
-//! rest counts nothing, and how time is divided does not matter.
+//! On each transformation dislocations stay behind. They shift the transformation temperatures
+//! (Miyazaki, Igo & Otsuka 1986, thermal cycles of NiTi) and leave strain that does not come back,
+//! more slowly from cycle to cycle until the alloy is trained (Bo & Lagoudas 1999). The measure of
+//! cycling is the transformed fraction that has accumulated, `ζ = ∫ |dξ|`, 2 for a complete cycle;
+//! what changes follows `X = X_∞ (1 − exp(−ζ/ζ₀))`, the law of Lagoudas & Entchev 2004. So partial
+//! cycles count in part, rest counts nothing, and how time is divided does not matter.
 
 use crate::rig::{RigError, check};
 use serde::Deserialize;
 
-/// How far and how fast the spring drifts as it is cycled. The sizes are chosen, not measured on the chapter's spring.
+/// How far and how fast the spring drifts as it is cycled. The sizes are chosen, not measured on
+/// the chapter's spring.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FatigueOptions {
     /// Where the shift of all four transformation temperatures ends, K, from −20 to 20. Default −5.
     pub shift_k: f64,
-    /// Where the irrecoverable lengthening of the spring ends, mm, from 0 to 10: the load hangs lower by it. Default 1.
+    /// Where the irrecoverable lengthening of the spring ends, mm, from 0 to 10: the load hangs
+    /// lower by it. Default 1.
     pub irrecoverable_mm: f64,
     /// Complete cycles until 63 % of both have come, from 0.1 to 10⁶. Default 20.
     pub cycles: f64,

@@ -28,9 +28,11 @@ pub struct PreisachPlantOptions {
     pub levels: usize,
     /// Drift with time. Default none.
     pub drift: DriftOptions,
-    /// Whether the amplifier's voltage (the hysteresis' input) is measured. Default no: the drive is all that is known.
+    /// Whether the amplifier's voltage (the hysteresis' input) is measured. Default no: the drive
+    /// is all that is known.
     pub measure_input: bool,
-    /// Sensor of the displacement, µm. Default ±0.3 (a standard deviation of 0.1 % of the stroke), −50 to 150 µm in 16 bits.
+    /// Sensor of the displacement, µm. Default ±0.3 (a standard deviation of 0.1 % of the stroke),
+    /// −50 to 150 µm in 16 bits.
     pub output_sensor: SensorOptions,
     /// Sensor of the amplifier's voltage, V. Default ±0.3, −10 to 190 V in 16 bits.
     pub input_sensor: SensorOptions,
@@ -60,11 +62,12 @@ impl Default for PreisachPlantOptions {
     }
 }
 
-/// A **simulated** actuator with a hidden fine Preisach density, driven by a voltage from 0 to [`PreisachPlantOptions::limit_v`].
+/// A **simulated** actuator with a hidden fine Preisach density, driven by a voltage from 0 to
+/// [`PreisachPlantOptions::limit_v`].
 ///
-/// Output is the displacement in µm, input of the hysteresis the amplifier's voltage. It knows [`Disturbance::Load`], which shifts
-/// and spreads the thresholds, lowers the gain and moves the offset, and the sensor's faults; it has no room and
-/// no pre-deformation.
+/// Output is the displacement in µm, input of the hysteresis the amplifier's voltage. It knows
+/// [`Disturbance::Load`], which shifts and spreads the thresholds, lowers the gain and moves the
+/// offset, and the sensor's faults; it has no room and no pre-deformation.
 ///
 /// ```
 /// use hysteron::control::{Device, SimulatedPlant};
@@ -129,8 +132,9 @@ impl PreisachPlant {
         STROKE_UM * (gain * self.relays.share() - 0.18 * load)
     }
 
-    /// Lets `dt_s` pass. What the relays feel is the amplifier's voltage less the drift of their thresholds. Both are exponentials, so it
-    /// turns round at most once, at a time that is known: the relays get every turning point, and the step is exact.
+    /// Lets `dt_s` pass. What the relays feel is the amplifier's voltage less the drift of their
+    /// thresholds. Both are exponentials, so it turns round at most once, at a time that is known:
+    /// the relays get every turning point, and the step is exact.
     fn step(&mut self, dt_s: f64) {
         if let Some(turn_s) = self.turn_s().filter(|turn_s| *turn_s < dt_s) {
             let (amplifier_v, to_come) = self.after(turn_s);
@@ -141,7 +145,8 @@ impl PreisachPlant {
             .travel(self.felt_v(self.amplifier_v, self.to_come));
     }
 
-    /// The amplifier's voltage and the drift that is still to come after `dt_s` with the drive held.
+    /// The amplifier's voltage and the drift that is still to come after `dt_s` with the drive
+    /// held.
     fn after(&self, dt_s: f64) -> (f64, f64) {
         let decay = if self.options.lag_s > 0.0 {
             (-dt_s / self.options.lag_s).exp()
@@ -195,7 +200,8 @@ impl Device for PreisachPlant {
 }
 
 impl SimulatedPlant for PreisachPlant {
-    /// Exact up to rounding, in one step; only a sensor with a lag divides it, to follow the output's path.
+    /// Exact up to rounding, in one step; only a sensor with a lag divides it, to follow the
+    /// output's path.
     fn advance(&mut self, dt_s: f64) {
         let longest = self
             .output

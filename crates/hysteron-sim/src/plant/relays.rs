@@ -35,7 +35,8 @@ impl Relays {
         new
     }
 
-    /// Gives the relays other thresholds. Each keeps its state where the input lies between its new ones.
+    /// Gives the relays other thresholds. Each keeps its state where the input lies between its new
+    /// ones.
     pub(super) fn replace(&mut self, relays: &[Relay]) {
         let sorted = |threshold: fn(&Relay) -> f64| {
             let mut all: Vec<Threshold> = relays.iter().map(threshold).zip(0..).collect();

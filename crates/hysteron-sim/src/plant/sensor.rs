@@ -9,13 +9,15 @@ use serde::Deserialize;
 /// Shortest step that a lag asks of its plant, s.
 const SHORTEST_STEP_S: f64 = 1e-3;
 
-/// Step (s) in which the answer of a first-order body with the time constant `lag_s` is nearly straight.
+/// Step (s) in which the answer of a first-order body with the time constant `lag_s` is nearly
+/// straight.
 pub(super) fn step_for_lag(lag_s: f64) -> f64 {
     (0.1 * lag_s).max(SHORTEST_STEP_S)
 }
 
-/// What a simulated sensor does to the truth, in the unit of what it measures. The default is a perfect sensor, also for the fields
-/// that a scenario leaves out: who names a sensor describes the whole of it.
+/// What a simulated sensor does to the truth, in the unit of what it measures. The default is a
+/// perfect sensor, also for the fields that a scenario leaves out: who names a sensor describes the
+/// whole of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SensorOptions {
@@ -96,7 +98,8 @@ pub struct SensorChain {
 }
 
 impl SensorChain {
-    /// A sensor settled on `truth`. Equal `seed`s give equal readings; the sensors of one plant differ by their `stream`.
+    /// A sensor settled on `truth`. Equal `seed`s give equal readings; the sensors of one plant
+    /// differ by their `stream`.
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] as [`SensorOptions::check`].
@@ -130,7 +133,8 @@ impl SensorChain {
         self.last = self.shown(truth);
     }
 
-    /// Longest step (s) in which the truth may be taken as moving along a straight line for [`follow`](Self::follow).
+    /// Longest step (s) in which the truth may be taken as moving along a straight line for
+    /// [`follow`](Self::follow).
     pub(super) fn longest_step_s(&self) -> f64 {
         if self.options.lag_s > 0.0 {
             step_for_lag(self.options.lag_s)
@@ -155,7 +159,8 @@ impl SensorChain {
 
     /// One reading, NaN where it is lost.
     pub fn read(&mut self) -> f64 {
-        // Drawn whatever the faults are: afterwards the noise goes on as it would have without them.
+        // Drawn whatever the faults are: afterwards the noise goes on as it would have without
+        // them.
         let noisy = self.options.noise().read(self.lagged, &mut self.rng);
         let chance: f64 = StandardUniform.sample(&mut self.rng);
         let dropped = chance < self.options.dropout;
@@ -178,7 +183,8 @@ impl SensorChain {
         self.lost = lost;
     }
 
-    /// What the display makes of a value: steps counted from the range's lower end, within the range.
+    /// What the display makes of a value: steps counted from the range's lower end, within the
+    /// range.
     fn shown(&self, value: f64) -> f64 {
         let (low, high) = self
             .options
@@ -258,7 +264,8 @@ mod tests {
         assert!(readings.iter().all(|x| x.abs() <= 3.0));
         let mean = readings.iter().sum::<f64>() / 1e4;
         let deviation = (readings.iter().map(|x| x * x).sum::<f64>() / 1e4).sqrt();
-        // Five standard errors; what lies beyond three sigmas is drawn again, which takes 1.4 % off the deviation.
+        // Five standard errors; what lies beyond three sigmas is drawn again, which takes 1.4 % off
+        // the deviation.
         assert!(mean.abs() < 0.05, "{mean}");
         assert!((deviation - 0.986).abs() < 0.05, "{deviation}");
     }

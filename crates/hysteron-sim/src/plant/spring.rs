@@ -1,4 +1,5 @@
-//! The virtual rig as a plant for control: current in, temperature and displacement out through sensors.
+//! The virtual rig as a plant for control: current in, temperature and displacement out through
+//! sensors.
 
 use super::divided;
 use super::fatigue::FatigueOptions;
@@ -7,7 +8,8 @@ use crate::rig::{Plant, Rig, RigError, check};
 use hysteron::control::{Device, Disturbance, Reading, SimulatedPlant};
 use serde::Deserialize;
 
-/// Largest load, N. Beyond it the law of the outer rings turns over (580 MPa); from 10 N on it is steep.
+/// Largest load, N. Beyond it the law of the outer rings turns over (580 MPa); from 10 N on it is
+/// steep.
 const MAX_LOAD_N: f64 = 11.0;
 
 /// The simulated spring and its sensors. The default is the chapter's rig.
@@ -24,7 +26,8 @@ pub struct SpringPlantOptions {
     pub limit_a: f64,
     /// Drift with the thermal cycles. Default none.
     pub fatigue: Option<FatigueOptions>,
-    /// Sensor of the temperature (the hysteresis' input), °C. Default [`SensorOptions::THERMOCOUPLE`].
+    /// Sensor of the temperature (the hysteresis' input), °C. Default
+    /// [`SensorOptions::THERMOCOUPLE`].
     pub thermocouple: SensorOptions,
     /// Sensor of the displacement (the output), mm. Default [`SensorOptions::LVDT`].
     pub lvdt: SensorOptions,
@@ -48,11 +51,12 @@ impl Default for SpringPlantOptions {
     }
 }
 
-/// The **simulated** NiTi spring of the virtual [`rig`](crate::rig), driven by a current (A), from 0 to
-/// [`SpringPlantOptions::limit_a`]; the source itself keeps to these limits.
+/// The **simulated** NiTi spring of the virtual [`rig`](crate::rig), driven by a current (A), from
+/// 0 to [`SpringPlantOptions::limit_a`]; the source itself keeps to these limits.
 ///
-/// Output is the displacement in mm, input of the hysteresis the temperature in °C. It knows every [`Disturbance`]; a change of load
-/// acts at constant temperature, and the displacement is still counted from where the first load hung.
+/// Output is the displacement in mm, input of the hysteresis the temperature in °C. It knows every
+/// [`Disturbance`]; a change of load acts at constant temperature, and the displacement is still
+/// counted from where the first load hung.
 ///
 /// ```
 /// use hysteron::control::{Device, Disturbance, SimulatedPlant};

@@ -1,7 +1,9 @@
-//! Heat loss of a wire to still air: natural convection around a horizontal cylinder (Churchill & Chu 1975).
+//! Heat loss of a wire to still air: natural convection around a horizontal cylinder (Churchill &
+//! Chu 1975).
 
-/// Air at atmospheric pressure: temperature (K), kinematic viscosity (10⁻⁶ m²/s), thermal conductivity (10⁻³ W/(m·K)),
-/// thermal diffusivity (10⁻⁶ m²/s), Prandtl number. Incropera & DeWitt, *Fundamentals of Heat and Mass Transfer*, Table A.4.
+/// Air at atmospheric pressure: temperature (K), kinematic viscosity (10⁻⁶ m²/s), thermal
+/// conductivity (10⁻³ W/(m·K)), thermal diffusivity (10⁻⁶ m²/s), Prandtl number. Incropera &
+/// DeWitt, *Fundamentals of Heat and Mass Transfer*, Table A.4.
 const AIR: [[f64; 5]; 5] = [
     [250.0, 11.44, 22.3, 15.9, 0.720],
     [300.0, 15.89, 26.3, 22.5, 0.707],
@@ -27,12 +29,12 @@ fn air(kelvin: f64) -> [f64; 5] {
     core::array::from_fn(|n| low[n] + share * (high[n] - low[n]))
 }
 
-/// Heat transfer coefficient `h`, W/(m²·K), of a horizontal cylinder of `diameter_m` (m) at `surface_degc` (°C) in still
-/// air of `air_degc` (°C).
+/// Heat transfer coefficient `h`, W/(m²·K), of a horizontal cylinder of `diameter_m` (m) at
+/// `surface_degc` (°C) in still air of `air_degc` (°C).
 ///
-/// `Nu = {0.60 + 0.387 Ra^(1/6) / [1 + (0.559/Pr)^(9/16)]^(8/27)}²` with the properties of air at the mean of both
-/// temperatures; valid up to `Ra = 10¹²`. The wire of a spring is nearly horizontal; that neighbouring coils
-/// warm each other is left out, and so is radiation.
+/// `Nu = {0.60 + 0.387 Ra^(1/6) / [1 + (0.559/Pr)^(9/16)]^(8/27)}²` with the properties of air at
+/// the mean of both temperatures; valid up to `Ra = 10¹²`. The wire of a spring is nearly
+/// horizontal; that neighbouring coils warm each other is left out, and so is radiation.
 #[must_use]
 pub fn still_air(diameter_m: f64, surface_degc: f64, air_degc: f64) -> f64 {
     let film = 0.5 * (surface_degc + air_degc) + ZERO_CELSIUS;

@@ -21,7 +21,8 @@ pub enum RigError {
     /// Heating or cooling came to rest before the temperature reached the target.
     #[error(
         "the temperature comes to rest at {reached_degc:.1} degC and never reaches the target \
-         {target_degc} degC: choose a target between room temperature and what the current can heat to"
+         {target_degc} degC: choose a target between room temperature and what the current can \
+         heat to"
     )]
     TargetNotReached {
         /// The target, °C.

@@ -1,4 +1,5 @@
-//! The chapter's experiment (section 5.2) on the virtual rig: one complete cycle and partial cycles, twice.
+//! The chapter's experiment (section 5.2) on the virtual rig: one complete cycle and partial
+//! cycles, twice.
 
 use super::error::{RigError, check};
 use super::plant::{Plant, Rig};
@@ -10,9 +11,10 @@ use rand_chacha::rand_core::SeedableRng;
 
 /// Cut-off of the filter in [`prepared`], Hz.
 ///
-/// The thermocouple's noise has a standard deviation of ⅓ °C, which on the steep part of a branch counts as much as that of the
-/// LVDT. The signals themselves are slow (tens of seconds a branch) except for the corners, where
-/// the current is switched; a lower cut-off would round them by more than the noise that it takes away.
+/// The thermocouple's noise has a standard deviation of ⅓ °C, which on the steep part of a branch
+/// counts as much as that of the LVDT. The signals themselves are slow (tens of seconds a branch)
+/// except for the corners, where the current is switched; a lower cut-off would round them by more
+/// than the noise that it takes away.
 pub const CUTOFF_HZ: f64 = 0.3;
 
 /// Samples that [`prepared`] keeps in a period of the cut-off frequency.
@@ -25,15 +27,17 @@ const SEARCH_LIMIT_S: f64 = 3600.0;
 
 /// An experiment: a rig, a profile of temperatures, two sensors.
 ///
-/// The current is switched as in the chapter, full on or off: on until the temperature has risen to the next target, off until
-/// it has fallen to it. The plant itself finds these times, without noise, so repeated experiments share one schedule.
+/// The current is switched as in the chapter, full on or off: on until the temperature has risen to
+/// the next target, off until it has fallen to it. The plant itself finds these times, without
+/// noise, so repeated experiments share one schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
     /// The plant.
     pub rig: Rig,
     /// Current when heating, A. Default 2.
     pub current_a: f64,
-    /// Temperatures at which the current is switched, °C; each is heated or cooled to, whichever leads there.
+    /// Temperatures at which the current is switched, °C; each is heated or cooled to, whichever
+    /// leads there.
     pub targets_degc: Vec<f64>,
     /// Rest at room temperature before the first heating, s. Default 5.
     pub rest_s: f64,
@@ -45,8 +49,9 @@ pub struct Experiment {
     pub lvdt: Sensor,
 }
 
-/// Default: the experiment of the chapter. It does not give its temperatures; these excite its plane from 20 to
-/// 80 °C by one complete cycle, partial heatings from cold, partial coolings from hot, and loops within loops.
+/// Default: the experiment of the chapter. It does not give its temperatures; these excite its
+/// plane from 20 to 80 °C by one complete cycle, partial heatings from cold, partial coolings from
+/// hot, and loops within loops.
 impl Default for Experiment {
     fn default() -> Self {
         Self {
@@ -142,7 +147,8 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and records it with the sensors' noise. Equal seeds give equal recordings.
+    /// Runs the experiment and records it with the sensors' noise. Equal seeds give equal
+    /// recordings.
     ///
     /// # Errors
     /// As [`schedule`](Self::schedule).
@@ -169,12 +175,13 @@ impl Experiment {
     }
 }
 
-/// The recording with input and output low-pass filtered at [`CUTOFF_HZ`], as the chapter did "to remove the noise
-/// and disturbance". Both go through the same filter, so the loops keep their width.
+/// The recording with input and output low-pass filtered at [`CUTOFF_HZ`], as the chapter did "to
+/// remove the noise and disturbance". Both go through the same filter, so the loops keep their
+/// width.
 ///
 /// # Errors
-/// [`RigError::NoTime`] without time, [`RigError::Filter`] where the filter refuses, for example fewer than two samples or
-/// samples too far apart.
+/// [`RigError::NoTime`] without time, [`RigError::Filter`] where the filter refuses, for example
+/// fewer than two samples or samples too far apart.
 pub fn prepared(recording: &Recording) -> Result<Recording, RigError> {
     let time = recording.time.as_deref().ok_or(RigError::NoTime)?;
     let [first, .., last] = time else {

@@ -1,20 +1,20 @@
 //! The virtual rig: a **simulated** stand-in for the chapter's experiment (section 5.2).
 //!
-//! The chapter measured a NiTi tension spring that lifts 6 N while a current of 2 A is switched on and off. Those data are
-//! not published, so this module simulates the experiment from published laws of the material, and from nothing
-//! that the toolkit is to prove: it holds no Preisach, KP or MKP model. What it records is marked
-//! [`Origin::Simulated`](hysteron::Origin::Simulated).
+//! The chapter measured a NiTi tension spring that lifts 6 N while a current of 2 A is switched on
+//! and off. Those data are not published, so this module simulates the experiment from published
+//! laws of the material, and from nothing that the toolkit is to prove: it holds no Preisach, KP or
+//! MKP model. What it records is marked [`Origin::Simulated`](hysteron::Origin::Simulated).
 //!
 //! | Part | Law |
 //! | --- | --- |
-//! | [`Transformation`] | cosine branches (Liang & Rogers 1990, Brinson 1993), partial loops (Ivshin & Pence 1994) |
+//! | [`Transformation`] | cosine branches (Brinson 1993), partial loops (Ivshin & Pence 1994) |
 //! | [`Spring`] | torsion of rings with two moduli (Waram 1993) |
 //! | [`Wire`] | Joule heat, latent heat, natural convection (Churchill & Chu 1975) |
 //! | [`Sensor`] | Gaussian noise within the accuracy that the chapter's section 7 gives |
 //! | [`Experiment`] | one complete and many partial cycles, sampled and [`prepared`] |
 //!
-//! Configuration is plain data ([`Rig`], [`Experiment`]); [`Plant`] is the state in motion, to be driven by any current,
-//! load and room temperature.
+//! Configuration is plain data ([`Rig`], [`Experiment`]); [`Plant`] is the state in motion, to be
+//! driven by any current, load and room temperature.
 
 mod convection;
 mod error;

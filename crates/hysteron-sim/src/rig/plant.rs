@@ -23,12 +23,13 @@ pub struct Rig {
     pub room_degc: f64,
     /// Load that hangs on the spring, N, from 0 to 1000. Default 6.
     pub load_n: f64,
-    /// Pre-deformation, mm, from 0 to 20: how far the spring was stretched, when it was cold, beyond what the load stretches it.
-    /// Default 0.
+    /// Pre-deformation, mm, from 0 to 20: how far the spring was stretched, when it was cold,
+    /// beyond what the load stretches it. Default 0.
     ///
-    /// Martensite keeps it and austenite takes it back, the term `ε_L ξ` of Brinson 1993, so it makes the stroke
-    /// longer and leaves the temperatures as they are. That the load stretches new martensite as far again on each cooling
-    /// (stress-assisted two-way effect) is taken for granted.
+    /// Martensite keeps it and austenite takes it back, the term `ε_L ξ` of Brinson 1993, so it
+    /// makes the stroke longer and leaves the temperatures as they are. That the load stretches new
+    /// martensite as far again on each cooling (stress-assisted two-way effect) is taken for
+    /// granted.
     pub predeformation_mm: f64,
 }
 
@@ -45,8 +46,8 @@ impl Default for Rig {
     }
 }
 
-/// The simulated plant in motion. It is a stand-in for an experiment, made from published laws of the material; it is
-/// not a hysteresis model of this toolkit.
+/// The simulated plant in motion. It is a stand-in for an experiment, made from published laws of
+/// the material; it is not a hysteresis model of this toolkit.
 ///
 /// ```
 /// use hysteron_sim::rig::{Plant, Rig};
@@ -97,10 +98,12 @@ impl Plant {
         Ok(plant)
     }
 
-    /// Lets the constant current `current_a` (A, from −10 to 10) flow for `dt_s` (s, from 0 to 100 000).
+    /// Lets the constant current `current_a` (A, from −10 to 10) flow for `dt_s` (s, from 0 to 100
+    /// 000).
     ///
-    /// The result does not depend on how the caller divides time, up to the error of the integration, because the
-    /// plant takes steps of its own within `dt_s`, none longer than [`Wire::substep_s`].
+    /// The result does not depend on how the caller divides time, up to the error of the
+    /// integration, because the plant takes steps of its own within `dt_s`, none longer than
+    /// [`Wire::substep_s`].
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] if either number is not finite or outside its range.
@@ -114,8 +117,8 @@ impl Plant {
         Ok(())
     }
 
-    /// Changes the load to `load_n` (N, from 0 to 1000) at constant temperature. The heat of the transformation that this
-    /// drives is left out.
+    /// Changes the load to `load_n` (N, from 0 to 1000) at constant temperature. The heat of the
+    /// transformation that this drives is left out.
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] if the load is not finite or outside its range.
@@ -136,7 +139,8 @@ impl Plant {
         Ok(())
     }
 
-    /// Changes the pre-deformation to `predeformation_mm` (mm, from 0 to 20), see [`Rig::predeformation_mm`].
+    /// Changes the pre-deformation to `predeformation_mm` (mm, from 0 to 20), see
+    /// [`Rig::predeformation_mm`].
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] if the number is not finite or outside its range.
@@ -146,8 +150,9 @@ impl Plant {
         Ok(())
     }
 
-    /// Raises all four transformation temperatures to `shift_k` (K, from −50 to 50) above those of [`Rig::transformation`], at
-    /// constant temperature. The heat of the transformation that this drives is left out.
+    /// Raises all four transformation temperatures to `shift_k` (K, from −50 to 50) above those of
+    /// [`Rig::transformation`], at constant temperature. The heat of the transformation that this
+    /// drives is left out.
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] if the number is not finite or outside its range.
@@ -175,8 +180,8 @@ impl Plant {
         self.temperature_degc
     }
 
-    /// How far the load is lifted above where it hung when the plant was new and cold, mm. Under the load of that time it is
-    /// never below zero; a heavier load can pull it below.
+    /// How far the load is lifted above where it hung when the plant was new and cold, mm. Under
+    /// the load of that time it is never below zero; a heavier load can pull it below.
     #[must_use]
     pub fn displacement_mm(&self) -> f64 {
         self.cold_deflection_mm - self.deflection_mm()
@@ -211,12 +216,13 @@ impl Plant {
             + self.rig.predeformation_mm * martensite / all
     }
 
-    /// One step of the classical Runge–Kutta method of order 4. The caller has checked the current and keeps `h` (s) at most
-    /// [`Wire::substep_s`].
+    /// One step of the classical Runge–Kutta method of order 4. The caller has checked the current
+    /// and keeps `h` (s) at most [`Wire::substep_s`].
     pub(crate) fn substep(&mut self, current_a: f64, h: f64) {
         let t = self.temperature_degc;
         let power = |xi, t| self.body.net_power_w(current_a, xi, t, self.rig.room_degc);
-        // The current is constant, so the temperature moves one way within a step; the branch is that of its start.
+        // The current is constant, so the temperature moves one way within a step; the branch is
+        // that of its start.
         let direction = if power(self.martensite_fraction(), t) >= 0.0 {
             Direction::Heating
         } else {
@@ -265,9 +271,9 @@ fn check_room(room_degc: f64) -> Result<(), RigError> {
     check("room temperature (degC)", room_degc, -50.0, 200.0)
 }
 
-/// The stress shifts the start of the martensite (8 MPa/K) faster than the end of the austenite (13.8 MPa/K): from some
-/// 500 MPa at the skin, 10 N on the default spring, partial loops of the outer rings are too steep to be trusted, and beyond
-/// 580 MPa the law turns over.
+/// The stress shifts the start of the martensite (8 MPa/K) faster than the end of the austenite
+/// (13.8 MPa/K): from some 500 MPa at the skin, 10 N on the default spring, partial loops of the
+/// outer rings are too steep to be trusted, and beyond 580 MPa the law turns over.
 fn check_load(load_n: f64) -> Result<(), RigError> {
     check("load (N)", load_n, 0.0, 1000.0)
 }

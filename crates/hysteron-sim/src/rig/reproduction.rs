@@ -1,4 +1,5 @@
-//! The chapter's sections 5 and 6 on the virtual rig: record twice, fit one recording, test on the other.
+//! The chapter's sections 5 and 6 on the virtual rig: record twice, fit one recording, test on the
+//! other.
 
 use super::experiment::{Experiment, prepared};
 use hysteron::{Evaluation, Fit, FitOptions, Model, Recording, Result, evaluate};

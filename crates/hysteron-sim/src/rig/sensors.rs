@@ -1,8 +1,9 @@
 //! The two sensors of the rig and their noise.
 //!
-//! The chapter gives each sensor's accuracy (section 7). It is read as noise: Gaussian, its standard deviation a third of the
-//! accuracy, and drawn again when it falls outside ± accuracy, so that no reading is worse than specified. A slow drift, the
-//! thermocouple's lag and the LVDT's resolution are left out.
+//! The chapter gives each sensor's accuracy (section 7). It is read as noise: Gaussian, its
+//! standard deviation a third of the accuracy, and drawn again when it falls outside ± accuracy, so
+//! that no reading is worse than specified. A slow drift, the thermocouple's lag and the LVDT's
+//! resolution are left out.
 
 use super::error::{RigError, check};
 use rand_chacha::ChaCha8Rng;

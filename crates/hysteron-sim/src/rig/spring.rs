@@ -1,22 +1,25 @@
 //! The NiTi tension spring: two-moduli design (Waram 1993) over a cross-section divided into rings.
 //!
-//! The wire is twisted, so its stress grows from nothing at the axis to the most at the skin, and with it the
-//! transformation temperatures. Each ring is one material point; the spread of their temperatures makes the loops of the whole spring
-//! smooth. The stress is that of the elastic bar, `τ(r) = τ_max · 2r/d` with `τ_max = 8FD/(πd³)`; the curvature of
-//! the coil (Wahl's factor) and the stress that a stiffer ring takes from a softer one are left out.
+//! The wire is twisted, so its stress grows from nothing at the axis to the most at the skin, and
+//! with it the transformation temperatures. Each ring is one material point; the spread of their
+//! temperatures makes the loops of the whole spring smooth. The stress is that of the elastic bar,
+//! `τ(r) = τ_max · 2r/d` with `τ_max = 8FD/(πd³)`; the curvature of the coil (Wahl's factor) and
+//! the stress that a stiffer ring takes from a softer one are left out.
 
 use super::error::{RigError, check};
 use core::f64::consts::PI;
 
-/// Geometry and elastic constants of the spring. The default is the spring of the chapter's Table 1.
+/// Geometry and elastic constants of the spring. The default is the spring of the chapter's Table
+/// 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// Wire diameter `d`, mm. Default 0.75 (the chapter's Table 1).
     pub wire_diameter_mm: f64,
-    /// Mean coil diameter `D`, mm. Default 5.25: Table 1 gives 6, read as the outer diameter, less one wire.
+    /// Mean coil diameter `D`, mm. Default 5.25: Table 1 gives 6, read as the outer diameter, less
+    /// one wire.
     pub coil_diameter_mm: f64,
-    /// Active coils `n`. Default 10. Table 1 does not give it: it is chosen so that the stroke under 6 N comes near
-    /// the 13.5 mm that the chapter tells of with its Fig. 15.
+    /// Active coils `n`. Default 10. Table 1 does not give it: it is chosen so that the stroke
+    /// under 6 N comes near the 13.5 mm that the chapter tells of with its Fig. 15.
     pub active_coils: f64,
     /// Young's modulus of austenite, GPa. Default 67 (Brinson 1993).
     pub austenite_modulus_gpa: f64,
@@ -45,7 +48,8 @@ impl Default for Spring {
 /// One ring of the cross-section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
-    /// Von Mises equivalent stress `√3 τ` for each newton of load, MPa/N, at the radius that halves the ring's area.
+    /// Von Mises equivalent stress `√3 τ` for each newton of load, MPa/N, at the radius that halves
+    /// the ring's area.
     pub stress_mpa_per_n: f64,
     /// Polar second moment of area `J`, mm⁴.
     pub polar_moment_mm4: f64,
@@ -117,10 +121,12 @@ impl Spring {
         austenite + xi * (shear(self.martensite_modulus_gpa) - austenite)
     }
 
-    /// Deflection in mm under `load_n` (N), given each ring's polar moment (mm⁴) and martensite fraction.
+    /// Deflection in mm under `load_n` (N), given each ring's polar moment (mm⁴) and martensite
+    /// fraction.
     ///
-    /// The torque `F D/2` balances over the rings, `θ' = (F D/2) / Σ G(ξ_k) J_k`, and the wire's twist over its
-    /// length `πDn` moves the load by `(D/2) θ' πDn`. For one phase that is the textbook's `8FD³n/(Gd⁴)`.
+    /// The torque `F D/2` balances over the rings, `θ' = (F D/2) / Σ G(ξ_k) J_k`, and the wire's
+    /// twist over its length `πDn` moves the load by `(D/2) θ' πDn`. For one phase that is the
+    /// textbook's `8FD³n/(Gd⁴)`.
     pub fn deflection_mm(&self, load_n: f64, rings: impl Iterator<Item = (f64, f64)>) -> f64 {
         let stiffness: f64 = rings.map(|(j, xi)| self.shear_modulus_mpa(xi) * j).sum();
         let arm = self.coil_diameter_mm / 2.0;

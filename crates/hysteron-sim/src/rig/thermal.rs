@@ -1,14 +1,16 @@
-//! The wire as one thermal body: heated by its own resistance, cooled by still air, held up by the latent heat.
+//! The wire as one thermal body: heated by its own resistance, cooled by still air, held up by the
+//! latent heat.
 //!
-//! `(m c + m L |dξ/dT|) dT/dt = I² R(ξ) − h(T) A (T − T_room)`, with `ξ` the martensite fraction averaged over the
-//! cross-section.
+//! `(m c + m L |dξ/dT|) dT/dt = I² R(ξ) − h(T) A (T − T_room)`, with `ξ` the martensite fraction
+//! averaged over the cross-section.
 
 use super::convection::still_air;
 use super::error::{RigError, check};
 use super::spring::Spring;
 use core::f64::consts::PI;
 
-/// Thermal and electrical constants of the wire. The default is NiTi as in Dynalloy's technical data of Flexinol.
+/// Thermal and electrical constants of the wire. The default is NiTi as in Dynalloy's technical
+/// data of Flexinol.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wire {
     /// Density, kg/m³. Default 6450 (6.45 g/cm³).
@@ -21,7 +23,8 @@ pub struct Wire {
     pub martensite_resistivity_uohm_cm: f64,
     /// Resistivity of austenite, µΩ·cm. Default 82.
     pub austenite_resistivity_uohm_cm: f64,
-    /// Longest step of the integration, s. Default 0.05, the temperature then moves by less than 0.2 K in a step.
+    /// Longest step of the integration, s. Default 0.05, the temperature then moves by less than
+    /// 0.2 K in a step.
     pub substep_s: f64,
 }
 

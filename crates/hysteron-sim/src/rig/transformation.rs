@@ -1,23 +1,27 @@
 //! The phase transformation of one material point: martensite ⇄ austenite, with partial loops.
 //!
-//! - **Major branches**: cosines between the transformation temperatures (Liang & Rogers 1990, Brinson 1993).
-//! - **Stress** shifts the transformation temperatures, `Mₛ(σ) = Mₛ + σ/C_M`, `Aₛ(σ) = Aₛ + σ/C_A`. Turned round, the
-//!   point is driven by the temperatures `θ_M = T − σ/C_M` (cooling) and `θ_A = T − σ/C_A` (heating), so a
-//!   change of load drives the same law as a change of temperature.
-//! - **Partial loops** scale the major branch between the turning point that was left and the one that the branch
-//!   returns to, `ξ = ξ_to + (ξ_from − ξ_to) · (f(θ) − f(θ_to)) / (f(θ_from) − f(θ_to))`. When the branch leads to
-//!   complete transformation this is the multiplicative rule of Ivshin & Pence 1994, `ξ = ξ_from · f(θ)/f(θ_from)`
-//!   on heating and the same for `1 − ξ` on cooling.
+//! - **Major branches**: cosines between the transformation temperatures (Liang & Rogers 1990,
+//!   Brinson 1993).
+//! - **Stress** shifts the transformation temperatures, `Mₛ(σ) = Mₛ + σ/C_M`, `Aₛ(σ) = Aₛ + σ/C_A`.
+//!   Turned round, the point is driven by the temperatures `θ_M = T − σ/C_M` (cooling) and `θ_A = T
+//!   − σ/C_A` (heating), so a change of load drives the same law as a change of temperature.
+//! - **Partial loops** scale the major branch between the turning point that was left and the one
+//!   that the branch returns to, `ξ = ξ_to + (ξ_from − ξ_to) · (f(θ) − f(θ_to)) / (f(θ_from) −
+//!   f(θ_to))`. When the branch leads to complete transformation this is the multiplicative rule of
+//!   Ivshin & Pence 1994, `ξ = ξ_from · f(θ)/f(θ_from)` on heating and the same for `1 − ξ` on
+//!   cooling.
 //!
-//! Ivshin & Pence apply their rule to nested reversals too; nested loops then do not close. Real alloys remember
-//! their turning points (Šittner et al. 2000, as the chapter's section 2 says; Tanaka et al. 1995 and Bo &
-//! Lagoudas 1999 build it into their laws), so the rule is here applied between remembered turning points. Unlike a
-//! Preisach model the law has no congruent loops: the height of a loop depends on where it hangs.
+//! Ivshin & Pence apply their rule to nested reversals too; nested loops then do not close. Real
+//! alloys remember their turning points (Šittner et al. 2000, as the chapter's section 2 says;
+//! Tanaka et al. 1995 and Bo & Lagoudas 1999 build it into their laws), so the rule is here applied
+//! between remembered turning points. Unlike a Preisach model the law has no congruent loops: the
+//! height of a loop depends on where it hangs.
 
 use super::error::{RigError, check};
 use core::f64::consts::PI;
 
-/// Constants of the transformation. The default is the NiTi of Brinson 1993 (Table 1, after Dye 1990 and Liang 1990).
+/// Constants of the transformation. The default is the NiTi of Brinson 1993 (Table 1, after Dye
+/// 1990 and Liang 1990).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transformation {
     /// Martensite finish temperature without stress, °C. Default 9.
@@ -89,7 +93,8 @@ impl Transformation {
         }
     }
 
-    /// Martensite fraction on the major branch and its slope (1/K) at the driving temperature `theta` (°C).
+    /// Martensite fraction on the major branch and its slope (1/K) at the driving temperature
+    /// `theta` (°C).
     #[must_use]
     pub fn major(&self, direction: Direction, theta: f64) -> (f64, f64) {
         let (start, end) = match direction {
@@ -136,8 +141,9 @@ struct Turn {
 pub struct MaterialPoint {
     here: Turn,
     direction: Direction,
-    /// Even places: lower turning points, odd places: upper ones, each pair within the one before. The first two are
-    /// complete martensite and complete austenite; the last one is where the present branch set out.
+    /// Even places: lower turning points, odd places: upper ones, each pair within the one before.
+    /// The first two are complete martensite and complete austenite; the last one is where the
+    /// present branch set out.
     turns: Vec<Turn>,
 }
 
@@ -151,7 +157,8 @@ struct Trace {
 }
 
 impl MaterialPoint {
-    /// A point cooled from complete austenite to the temperature `t` (°C) under the constant stress `sigma` (MPa).
+    /// A point cooled from complete austenite to the temperature `t` (°C) under the constant stress
+    /// `sigma` (MPa).
     #[must_use]
     pub fn cooled_from_austenite(law: &Transformation, t: f64, sigma: f64) -> Self {
         let extreme = |theta, fraction| Turn {
@@ -178,9 +185,9 @@ impl MaterialPoint {
 
     /// Moves the point to the temperature `t` (°C) and the stress `sigma` (MPa).
     ///
-    /// The path between is taken as monotone in each driving temperature; then its pace and its division into steps
-    /// change nothing. Where the stress rises so much faster than the temperature that both transformations are driven
-    /// at once, the reverse one goes first.
+    /// The path between is taken as monotone in each driving temperature; then its pace and its
+    /// division into steps change nothing. Where the stress rises so much faster than the
+    /// temperature that both transformations are driven at once, the reverse one goes first.
     pub fn advance(&mut self, law: &Transformation, t: f64, sigma: f64) {
         let drive = law.drive(t, sigma);
         if drive.heating > self.here.drive.heating {
@@ -193,8 +200,9 @@ impl MaterialPoint {
         self.here.drive = drive;
     }
 
-    /// Martensite fraction and its slope over temperature (1/K, ≤ 0) that [`advance`](Self::advance) would reach at `t` (°C)
-    /// in the given direction, with the state left as it is.
+    /// Martensite fraction and its slope over temperature (1/K, ≤ 0) that
+    /// [`advance`](Self::advance) would reach at `t` (°C) in the given direction, with the state
+    /// left as it is.
     #[must_use]
     pub fn ahead(
         &self,
@@ -215,7 +223,8 @@ impl MaterialPoint {
         self.here.fraction = trace.fraction;
     }
 
-    /// Follows the branch in `direction` to the driving temperature `theta`, wiping out the turning points it passes.
+    /// Follows the branch in `direction` to the driving temperature `theta`, wiping out the turning
+    /// points it passes.
     fn trace(&self, law: &Transformation, direction: Direction, theta: f64) -> Trace {
         let mut kept = self.turns.len();
         let mut from = self.here;
@@ -227,7 +236,8 @@ impl MaterialPoint {
             Direction::Heating => theta >= to.drive.heating,
             Direction::Cooling => theta <= to.drive.cooling,
         };
-        // The first two turning points lie at infinity, so at least one of them is always left to go to.
+        // The first two turning points lie at infinity, so at least one of them is always left to
+        // go to.
         while kept > 2 && passed(&self.turns[kept - 1]) {
             kept -= 2;
             from = self.turns[kept];
@@ -249,8 +259,8 @@ impl MaterialPoint {
         } else {
             to.fraction + scale * (major - end)
         };
-        // A branch only ever goes on in its own direction, also when the stress has moved the two driving
-        // temperatures apart.
+        // A branch only ever goes on in its own direction, also when the stress has moved the two
+        // driving temperatures apart.
         let reached = self.here.fraction;
         let fraction = match direction {
             Direction::Heating => fraction.clamp(0.0, reached),

@@ -1,8 +1,7 @@
 //! What a scenario may say.
 
-use super::{AdaptationOptions, LoopOptions, MethodName, Reference, Scenario};
-use hysteron::Adaptation;
-use hysteron::{Error, Model, Result};
+use super::{LoopOptions, Reference, Scenario};
+use hysteron::{Error, Model, Operator, Result, Sign};
 
 /// Most levels of a model that is identified anew for each run.
 const MOST_LEVELS: usize = 100;
@@ -74,22 +73,18 @@ impl Scenario {
         } = self.shared;
         require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
         require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
-        for name in [
-            MethodName::Gradient,
-            MethodName::Increments,
-            MethodName::LeastSquares,
-        ] {
-            // Also of the methods not taken: a number that is wrong was meant to say something.
-            let adaptation: Adaptation<f64> = AdaptationOptions {
-                method: name,
-                ..self.adaptation
-            }
-            .into();
-            adaptation
-                .check()
-                .or_else(|error| refuse("adaptation", &error.to_string()))?;
-        }
+        self.check_adaptation()
+            .or_else(|error| refuse("adaptation", &error.to_string()))?;
         self.check_events()
+    }
+
+    /// What is left out follows from the model, which is not identified yet: here one of the same
+    /// plane stands for it.
+    fn check_adaptation(&self) -> Result<()> {
+        let plane = self.model.plane()?;
+        let weights = vec![1.0; plane.operators()];
+        let model = Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive)?;
+        Ok(self.adaptation.resolve(&model)?.check()?)
     }
 
     fn check_model(&self) -> Result<()> {
@@ -149,7 +144,8 @@ impl Scenario {
             require(
                 fine,
                 &format!("{field}.at_s"),
-                "must be in order, the same as before or two samples later at least, and two samples before the end",
+                "must be in order, the same as before or two samples later at least, and two \
+                 samples before the end",
             )?;
             last = event.at_s;
             let whats = event.disturbances();

@@ -1,11 +1,13 @@
-//! The experiment that a plant's model is identified from: the designed profile, run through the same loop and sensors.
+//! The experiment that a plant's model is identified from: the designed profile, run through the
+//! same loop and sensors.
 
 use super::{Reference, Scenario};
 use hysteron::control::{Controller, Scheme};
 use hysteron::{DesignOptions, Rates, design};
 use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 
-/// A model of the scenario's plant: from its file, or fitted to an experiment with the noise of `seed`.
+/// A model of the scenario's plant: from its file, or fitted to an experiment with the noise of
+/// `seed`.
 ///
 /// # Errors
 /// As [`design`], [`fit`] and [`Model::read`].

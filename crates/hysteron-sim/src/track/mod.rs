@@ -1,7 +1,9 @@
-//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come out of [`track`].
+//! Controllers compared on a **simulated** plant: a [`Scenario`] goes in, scores and traces come
+//! out of [`track`].
 //!
-//! For each seed a model is identified from an experiment of its own, and every controller runs over the same reference with the
-//! same disturbances. The gains of all PIDs come from one test on the same plant.
+//! For each seed a model is identified from an experiment of its own, and every controller runs
+//! over the same reference with the same disturbances. The gains of all PIDs come from one test on
+//! the same plant.
 
 mod check;
 mod identify;
@@ -55,8 +57,9 @@ pub struct Comparison {
 /// Runs every controller of the scenario with every seed. `progress` is told of each finished run.
 ///
 /// # Errors
-/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is tuned by; otherwise as the parts:
-/// [`Error::Plant`] for a plant outside its physics, and as [`hysteron::fit`] for a model that cannot be identified.
+/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is
+/// tuned by; otherwise as the parts: [`Error::Plant`] for a plant outside its physics, and as
+/// [`hysteron::fit`] for a model that cannot be identified.
 ///
 /// ```
 /// use hysteron::Progress;
@@ -81,7 +84,8 @@ pub struct Comparison {
 /// "#;
 /// let scenario = Scenario::parse(text, std::path::Path::new(""))?;
 /// let comparison = track(&scenario, Progress::NONE)?;
-/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse); // µm, first seed and window
+/// // µm, of the first seed and window
+/// let [pid, inverse_pid] = [0, 1].map(|k| comparison.scores[k][0][0].rmse);
 /// assert!(inverse_pid < pid);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
@@ -203,10 +207,10 @@ fn controller(
 ) -> Result<Controller> {
     let compensator = match kind {
         Kind::Pid => None,
-        _ if kind.adapts() => Some(Compensator::adaptive(Adaptive::new(
-            model,
-            scenario.adaptation.into(),
-        )?)),
+        _ if kind.adapts() => {
+            let adaptation = scenario.adaptation.resolve(model)?;
+            Some(Compensator::adaptive(Adaptive::new(model, adaptation)?))
+        }
         _ => Some(Compensator::fixed(model)?),
     };
     Controller::new(Scheme {

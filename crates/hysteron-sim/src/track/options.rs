@@ -1,7 +1,6 @@
 //! How the plant's model is identified, what the loops share, and how they learn.
 
-use hysteron::{Adaptation, Method};
-use hysteron::{Plane, Result};
+use hysteron::{AdaptOptions, Adaptation, Learner, Model, Plane, Result};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -13,7 +12,8 @@ pub struct ModelOptions {
     pub levels: usize,
     /// Lowest and highest level, in the input's unit.
     pub range: (f64, f64),
-    /// Strength of the smoothness, from 0; see [`FitOptions::smooth`](hysteron::FitOptions::smooth). Default 0.
+    /// Strength of the smoothness, from 0; see
+    /// [`FitOptions::smooth`](hysteron::FitOptions::smooth). Default 0.
     #[serde(default)]
     pub smooth: f64,
     /// How fast the input rises and falls in the experiment, in its unit per second; both above 0.
@@ -38,7 +38,8 @@ impl ModelOptions {
 pub struct LoopOptions {
     /// Time constant of the filter on the readings, s, from 0. Default 0: none.
     pub filter_s: f64,
-    /// Reversals of the reference up to this size are not followed by the inverse, in the output's unit, from 0. Default 0.
+    /// The inverse does not follow reversals of the reference up to this size, in the output's
+    /// unit, from 0. Default 0.
     pub tolerance: f64,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,
@@ -55,101 +56,95 @@ pub enum Tuning {
     Step,
 }
 
-/// How the adaptive controllers learn; ranges as for [`Adaptation`] and [`Method`].
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+/// How the adaptive controllers learn.
+///
+/// What is left out has the default of [`AdaptOptions`](hysteron::AdaptOptions), which follows from
+/// the model that was identified. Ranges are those given there, too.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AdaptationOptions {
-    /// The method. Default least squares.
+    /// What follows the error, and how. Default `least-squares`.
     pub method: MethodName,
     /// Gain of the gradient methods. Default 0.3.
-    pub gain: f64,
+    pub gain: Option<f64>,
     /// Levels between two updates of `increments`. Default 1.
-    pub span: f64,
-    /// Forgetting factor of `least-squares`. Default 0.9995.
-    pub forgetting: f64,
-    /// Standard deviation of the error of a reading, in the output's unit. Default 0.3.
-    pub noise: f64,
-    /// Standard deviation by which a weight may differ from the off-line one, in the output's unit. Default 0.05.
-    pub spread: f64,
-    /// Distance, in levels, over which deviations of weights go together. Default 3.
-    pub correlation: f64,
-    /// How freely the offset moves, beside one weight. Default 10.
-    pub offset_share: f64,
+    pub span: Option<f64>,
+    /// Forgetting factor of `least-squares`. Default 0.999.
+    pub forgetting: Option<f64>,
+    /// Standard deviation of the error of a reading, in the output's unit. Default 2 % of the
+    /// model's range.
+    pub noise: Option<f64>,
+    /// Standard deviation by which a weight may differ from the off-line one, in the output's unit.
+    /// Default such that the sum of the weights may deviate by 30 % of the model's range.
+    pub spread: Option<f64>,
+    /// Distance, in levels, over which deviations of weights go together. Default 1.
+    pub correlation: Option<f64>,
+    /// How freely the offset moves, beside one weight. Default 0.2 √N for N weights with the
+    /// gradient methods; with `least-squares` such that the offset may deviate by 30 % of the
+    /// model's range.
+    pub offset_share: Option<f64>,
     /// Errors up to this are noise, in the output's unit. Default 0.
-    pub dead_zone: f64,
+    pub dead_zone: Option<f64>,
     /// Share by which weights return to the off-line ones with each update. Default 0.
-    pub leakage: f64,
-    /// Levels that the input has to move before a sample is learned from. Default 0.02.
-    pub movement: f64,
+    pub leakage: Option<f64>,
+    /// Levels that the input has to move before a sample is learned from. Default 0.05.
+    pub movement: Option<f64>,
+    /// Samples after which the weights are judged against the last good ones. Default 256.
+    pub trial: Option<u32>,
     /// How many times the usual surprise a reading may be off to be learned from; 0: any. Default
     /// 12.
-    pub gate: f64,
+    pub gate: Option<f64>,
     /// Readings in a row beyond the gate that are learned from, where they agree. Default 8.
-    pub burst: u32,
+    pub burst: Option<u32>,
 }
 
 /// Name of a method of adaptation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MethodName {
-    /// [`Method::Gradient`].
+    /// [`Learner::Gradient`].
     Gradient,
-    /// [`Method::Increments`].
+    /// [`Learner::Increments`].
     Increments,
-    /// [`Method::LeastSquares`].
+    /// [`Learner::LeastSquares`].
+    #[default]
     LeastSquares,
 }
 
-impl Default for AdaptationOptions {
-    fn default() -> Self {
-        Self {
-            method: MethodName::LeastSquares,
-            gain: 0.3,
-            span: 1.0,
-            forgetting: 0.9995,
-            noise: 0.3,
-            spread: 0.05,
-            correlation: 3.0,
-            offset_share: 10.0,
-            dead_zone: 0.0,
-            leakage: 0.0,
-            movement: 0.02,
-            gate: 12.0,
-            burst: 8,
+impl From<MethodName> for Learner {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Gradient => Self::Gradient,
+            MethodName::Increments => Self::Increments,
+            MethodName::LeastSquares => Self::LeastSquares,
         }
     }
 }
 
-impl From<AdaptationOptions> for Adaptation<f64> {
-    fn from(options: AdaptationOptions) -> Self {
-        let AdaptationOptions {
-            gain,
-            span,
-            forgetting,
-            noise,
-            spread,
-            correlation,
-            ..
-        } = options;
-        let method = match options.method {
-            MethodName::Gradient => Method::Gradient { gain },
-            MethodName::Increments => Method::Increments { gain, span },
-            MethodName::LeastSquares => Method::LeastSquares {
-                forgetting,
-                noise,
-                spread,
-                correlation,
-            },
+impl AdaptationOptions {
+    /// The estimator's options for `model`.
+    ///
+    /// # Errors
+    /// [`hysteron::Error::Fit`] for an option that the method does not use. What is out of range is
+    /// refused when an estimator is made.
+    pub fn resolve(&self, model: &Model) -> Result<Adaptation<f64>> {
+        let options = AdaptOptions {
+            learner: self.method.into(),
+            gain: self.gain,
+            span: self.span,
+            forgetting: self.forgetting,
+            noise: self.noise,
+            spread: self.spread,
+            correlation: self.correlation,
+            dead_zone: self.dead_zone,
+            leakage: self.leakage,
+            offset_share: self.offset_share,
+            movement: self.movement,
+            trial: self.trial,
+            gate: self.gate,
+            burst: self.burst,
+            ..AdaptOptions::default()
         };
-        Self {
-            method,
-            offset_share: options.offset_share,
-            dead_zone: options.dead_zone,
-            leakage: options.leakage,
-            movement: options.movement,
-            gate: options.gate,
-            burst: options.burst,
-            ..Self::default()
-        }
+        options.before(model)
     }
 }

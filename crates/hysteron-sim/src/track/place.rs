@@ -2,8 +2,8 @@
 
 use toml::de::{DeTable, DeValue};
 
-/// The line, from 1, of a field such as `reference[0].period_s`, or of the innermost of its parts that
-/// the text has: a field that is left out has its default.
+/// The line, from 1, of a field such as `reference[0].period_s`, or of the innermost of its parts
+/// that the text has: a field that is left out has its default.
 pub(super) fn line_of(text: &str, field: &str) -> Option<u64> {
     let table = DeTable::parse(text).ok()?;
     let mut start = None;

@@ -5,7 +5,8 @@ use serde::Deserialize;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-/// A reference over time, in the output's unit. Parts are added, so that several sines make a multi-sine.
+/// A reference over time, in the output's unit. Parts are added, so that several sines make a
+/// multi-sine.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Reference {

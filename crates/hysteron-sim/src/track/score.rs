@@ -28,9 +28,11 @@ pub struct Score {
     pub max_abs: f64,
     /// RMS of what the model expected, before it learned, less the output; NaN without a model.
     pub prediction_rmse: f64,
-    /// The same with the weights as they were when the window began, and never learned since; NaN without a model.
+    /// The same with the weights as they were when the window began, and never learned since; NaN
+    /// without a model.
     pub frozen_rmse: f64,
-    /// Median lag of the output after reversals of the reference, s ([`reversal_lags`]); NaN without a reversal.
+    /// Median lag of the output after reversals of the reference, s ([`reversal_lags`]); NaN
+    /// without a reversal.
     pub lag_s: f64,
     /// Mean change of the drive from sample to sample, as a share of its range.
     pub drive_travel: f64,
@@ -46,8 +48,8 @@ const TURNED: f64 = 0.05;
 /// Share of the range within which it still rests.
 const RESTS: f64 = 0.002;
 
-/// The windows of a scenario: before the first disturbance, and between them, each with and without the time to
-/// settle; without disturbances the halves of the run.
+/// The windows of a scenario: before the first disturbance, and between them, each with and without
+/// the time to settle; without disturbances the halves of the run.
 #[must_use]
 pub fn windows(scenario: &Scenario) -> Vec<Window> {
     let window = |name: &str, from_s: f64, to_s: f64, settled: bool| Window {
@@ -164,9 +166,10 @@ pub struct ReversalLag {
     pub lag: f64,
 }
 
-/// The lag after each reversal of the reference from `from_s` to `to_s`: from when the reference has gone back by a twentieth
-/// of its range until the output has, each from its own extreme since the reference left its rest. So a constant error is no lag, nor
-/// is what the output did while the reference rested.
+/// The lag after each reversal of the reference from `from_s` to `to_s`: from when the reference
+/// has gone back by a twentieth of its range until the output has, each from its own extreme since
+/// the reference left its rest. So a constant error is no lag, nor is what the output did while the
+/// reference rested.
 #[must_use]
 pub fn reversal_lags(trace: &Trace, from_s: f64, to_s: f64) -> Vec<ReversalLag> {
     let (low, high) = hysteron::range(&trace.reference);

@@ -75,8 +75,8 @@ impl Comparison {
         medians
     }
 
-    /// Inverse and PID against PID, and adaptive against fixed inverse, by window; of windows that have settled only, for what a
-    /// jump of the load leaves is the same whoever controls.
+    /// Inverse and PID against PID, and adaptive against fixed inverse, by window; of windows that
+    /// have settled only, for what a jump of the load leaves is the same whoever controls.
     #[must_use]
     pub fn ratios(&self) -> Vec<Ratio> {
         let place = |kind: Kind| self.controllers.iter().position(|k| *k == kind);

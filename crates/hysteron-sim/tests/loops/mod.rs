@@ -17,7 +17,13 @@ seeds = 1
 plant = { kind = "spring", load_n = 6.0 }
 model = { levels = 20, range = [24, 92], smooth = 1e-8, rates = [2.0, 0.5] }
 loop = { filter_s = 0.6, tolerance = 0.1 }
-adaptation = { method = "least-squares", forgetting = 0.9995, noise = 0.3, spread = 0.05, correlation = 3.0, offset_share = 10.0, movement = 0.02 }
+adaptation.method = "least-squares"
+adaptation.forgetting = 0.9995
+adaptation.noise = 0.3
+adaptation.spread = 0.05
+adaptation.correlation = 3.0
+adaptation.offset_share = 10.0
+adaptation.movement = 0.02
 "#;
 
 /// A slow sine within the spring's stroke.
@@ -42,7 +48,13 @@ seeds = 1
 plant = { kind = "preisach", load_n = 6.0 }
 model = { levels = 14, range = [8, 150], smooth = 1e-8, rates = [100, 100] }
 loop = { filter_s = 0.01, tolerance = 0.5 }
-adaptation = { method = "least-squares", forgetting = 0.9995, noise = 0.3, spread = 0.2, correlation = 3.0, offset_share = 10.0, movement = 0.02 }
+adaptation.method = "least-squares"
+adaptation.forgetting = 0.9995
+adaptation.noise = 0.3
+adaptation.spread = 0.2
+adaptation.correlation = 3.0
+adaptation.offset_share = 10.0
+adaptation.movement = 0.02
 "#;
 
 /// A sine within the cloud's stroke.

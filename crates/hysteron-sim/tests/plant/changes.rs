@@ -43,7 +43,8 @@ fn pre_deformation_expands_the_loop_and_leaves_the_temperatures() {
     }
     let highest = |path: &[Reading]| path.iter().map(|r| r.output).fold(0.0, f64::max);
     let longer = highest(&some) - highest(&none);
-    // All of the martensite there was gives back its share; at room temperature the core is austenite.
+    // All of the martensite there was gives back its share; at room temperature the core is
+    // austenite.
     assert!((4.0..=5.0).contains(&longer), "{longer}");
 }
 
@@ -80,7 +81,8 @@ fn a_load_moves_and_deforms_the_cloud() {
     let common = high.min(loaded_high) - low.max(loaded_low);
     assert!(common > 0.6 * full, "{common} of {full} in common");
 
-    // A shift, a gain and an offset alone would leave the quartiles of the rising branch in proportion.
+    // A shift, a gain and an offset alone would leave the quartiles of the rising branch in
+    // proportion.
     let quartiles = |load_n| {
         let mut plant = preisach(PreisachPlantOptions {
             load_n,
@@ -190,7 +192,8 @@ fn cycling_drifts_and_saturates() {
     );
     assert!(steps[23] < 0.01 * steps[0], "{steps:?}");
 
-    // Only the temperatures' shift drives the transformation: without the lengthening the path is the same, 1 mm higher.
+    // Only the temperatures' shift drives the transformation: without the lengthening the path is
+    // the same, 1 mm higher.
     let kept = FatigueOptions {
         irrecoverable_mm: 0.0,
         ..tired

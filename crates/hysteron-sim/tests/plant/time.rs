@@ -39,7 +39,8 @@ fn the_lag_of_the_thermocouple_does_not_depend_on_the_sampling_time() {
         assert!(read < truth - 1.0, "it lags: {read} of {truth}");
         read
     };
-    // The path between two steps of the plant is bent a little: less than a hundredth of the thermocouple's accuracy.
+    // The path between two steps of the plant is bent a little: less than a hundredth of the
+    // thermocouple's accuracy.
     for pieces in [3, 800, 4000] {
         assert!((reading(1) - reading(pieces)).abs() < 0.01);
     }
@@ -101,7 +102,8 @@ fn the_relays_do_not_depend_on_the_sampling_time_at_all() {
         let reference = outputs(&mut preisach(options), &VOLTAGES, 1.3, 1);
         for pieces in [2, 7, 1000] {
             let divided = outputs(&mut preisach(options), &VOLTAGES, 1.3, pieces);
-            // Rounding only; no relay's threshold lies so near a turning point that rounding switches it.
+            // Rounding only; no relay's threshold lies so near a turning point that rounding
+            // switches it.
             let difference = worst(&reference, &divided);
             assert!(
                 difference < 1e-10,

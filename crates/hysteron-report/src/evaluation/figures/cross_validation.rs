@@ -1,4 +1,5 @@
-//! How levels and smoothness were chosen: the error on left-out branches, a line for each number of levels.
+//! How levels and smoothness were chosen: the error on left-out branches, a line for each number of
+//! levels.
 
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
@@ -70,7 +71,8 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         let ys: Vec<f64> = errors.iter().map(|e| e.unwrap_or(f64::NAN)).collect();
         panel.curve(&mut sheet.canvas, &xs, &ys, &stroke(n));
     }
-    // The choice is what the model has: the one-standard-error rule takes a smoother one than the best.
+    // The choice is what the model has: the one-standard-error rule takes a smoother one than the
+    // best.
     let fitted = view.source.fit()?.smooth;
     let row = levels.iter().position(|k| *k == view.source.levels());
     let column = smooth.iter().position(|s| *s == fitted);

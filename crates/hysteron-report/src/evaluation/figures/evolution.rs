@@ -61,7 +61,8 @@ pub(super) fn svg(view: &View<'_>) -> String {
     view.finish(Figure::PlaneEvolution, sheet, bottom + BELOW + 4.0)
 }
 
-/// The first instants at which the operators disagree; a plane that is all on or all off has no boundary to show.
+/// The first instants at which the operators disagree; a plane that is all on or all off has no
+/// boundary to show.
 fn instants(view: &View<'_>) -> Vec<Instant> {
     let input = &view.recording.input;
     let threshold = 0.05 * (view.source.max() - view.source.min());
@@ -127,7 +128,8 @@ fn states(canvas: &mut Canvas, panel: &Panel, instant: &Instant) {
     }
 }
 
-/// Rising input sweeps the plane upwards as a line of constant β, falling input leftwards as one of constant α.
+/// Rising input sweeps the plane upwards as a line of constant β, falling input leftwards as one of
+/// constant α.
 fn present(canvas: &mut Canvas, view: &View<'_>, panel: &Panel, sample: usize) {
     let input = &view.recording.input;
     let now = input[sample];

@@ -26,7 +26,8 @@ fn colour(class: Excitation) -> &'static str {
 
 /// The half `α ≤ β` of `plane`, a cell for each operator coloured by its class, as an SVG document.
 ///
-/// `classes` holds `K(K + 1)/2` of them in the order of the weights; operators without one are left white. `input` names the axes.
+/// `classes` holds `K(K + 1)/2` of them in the order of the weights; operators without one are left
+/// white. `input` names the axes.
 #[must_use]
 pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -> String {
     let input = Labelled::first([input, input], "input");

@@ -38,8 +38,8 @@ pub(super) fn svg(view: &View<'_>) -> String {
     view.finish(Figure::WeightsMap, sheet, bottom)
 }
 
-/// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`; returns the panel and
-/// the height of the figure.
+/// The plane, each cell coloured by its value relative to `largest`, and the bar of `scale`;
+/// returns the panel and the height of the figure.
 pub(super) fn plot(
     sheet: &mut Sheet,
     view: &View<'_>,

@@ -1,8 +1,10 @@
 //! PID gains by one rule for all controllers, from a test on the same plant.
 //!
-//! - [`relay`]: a relay in place of the controller makes the loop oscillate (Åström & Hägglund 1984); gains by Tyreus & Luyben
-//!   1992. The oscillation crosses the hysteresis, which a step test on one branch does not see.
-//! - [`step`]: a small step on the rising branch, gains by SIMC (Skogestad 2003); and the loop around a temperature.
+//! - [`relay`]: a relay in place of the controller makes the loop oscillate (Åström & Hägglund
+//!   1984); gains by Tyreus & Luyben 1992. The oscillation crosses the hysteresis, which a step
+//!   test on one branch does not see.
+//! - [`step`]: a small step on the rising branch, gains by SIMC (Skogestad 2003); and the loop
+//!   around a temperature.
 
 mod relay;
 mod step;
@@ -38,8 +40,9 @@ fn no_answer(what: &str, samples: usize, scenario: &Scenario) -> Error {
     refused(
         "plant",
         format!(
-            "its {what} does not answer a step within {time} s ({samples} samples), or less than its noise, so that no PID can be tuned: \
-             a longer interval_s, a stronger drive or a better sensor is needed"
+            "its {what} does not answer a step within {time} s ({samples} samples), or less than \
+             its noise, so that no PID can be tuned: a longer interval_s, a stronger drive or a \
+             better sensor is needed"
         ),
     )
 }

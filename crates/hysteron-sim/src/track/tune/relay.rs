@@ -42,8 +42,9 @@ fn oscillation(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<(f64, 
             Some((low, high)) => refused(
                 "reference",
                 format!(
-                    "between the inputs {} and {} (model.range) the output goes from {low:.4} to {high:.4}, and does not cross {middle:.4}, the middle of the reference, \
-                     again and again, so that no PID can be tuned there",
+                    "between the inputs {} and {} (model.range) the output goes from {low:.4} to \
+                     {high:.4}, and does not cross {middle:.4}, the middle of the reference, again \
+                     and again, so that no PID can be tuned there",
                     commands[0], commands[1]
                 ),
             ),

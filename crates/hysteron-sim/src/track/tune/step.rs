@@ -1,8 +1,8 @@
 //! Step tests, and SIMC (Skogestad 2003).
 //!
-//! For the loop around the temperature the drive steps to its limit, and the temperature is taken as a delayed integrator, of slope
-//! and delay. For the feedback of the output the command steps by a little on the rising branch at the middle of the reference
-//! ([`Gains::from_step`]).
+//! For the loop around the temperature the drive steps to its limit, and the temperature is taken
+//! as a delayed integrator, of slope and delay. For the feedback of the output the command steps by
+//! a little on the rising branch at the middle of the reference ([`Gains::from_step`]).
 
 use super::{TESTS, middle, no_answer};
 use crate::track::scenario::Scenario;
@@ -38,7 +38,8 @@ pub(super) fn inner(scenario: &Scenario, scheme: &Scheme) -> Result<InnerLoop> {
     let steepest = steepest.ok_or_else(|| no_answer("temperature", SAMPLES, scenario))?;
     let slope = rise(steepest) / (wide as f64 * scenario.interval_s);
     let (level, _) = mean_and_deviation(&temperature[..LEVEL]);
-    // Less than a level in the whole test is noise, or a heater that cannot do what the model is asked for.
+    // Less than a level in the whole test is noise, or a heater that cannot do what the model is
+    // asked for.
     let one = scenario.model.plane()?.step();
     if mean_and_deviation(&temperature[temperature.len() - LEVEL..]).0 < level + one || slope <= 0.0
     {
@@ -76,8 +77,9 @@ pub(super) fn gains(scenario: &Scenario, scheme: &Scheme) -> Result<Gains> {
         .ok_or_else(|| no_answer("output", SAMPLES, scenario))
 }
 
-/// Mean of filtered input and output over the tests, from where `next` says that the test begins. `next(command, n, output)` gives
-/// whether the test is on, and the next command; `n` counts its samples.
+/// Mean of filtered input and output over the tests, from where `next` says that the test begins.
+/// `next(command, n, output)` gives whether the test is on, and the next command; `n` counts its
+/// samples.
 fn average(
     scenario: &Scenario,
     scheme: &Scheme,
