@@ -422,7 +422,7 @@ typedef struct HysteronModelInfo {
   /**
    * Default tolerance for reversals of a target: 1 % of the output's range.
    */
-  double noise_band;
+  double usual_tolerance;
 } HysteronModelInfo;
 
 #ifdef __cplusplus
@@ -543,8 +543,7 @@ int32_t hysteron_core_estimator_freeze(struct HysteronCoreEstimator *estimator, 
  * Brings a state of `model` up to date after an estimator changed the weights. An inverse that
  * runs beside the estimator needs it for its own state.
  */
-int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model,
-                                   struct HysteronCoreState *state);
+int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model, struct HysteronCoreState *state);
 
 /**
  * The text of the last error in this thread. Functions `hysteron_core_…` leave no text.
@@ -553,15 +552,13 @@ int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model,
  * Returns the size of the whole text in bytes, with the zero byte. `text` may be null to ask for
  * the size.
  */
-size_t hysteron_last_error(char *text,
-                           size_t size);
+size_t hysteron_last_error(char *text, size_t size);
 
 /**
  * Size in bytes of a model with `levels` levels and `tables` tables: 1, or 2 for adaptation by
  * increments. 0 if there is no such model. The memory has to be aligned like a `uint64_t`.
  */
-size_t hysteron_core_model_size(size_t levels,
-                                size_t tables);
+size_t hysteron_core_model_size(size_t levels, size_t tables);
 
 /**
  * Makes a model in `memory`. Weights are as for `hysteron_model_new`; they are copied.
@@ -699,11 +696,7 @@ int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity,
  * with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
  * byte. `text` may be null with size 0.
  */
-int32_t hysteron_model_quantity(uint64_t model,
-                                int32_t quantity,
-                                char *text,
-                                size_t size,
-                                size_t *needed);
+int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
 
 /**
  * Makes a state of `model` with all operators off. `model` may be freed before the state.
@@ -738,10 +731,7 @@ int32_t hysteron_step(uint64_t state, double input, double *output, int32_t *cli
  * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. If an
  * input is not finite, the state stays as it is.
  */
-int32_t hysteron_run(uint64_t state,
-                     const double *input,
-                     double *output,
-                     size_t count);
+int32_t hysteron_run(uint64_t state, const double *input, double *output, size_t count);
 
 /**
  * Finds the input that gives `target` and moves the state there. `status` becomes
@@ -778,20 +768,13 @@ int32_t hysteron_inverse_run(uint64_t state,
  * `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
  * are noise.
  */
-int32_t hysteron_headings(const double *target,
-                          size_t count,
-                          double band,
-                          int32_t *heading);
+int32_t hysteron_headings(const double *target, size_t count, double tolerance, int32_t *heading);
 
 /**
  * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
  * input. `count` becomes the number of turning points, also if `capacity` is too small.
  */
-int32_t hysteron_state_save(uint64_t state,
-                            double *points,
-                            size_t capacity,
-                            size_t *count,
-                            double *input);
+int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
 
 /**
  * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
@@ -800,7 +783,10 @@ int32_t hysteron_state_save(uint64_t state,
 int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
 
 /**
- * Writes the default options of `method`.
+ * Fills in the usual options, of the method that `method` names.
+ *
+ * Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set them
+ * in the output's unit; `docs/options.md` says how the library chooses them.
  */
 int32_t hysteron_adaptation_default(int32_t method, struct HysteronAdaptation *options);
 

@@ -113,7 +113,7 @@ impl fmt::Display for Error {
             Error::Levels(k) => write!(
                 f,
                 "{k} levels: a plane has from 2 to {} levels",
-                crate::plane::MAX_LEVELS
+                crate::limits::MAX_LEVELS
             ),
             Error::Range => write!(
                 f,
@@ -150,7 +150,7 @@ impl fmt::Display for Error {
                 )
             }
             Error::Adaptation { option } => {
-                let range = crate::adapt::range_of(option);
+                let range = crate::limits::range_of(option);
                 write!(f, "the estimator's option `{option}` must be {range}")
             }
             Error::StateMismatch => write!(f, "the state belongs to another model"),

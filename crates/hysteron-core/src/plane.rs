@@ -1,10 +1,8 @@
 //! The discrete Preisach plane of equation (3).
 
 use crate::error::Error;
+use crate::limits::MAX_LEVELS;
 use crate::scalar::Real;
-
-/// The largest number of levels of a plane. The number of operators then fits 31 bits.
-pub const MAX_LEVELS: usize = 46_340;
 
 /// Number of operators on a plane of `levels` levels, `N = K(K + 1)/2`.
 #[must_use]

@@ -21,5 +21,4 @@ mod vector;
 pub use estimator::Estimator;
 pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_basis};
-pub(crate) use options::range_of;
 pub use options::{Adaptation, Method};

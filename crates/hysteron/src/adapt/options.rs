@@ -277,7 +277,7 @@ fn variance_of_sum(levels: usize, correlation: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::together;
+    use super::variance_of_sum;
     use hysteron_core::operators;
 
     #[test]
