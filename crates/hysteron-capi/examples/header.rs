@@ -26,12 +26,12 @@ const ABOUT: &str = "\
  * sign. Only one thread at a time may use an object that a call changes.
  */";
 
-/// The header that is in the repository.
+/// The header in the repository.
 pub fn place() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("include/hysteron.h")
 }
 
-/// The header that follows from the code.
+/// The header generated from the code.
 pub fn generated() -> Result<String, Box<dyn Error>> {
     let config = Config {
         language: Language::C,
