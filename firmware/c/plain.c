@@ -1,6 +1,6 @@
-/* Equation (5). Rising: γ ← max(γ, r_j). Falling: γ ← min(γ, r_i). The direction is the same for all
- * operators, and each ridge is computed once. So an operator costs one comparison and one product.
- */
+/* Equation (5). Rising: γ ← max(γ, r_j). Falling: γ ← min(γ, r_i). The direction is the same for
+ * all operators, and each ridge is computed once. So an operator costs one comparison and one
+ * product. */
 #include "plain.h"
 
 static void ridges(const plain_model *model, hys_real input, hys_real *ridge) {
@@ -12,8 +12,8 @@ static void ridges(const plain_model *model, hys_real input, hys_real *ridge) {
     }
 }
 
-/* The double loop. It is inlined for each direction, and for a step and a trial step, so that it has
- * no tests of these. */
+/* The double loop. It is inlined for each direction, and for a step and a trial step, so that it
+ * has no tests of these. */
 static inline __attribute__((always_inline)) hys_real sweep(const plain_state *state, hys_real input, int rising, int keep) {
     const hys_real *mu = state->model->weights;
     hys_real *gamma = state->gamma;
