@@ -1,8 +1,8 @@
-//! The name that programs remember of the shared library.
+//! The name of the shared library that linked programs look for.
 
-/// Rises when programs that were linked with the library before do not run with it any more.
-/// Functions, constants and codes may be added; nothing in the header may change its meaning, its
-/// arguments or its size.
+/// Increase it when programs that are linked with an older library do not run with this one.
+/// Functions, constants and codes may be added. Whatever is in the header may not change its
+/// meaning, its arguments or its size.
 const INTERFACE: u32 = 0;
 
 fn main() {

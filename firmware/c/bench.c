@@ -1,5 +1,6 @@
-/* Every run in one number type, through the exported C or, with PLAIN, through the plain loop: as rust/src/run.rs. Standard
-   output has the bits of each result; on the Cortex-M4F standard error has what it took. */
+/* Every run in one number type, as in rust/src/run.rs: through the exported C or, with PLAIN,
+ * through the plain loop. Standard output gets the bits of each result. On the Cortex-M4F, standard
+ * error gets the cost. */
 #include "board.h"
 #include "run.h"
 #include <string.h>
@@ -52,7 +53,7 @@ static void must(int code) {
     exit(1);
 }
 
-/* One step, and how many instructions it took. */
+/* One step, and its number of instructions. */
 static inline __attribute__((always_inline)) uint32_t step(
     const run *r, state_type *state, size_t n, hys_real *result, int *status) {
     uint32_t before, after;
@@ -82,7 +83,7 @@ static void say(const char *before, hys_real result, int status) {
     printf(" %d\n", status);
 }
 
-/* A state saved and restored before a step has to take it in the same way. */
+/* A state that was saved and restored before a step has to give the same result. */
 static void step_restored(const run *r, const state_type *state, size_t n, hys_real *result, int *status) {
 #ifdef PLAIN
     (void)r, (void)state, (void)n, (void)result, (void)status;
@@ -99,7 +100,7 @@ static void step_restored(const run *r, const state_type *state, size_t n, hys_r
 #endif
 }
 
-/* Number of steps of one kind, instructions of all, most in one, and which that was. */
+/* Number of steps of one kind, instructions of all, the most in one step, and its index. */
 typedef struct {
     unsigned long steps;
     unsigned long long sum;
@@ -141,7 +142,7 @@ static void one(const run *r) {
 /* Again without printing, for the stack. */
 static __attribute__((noinline)) void stack(const run *r) {
     state_type state;
-    /* The plain loop takes long and uses the same stack whatever it is given. */
+    /* The plain loop is slow, and its use of the stack does not depend on the input. */
     size_t n, count = PLAIN_LOOP && r->count > 50 ? 50 : r->count;
     hys_real result;
     int status;

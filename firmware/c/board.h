@@ -1,4 +1,5 @@
-/* What differs between the Cortex-M4F and the host: counting instructions, measuring the stack. */
+/* The differences between the Cortex-M4F and the host: counting instructions, measuring the stack.
+ */
 #ifndef BOARD_H
 #define BOARD_H
 #include <stdint.h>
@@ -7,16 +8,16 @@
 
 #ifdef __arm__
 
-/* A 32-bit timer at 25 MHz that counts down (CMSDK APB timer 0). With `-icount shift=7` an instruction takes 128 ns,
-   of which it counts 40 each: 16 in 5 instructions. Being off by less than one tick, a difference of two readings
-   tells the number exactly. */
+/* A 32-bit timer at 25 MHz that counts down (CMSDK APB timer 0). With `-icount shift=7` an
+ * instruction takes 128 ns. A tick is 40 ns, so 5 instructions are 16 ticks. A difference of two
+ * readings is off by less than one tick, so it gives the number of instructions exactly. */
 #define TIMER_CONTROL (*(volatile uint32_t *)0x40000000u)
 #define TIMER_VALUE (*(volatile uint32_t *)0x40000004u)
 #define TIMER_RELOAD (*(volatile uint32_t *)0x40000008u)
 
-static uint32_t reading; /* what a count of nothing gives */
+static uint32_t reading; /* the count for an empty step */
 
-/* A function of its own, so that nothing of what is measured slips past a reading. */
+/* A separate function, so that the compiler moves nothing of the step past a reading. */
 __attribute__((noinline)) static uint32_t ticks(void) { return TIMER_VALUE; }
 
 static uint32_t instructions(uint32_t before, uint32_t after) {
@@ -33,7 +34,7 @@ static uint32_t instructions(uint32_t before, uint32_t after) {
             exit(1); \
     } while (0)
 
-/* Starts the counter and proves it. */
+/* Starts the counter and checks it. */
 static void board_start(void) {
     uint32_t before;
     TIMER_RELOAD = 0xFFFFFFFFu;
@@ -64,7 +65,7 @@ static void stack_paint(void) {
         *word = PAINT;
 }
 
-/* Bytes below the caller's own part of the stack that were written to since. */
+/* Bytes of the stack below the caller's own that were written since it was painted. */
 static unsigned long stack_used(void) {
     volatile uint32_t *word = &stack_low;
     while (*word == PAINT)

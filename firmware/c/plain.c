@@ -1,5 +1,6 @@
-/* Equation (5): rising, γ ← max(γ, r_j); falling, γ ← min(γ, r_i). The direction is that of all operators and each
-   ridge is worked out once, so that an operator costs one comparison and one product. */
+/* Equation (5). Rising: γ ← max(γ, r_j). Falling: γ ← min(γ, r_i). The direction is the same for
+ * all operators, and each ridge is computed once. So an operator costs one comparison and one
+ * product. */
 #include "plain.h"
 
 static void ridges(const plain_model *model, hys_real input, hys_real *ridge) {
@@ -11,7 +12,8 @@ static void ridges(const plain_model *model, hys_real input, hys_real *ridge) {
     }
 }
 
-/* The double loop. Inlined for each direction, and for a step and a trial, so that nothing of that is left to decide in it. */
+/* The double loop. It is inlined for each direction, and for a step and a trial step, so that it
+ * has no tests of these. */
 static inline __attribute__((always_inline)) hys_real sweep(const plain_state *state, hys_real input, int rising, int keep) {
     const hys_real *mu = state->model->weights;
     hys_real *gamma = state->gamma;
@@ -35,7 +37,7 @@ static inline __attribute__((always_inline)) hys_real sweep(const plain_state *s
     return sum;
 }
 
-/* What a step to `input` would give; the operators stay as they are, so that nothing has to be copied. */
+/* The output of a step to `input`. The operators stay as they are, so nothing has to be copied. */
 static hys_real trial(const plain_state *state, hys_real input, int rising) {
     return rising ? sweep(state, input, 1, 0) : sweep(state, input, 0, 0);
 }
@@ -59,7 +61,7 @@ void plain_step(plain_state *state, hys_real input, hys_real *output) {
     *output = state->output;
 }
 
-/* Halves the way to the end of the range that lies in the target's direction. */
+/* Bisection between the present input and the end of the range in the target's direction. */
 void plain_inverse_step(plain_state *state, hys_real target, hys_real *input, int *status) {
     const plain_model *model = state->model;
     int rising = target > state->output;

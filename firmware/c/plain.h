@@ -1,4 +1,4 @@
-/* The chapter's way: every operator in every step. */
+/* The plain loop of the chapter: every operator in every step. */
 #ifndef PLAIN_H
 #define PLAIN_H
 #include "hysteron_mcu.h" /* hys_real only */
@@ -15,10 +15,10 @@ typedef struct {
     hys_real input, output;
 } plain_state;
 
-/* Levels that the ridges have room for, on the stack. */
+/* The largest number of levels. The ridges are on the stack. */
 #define PLAIN_LEVELS 40
 
-/* How often an inverse step halves the way: until it is as fine as the number type. */
+/* Number of halvings of an inverse step: as fine as the number type. */
 #define PLAIN_HALVINGS (sizeof(hys_real) == sizeof(float) ? 24 : 53)
 
 void plain_start(const plain_model *model, plain_state *state, hys_real *gamma);

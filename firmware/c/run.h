@@ -1,4 +1,4 @@
-/* What is run: `host tables` writes the constants. */
+/* The runs. `host tables` writes the constants. */
 #ifndef RUN_H
 #define RUN_H
 #include <stddef.h>
@@ -10,10 +10,10 @@ typedef plain_model model_type;
 typedef hys_model model_type;
 #endif
 
-/* Levels that there is memory for. */
+/* The largest number of levels for which there is memory. */
 #define MOST 40
 
-enum { FORWARD = 2 }; /* kind of a step; else the heading of an inverse step */
+enum { FORWARD = 2 }; /* kind of a forward step; other kinds are the heading of an inverse step */
 
 typedef struct {
     const char *name;

@@ -1,4 +1,5 @@
-/* The image whose size is measured: nothing (WHAT 0), a forward step (1), or a forward and an inverse step (2), for ever. */
+/* The image whose size is measured: an endless loop over nothing (WHAT 0), a forward step (1), or a
+ * forward and an inverse step (2). */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 

@@ -9,7 +9,7 @@ void reset(void);
 #ifdef SEMIHOSTED
 void initialise_monitor_handles(void);
 
-/* What newlib's exit() asks of the compiler's start-up files, which are left out. */
+/* Needed by newlib's exit(). The compiler's start-up files, which have it, are left out. */
 void _fini(void);
 void _fini(void) {}
 #endif

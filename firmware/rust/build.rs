@@ -1,4 +1,4 @@
-//! Makes Rust constants of the models and runs, and tells the linker of the board's memory.
+//! Writes the models and runs as Rust constants, and gives the linker the memory map of the board.
 
 #[path = "src/data.rs"]
 #[allow(dead_code)]
@@ -41,7 +41,7 @@ fn main() {
     let out = var("OUT_DIR").expect("cargo sets it");
     std::fs::write(Path::new(&out).join("runs.rs"), text).expect("the constants");
 
-    // The image whose size is measured holds one model.
+    // The image whose size is measured has one model.
     println!("cargo:rerun-if-env-changed=LEVELS");
     let levels = var("LEVELS").map_or(20, |levels| levels.parse().expect("LEVELS: a number"));
     let model = models.iter().find(|m| m.name == format!("bench_{levels}"));

@@ -10,8 +10,8 @@ const ABOUT: &str = "\
  * Generated from the code by `cargo run -p hysteron-capi --example header`. Do not edit.
  *
  * Every function that can fail returns HYSTERON_OK or another of the codes below. Results are
- * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and arrays,
- * which may then have zeros.
+ * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and
+ * arrays, which may then have zeros.
  *
  * A pointer points to as many elements as the count beside it says, one where there is no count. No
  * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
@@ -26,12 +26,12 @@ const ABOUT: &str = "\
  * sign. Only one thread at a time may use an object that a call changes.
  */";
 
-/// The header that is in the repository.
+/// The header in the repository.
 pub fn place() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("include/hysteron.h")
 }
 
-/// The header that follows from the code.
+/// The header generated from the code.
 pub fn generated() -> Result<String, Box<dyn Error>> {
     let config = Config {
         language: Language::C,

@@ -3,8 +3,8 @@
  * Generated from the code by `cargo run -p hysteron-capi --example header`. Do not edit.
  *
  * Every function that can fail returns HYSTERON_OK or another of the codes below. Results are
- * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and arrays,
- * which may then have zeros.
+ * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and
+ * arrays, which may then have zeros.
  *
  * A pointer points to as many elements as the count beside it says, one where there is no count. No
  * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.

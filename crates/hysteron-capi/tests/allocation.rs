@@ -1,4 +1,4 @@
-//! The form over the caller's memory allocates nothing, with success or without.
+//! The functions over memory of the caller allocate nothing, with success and with errors.
 #![allow(clippy::unwrap_used)]
 
 use hysteron_capi::*;
@@ -31,7 +31,7 @@ static ALLOCATOR: Counting = Counting;
 
 const LEVELS: usize = 5;
 
-/// Everything, for one method; each pointer is to memory of this function.
+/// All functions, for one method. Each pointer is to memory of this function.
 fn work(method: i32, memory: &mut [Vec<u64>; 3]) {
     let weights = [1.0; LEVELS * (LEVELS + 1) / 2];
     let [model_memory, state_memory, estimator_memory] = memory

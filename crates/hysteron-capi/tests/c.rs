@@ -1,5 +1,5 @@
-//! A C program that uses the whole interface, over the test vectors; under valgrind where it is
-//! installed.
+//! A C program that uses the whole interface, over the test vectors. It runs under valgrind if that
+//! is installed.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../hysteron-export/tests/common/programs.rs"]
@@ -20,11 +20,11 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// As cargo names the shared library, and as programs linked with it look for it.
+/// The name that cargo gives the shared library, and the name that linked programs look for.
 const SHARED: &str = "libhysteron_capi.so";
 const SONAME: &str = "libhysteron_capi.so.0";
 
-/// Where cargo builds the libraries: beside the tests.
+/// The folder of the libraries, beside that of the tests.
 fn built() -> PathBuf {
     std::env::current_exe().unwrap().parent().unwrap().into()
 }
@@ -83,7 +83,7 @@ fn programs(folder: &Path) -> Vec<PathBuf> {
     kinds.into_iter().map(compiled).collect()
 }
 
-/// In a folder that is left to the system to clear, compiled once for all tests.
+/// Compiled once for all tests, in a temporary folder that the system clears.
 fn compiled() -> &'static [PathBuf] {
     static PROGRAMS: OnceLock<(tempfile::TempDir, Vec<PathBuf>)> = OnceLock::new();
     let made = || {
@@ -175,7 +175,7 @@ fn valgrind_finds_nothing() {
     }
 }
 
-/// The test of the tests: the program fails where the expected number is another.
+/// A test of the test: the program fails if an expected number is changed.
 #[test]
 fn a_wrong_vector_is_noticed() {
     let [program, ..] = compiled() else {
@@ -195,8 +195,8 @@ fn a_wrong_vector_is_noticed() {
     assert!(!output.status.success());
 }
 
-/// The command lines and the program of the page on C word for word, in a folder that looks like a
-/// clone with the libraries built.
+/// The command lines and the program of the page on C, word for word, in a folder like a clone with
+/// built libraries.
 #[test]
 fn the_page_on_c() {
     if !has("cc") {

@@ -1,4 +1,4 @@
-//! The header in the repository is the one that the code makes.
+//! The header in the repository is the one generated from the code.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../examples/header.rs"]
@@ -13,7 +13,7 @@ fn the_header_follows_from_the_code() {
     );
 }
 
-/// A function that the header forgets could not be called.
+/// The header declares every function.
 #[test]
 fn every_exported_function_is_in_the_header() {
     let header = header::generated().unwrap();

@@ -1,4 +1,4 @@
-//! Handles in many threads at once: a call succeeds, or the handle was freed.
+//! Handles in many threads at once: a call succeeds, or it reports that the handle was freed.
 
 use hysteron_capi::*;
 use std::ptr::null_mut;

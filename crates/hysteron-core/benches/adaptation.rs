@@ -1,4 +1,4 @@
-//! What a sample costs that is learned from: `cargo bench -p hysteron-core --bench adaptation`.
+//! The cost of a sample that is learned from: `cargo bench -p hysteron-core --bench adaptation`.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../tests/common/mod.rs"]
@@ -14,7 +14,7 @@ use std::hint::black_box;
 
 const MEMBERS: usize = 6;
 
-/// Every sample is learned from, however short the way to it.
+/// Options with which every sample is learned from, however little the input moved.
 fn always(method: Method<f64>) -> Adaptation<f64> {
     Adaptation {
         movement: 0.0,
@@ -22,7 +22,7 @@ fn always(method: Method<f64>) -> Adaptation<f64> {
     }
 }
 
-/// Outputs to learn from, of no model in particular, so that no error becomes zero.
+/// Outputs to learn from. No model fits them, so that no error becomes zero.
 fn measured(levels: usize, input: &[f64]) -> Vec<f64> {
     let (plant, mut state) = build(unit_plane(levels), Operator::Mkp, &random_weights(levels));
     let outputs = input.iter().enumerate().map(|(n, &t)| {

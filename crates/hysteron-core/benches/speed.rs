@@ -57,7 +57,7 @@ fn plain_pass(input: &[f64]) -> impl FnMut() -> f64 {
     }
 }
 
-/// Seconds per target of the inverse, its own state following.
+/// Seconds per target of the inverse, which moves its state along.
 fn inverse(levels: usize, targets: &[f64]) -> impl FnMut() -> f64 {
     let (model, mut state) = build(unit_plane(levels), Operator::Mkp, &random_weights(levels));
     move || {

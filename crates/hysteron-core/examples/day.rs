@@ -1,10 +1,11 @@
 //! A day at 100 Hz: `cargo run --release -p hysteron-core --example day`.
 //!
-//! Each method learns a known plant for 24 hours, 8.64 million samples, through strokes of seconds
-//! to minutes and rests in between, with noise on input and output. The table says whether anything
-//! drifts: error of the output and of the weights in the first and in the last hour, the smallest
-//! weight there ever was, and how well the inverse returned, at every tenth second. Memory is what
-//! was given at the start: the core has no allocator that it could ask for more.
+//! Each method learns a known plant for 24 hours, 8.64 million samples. The input makes strokes of
+//! seconds to minutes, with rests in between. Input and output have noise.
+//!
+//! The table shows whether anything drifts. It has the errors of the output and of the weights in
+//! the first and in the last hour, the smallest weight of all, and the error of the inverse, tested
+//! every ten seconds. The memory is that given at the start, because the core does not allocate.
 
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Outcome, Plane, Target, Turn,
@@ -15,10 +16,11 @@ use rand::{RngExt, SeedableRng};
 
 const HOUR: usize = 3600 * 100;
 const HOURS: usize = 24;
-/// Of the output, as a share of its range: what a cheap sensor has.
+/// Noise of the output as a fraction of its range, as of a cheap sensor.
 const NOISE: f64 = 0.005;
 
-/// An input that strokes to random places in 2 to 60 seconds and rests up to a minute, in levels.
+/// An input, in levels, that moves to random positions in 2 to 60 seconds and then rests for up to
+/// a minute.
 struct Input {
     rng: StdRng,
     levels: f64,
@@ -44,7 +46,7 @@ impl Input {
     }
 }
 
-/// What an hour came to.
+/// The results of an hour.
 #[derive(Default, Clone, Copy)]
 struct Hour {
     squares: f64,

@@ -12,7 +12,7 @@ use hysteron_core::{
 };
 use rand::{Rng, RngExt};
 
-/// Most levels that a test of this method bears: least squares is `O(K⁴)`.
+/// The largest number of levels for a test of this method. Least squares is `O(K⁴)`.
 fn most(method: Method<f64>) -> usize {
     match method {
         Method::LeastSquares { .. } => 9,
@@ -44,8 +44,8 @@ fn the_fast_paths_stay_exact_while_weights_change() {
         let mut learner = Learner::new(plane, operator, &offline, options(method));
         let mut states = vec![0.0; plane.operators()];
         let mut definition = Definition::new(plane, operator, &plant, &mut states).unwrap();
-        // For the method on increments: the weights that each row of the table in the making was
-        // given.
+        // For the method on increments: the weights from which each row of the next table was
+        // computed.
         let mut making = offline.clone();
         let mut acting = offline.clone();
         let (mut row, mut due) = (1, 0);
@@ -55,7 +55,7 @@ fn the_fast_paths_stay_exact_while_weights_change() {
             let expected = sum(operator, &acting, definition.states()) + offset;
             let size = total(&acting) + offset.abs() + 1e-9;
             let learning = learner.step(input, measured).unwrap();
-            // Rounding of some thousand terms, as where weights stand still.
+            // Rounding errors of some thousand terms, as with constant weights.
             let worst = (learning.output - expected).abs() / size;
             assert!(worst <= 1e-12, "seed {seed}, {n}, {method:?}: {worst:e}");
             forward = forward.max(worst);
@@ -67,7 +67,7 @@ fn the_fast_paths_stay_exact_while_weights_change() {
                 match learning.outcome {
                     Outcome::Learned => due = 2 * k,
                     Outcome::RolledBack => {
-                        // The whole table at once.
+                        // This method writes the whole table at once.
                         (row, due) = (1, 0);
                         acting.copy_from_slice(now);
                         making.copy_from_slice(now);
@@ -80,7 +80,7 @@ fn the_fast_paths_stay_exact_while_weights_change() {
                     making[j.clone()].copy_from_slice(&now[j]);
                     row = row % k + 1;
                     if row == 1 {
-                        // Not before the table is whole does the model change.
+                        // The model changes only when the table is complete.
                         acting.copy_from_slice(&making);
                     }
                 }
@@ -194,12 +194,12 @@ fn it_learns_along_the_states_of_the_operators() {
         let k = levels(&mut rng, 30);
         let plane = plane(&mut rng, k);
         let operator = OPERATORS[seed as usize % 3];
-        // So large that no weight comes near zero.
+        // Weights are so large that none comes near zero.
         let offline = vec![100.0; operator_count(k)];
         let mut learner = Learner::new(plane, operator, &offline, options(GRADIENT));
         for (n, input) in inputs(&mut rng, &plane, 600).into_iter().enumerate() {
             if n % 100 == 99 {
-                // Others may move the state.
+                // Somebody else may move the state.
                 learner.model.step(&mut learner.state, plane.max()).unwrap();
                 learner
                     .model
@@ -215,7 +215,7 @@ fn it_learns_along_the_states_of_the_operators() {
                 .step(input, output + offset + error)
                 .unwrap()
                 .outcome;
-            // The offset's own regressor is 1: its change is the step of all.
+            // The regressor of the offset is 1, so its change is the common step.
             let step = learner.estimator.offset() - offset;
             assert_eq!(outcome == Outcome::Learned, step != 0.0);
             for j in 1..=k {

@@ -22,7 +22,7 @@ fn worst(plane: Plane<f64>, operator: Operator, weights: &[f64], inputs: &[f64])
             "memory above its bound"
         );
     }
-    // Not only the sum: every operator's state, and the set it is in.
+    // Compares the state and the region of every operator too.
     let k = plane.levels();
     for j in 1..=k {
         for i in 1..=j {
@@ -53,13 +53,13 @@ fn a_thousand_random_models_and_sequences() {
         let k = levels(&mut rng, 200);
         let plane = plane(&mut rng, k);
         let weights = weights(&mut rng, k);
-        // Equal work for every K; at least enough to fill the memory.
+        // About the same work for every K, but enough samples to fill the memory.
         let count = (2_000_000 / (k * k)).clamp(4 * k, 4000);
         let inputs = inputs(&mut rng, &plane, count);
         let operator = OPERATORS[rng.random_range(0..3)];
         let worst = worst(plane, operator, &weights, &inputs);
-        // Rounding of sums of up to 20 100 terms stays below 1e-13; an error of the method does
-        // not.
+        // Rounding errors of sums of up to 20 100 terms stay below 1e-13. An error of the method
+        // does not.
         assert!(
             worst <= 1e-12,
             "seed {seed}, K = {k}, {operator:?}: {worst:e}"
@@ -82,7 +82,7 @@ fn ten_thousand_oscillations_nested_in_one_cell() {
         let mut deep = Vec::new();
         nested(&mut rng, k, 10_000, &mut deep);
         inputs.extend(deep.iter().map(|x| x - 1.0));
-        // Out of the cell again, slowly, over every turning point that is left.
+        // Out of the cell again, slowly, over every remaining turning point.
         let last = inputs.last().copied().unwrap_or(0.0);
         inputs.extend((0..500).map(|n| last + (k as f64 - last) * f64::from(n) / 500.0));
         overall = overall.max(worst(plane, Operator::Mkp, &weights, &inputs));

@@ -1,5 +1,4 @@
-//! What the estimators find: known plants, known solutions; and what brings them back from wrong
-//! readings.
+//! Estimators find known plants and known solutions, and recover from wrong readings.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -43,7 +42,7 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
     let (n, noise, spread) = (operator_count(K), 0.1, 0.7);
     for correlation in [0.0, 1.5] {
         let mut rng = rng(11);
-        // Far from zero, so that the projection has nothing to do.
+        // Weights are far from zero, so that the projection has no effect.
         let offline: Vec<f64> = (0..n).map(|_| rng.random_range(4.0..6.0)).collect();
         let plant: Vec<f64> = (0..n).map(|_| rng.random_range(4.0..6.0)).collect();
         let (plant, mut there) = build(unit_plane(K), Operator::Mkp, &plant);
@@ -98,15 +97,15 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
         assert!(learned > 1000);
         let batch = solved(normal, right);
         for (k, found) in learner.estimator.parameters().iter().enumerate() {
-            // Rounding times the condition of the normal equations, some 1e4.
+            // Rounding error times the condition number of the normal equations, about 1e4.
             assert!((found - offline[k] - batch[k]).abs() < 1e-9, "weight {k}");
         }
         assert!((learner.estimator.offset() - batch[n]).abs() < 1e-9);
     }
 }
 
-/// Root mean square error, in shares of the output's range, of a learner against a plant while it
-/// learns from it.
+/// Root mean square error of a learner while it learns from a plant, as a fraction of the output's
+/// range.
 fn error(
     learner: &mut Learner,
     plant: &mut common::Owned<f64>,
@@ -179,13 +178,13 @@ fn least_squares_finds_the_weights_themselves() {
     assert!(learner.estimator.offset().abs() < 1e-3);
 }
 
-/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero
-/// must not come back as an error of the estimate, which grew without bound where it did.
+/// Weights at zero, a plant on another plane and no forgetting. Setting negative weights to zero
+/// must not act on the estimate: its error grew without bound when it did.
 #[test]
 fn weights_held_at_zero_do_not_pile_up() {
     for forgetting in [0.9999, 1.0] {
         let mut rng = rng(17);
-        // A narrow ridge on a finer plane, moved off the one that the learner sets out from.
+        // A narrow ridge on a finer plane, away from the ridge that the learner starts from.
         let ridge = |levels: usize, middle: f64, j: usize, i: usize| {
             let at = |n: usize| n as f64 / levels as f64 - middle;
             (-200.0 * (at(j).powi(2) + (at(i) + 0.2).powi(2))).exp()
@@ -271,8 +270,8 @@ fn coefficients_of_a_basis_are_found() {
     }
 }
 
-/// What a burst of wrong readings does to a learner: its error before and after, and how often it
-/// was rolled back.
+/// The effect of a burst of wrong readings on a learner: its error before and after, and the number
+/// of roll-backs.
 fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
     const K: usize = 20;
     let mut rng = rng(15);
@@ -284,7 +283,7 @@ fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
     };
     let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &weights, guards);
     let before = error(&mut learner, &mut there, &mut rng, (100_000, 0.05));
-    // The sensor's wires are the wrong way round for less than half a trial.
+    // The sensor has the wrong sign for less than half a trial.
     let mut wrong = 0;
     let mut rolled_back = 0;
     let inputs = strokes(&mut rng, &unit_plane(K), 60_000, 40);
@@ -311,7 +310,7 @@ fn a_burst_of_wrong_readings_is_rolled_back() {
         let (before, after, rolled_back) = burst(method, 256);
         assert_eq!(rolled_back, 1, "{method:?}");
         assert!(after < 1.2 * before, "{method:?}: {before} {after}");
-        // Without the last good weights the damage lasts.
+        // Without a return to the last good weights the damage stays.
         let (_, alone, none) = burst(method, u32::MAX);
         assert_eq!(none, 0);
         assert!(alone > 2.0 * after, "{method:?}: {alone} {after}");

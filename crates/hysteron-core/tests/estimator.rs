@@ -1,4 +1,4 @@
-//! What an estimator refuses, and the memory and numbers that it runs on.
+//! The errors of estimators, their memory and their number types.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -101,7 +101,7 @@ fn options_out_of_range_are_refused_by_name() {
         text,
         "the estimator's option `gain` must be above 0 and below 2"
     );
-    // Codes are for ever.
+    // Codes never change.
     assert_eq!(Error::Adaptation { option: "gain" }.code(), 11);
 }
 
@@ -212,8 +212,8 @@ fn readings_that_are_no_numbers_change_nothing() {
     }
 }
 
-/// Largest error by the end, in ranges, of least squares at ten levels in either precision, and the
-/// weights.
+/// The largest error at the end, in ranges, of least squares at ten levels in either precision, and
+/// the weights.
 fn in_precision<T: Real>(number: impl Fn(f64) -> T, back: impl Fn(T) -> f64) -> (f64, Vec<f64>) {
     const K: usize = 10;
     let mut rng = rng(70);
@@ -230,7 +230,7 @@ fn in_precision<T: Real>(number: impl Fn(f64) -> T, back: impl Fn(T) -> f64) -> 
     let plane = Plane::new(number(20.0), number(80.0), K).unwrap();
     let weights = dense(&mut rng, K);
     let (plant, mut there) = build(unit_plane(K), Operator::Mkp, &weights);
-    // All memory as a microcontroller has it: arrays.
+    // All memory is in arrays, as on a microcontroller.
     let offline = [number(0.5); operator_count(K)];
     let mut model = Model::new(plane, Operator::Mkp, &offline, [T::ZERO; table_len(K)]).unwrap();
     let turns = [Turn::default(); turn_capacity(K)];

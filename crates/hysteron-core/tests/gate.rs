@@ -1,5 +1,5 @@
-//! What one wrong reading, or a few in a row, do to an estimator: next to nothing; and a plant that
-//! jumps is followed all the same.
+//! One wrong reading, or a few in a row, hardly affect an estimator. It still follows a plant that
+//! jumps.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -14,7 +14,7 @@ use rand::rngs::StdRng;
 
 const SEEDS: u64 = 600;
 
-/// A plant, what it is driven by, and a model of it.
+/// A plant, its input, and a model of it.
 struct Case {
     plane: Plane<f64>,
     operator: Operator,
@@ -39,8 +39,7 @@ impl Case {
         let (plant, mut there) = build(plane, operator, &truth);
         let (low, high) = plant.output_range();
         let range = high - low;
-        // Off-line the model is wrong by up to half of each weight, and the plant has noise or
-        // none.
+        // Each off-line weight is wrong by up to a half. The plant has noise or none.
         let offline = truth.iter().map(|mu| mu * rng.random_range(0.5..1.5));
         let offline: Vec<f64> = offline.collect();
         let noise = range * [0.0, 1e-4, 1e-2][rng.random_range(0..3)];
@@ -49,8 +48,8 @@ impl Case {
             plant.step(&mut there, input).unwrap().output + noise * rng.random_range(-1.0..=1.0)
         });
         let outputs = outputs.collect();
-        // In the unit of the output, and the spread such that the sum of the weights is uncertain
-        // by about its third.
+        // In the output's unit. With this spread the sum of the weights is uncertain by about a
+        // third.
         let method = match method {
             Method::LeastSquares { correlation, .. } => Method::LeastSquares {
                 forgetting: 0.999,
@@ -84,7 +83,7 @@ impl Case {
     }
 }
 
-/// Which readings are wrong, and what they say.
+/// Which readings are wrong, and their values.
 fn wrong(rng: &mut StdRng, case: &Case) -> Vec<Option<f64>> {
     let count = case.outputs.len();
     let mut wrong = vec![None; count];
@@ -116,8 +115,8 @@ fn wrong(rng: &mut StdRng, case: &Case) -> Vec<Option<f64>> {
     wrong
 }
 
-/// What became of a run: the largest sum of weights and the largest error of a prediction, of the
-/// truth and not of what was read.
+/// The results of a run: the largest sum of weights, and the largest error of a prediction against
+/// the true output.
 fn run(case: &Case, wrong: &[Option<f64>], calls: u64) -> (f64, f64) {
     let mut learner = case.learner();
     let mut rng = rng(calls);
@@ -134,7 +133,7 @@ fn run(case: &Case, wrong: &[Option<f64>], calls: u64) -> (f64, f64) {
             23 => learner.estimator.realign(),
             24 => assert!(learner.step(input, f64::NAN).is_err()),
             25 => {
-                // Somebody else moves the state.
+                // Others move the state.
                 learner.model.rebase(&mut learner.state).unwrap();
                 learner.model.step(&mut learner.state, input).unwrap();
             }
@@ -155,9 +154,9 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
         let wrong = wrong(&mut rng(10_000 + seed), &case);
         let clean = run(&case, &vec![None; wrong.len()], seed);
         let dirty = run(&case, &wrong, seed);
-        // No wrong reading gets further into the model than the gate is wide. Before anything is
-        // known that is twelve fiftieths of the range, and a reading within widens it by a sixth at
-        // most: a few in a burst at the very start come to a range in the worst case.
+        // A wrong reading moves the model by at most the width of the gate. At the start that is
+        // 12/50 of the range, and an accepted reading widens it by at most a sixth. So a few in a
+        // burst at the very start can add up to a range in the worst case.
         assert!(dirty.1 < clean.1 + 1.0, "{seed}: {} {}", clean.1, dirty.1);
         assert!(dirty.0 < 2.0 * clean.0, "{seed}: {} {}", clean.0, dirty.0);
         moved += u64::from(dirty.1 > clean.1 + 0.24 || dirty.0 > 1.3 * clean.0);
@@ -171,7 +170,7 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
          errors are {errors:.3} ranges larger at most; without a gate \
          {wrecked} are off by more than ten ranges"
     );
-    // One run in 250 of 3000.
+    // One run in 250, of 3000 runs.
     assert!(
         moved <= SEEDS / 50,
         "{moved} of {SEEDS} moved by more than the gate at the start"
@@ -179,16 +178,16 @@ fn wrong_readings_leave_weights_and_errors_about_as_they_are_without() {
     assert!(wrecked > SEEDS / 4, "the readings were harmless: {wrecked}");
 }
 
-/// What happens to the plant.
+/// How the plant changes.
 #[derive(Debug, Clone, Copy)]
 enum Jump {
-    /// Its output is higher by so many ranges, or its sensor's.
+    /// The output, or the sensor's reading, is higher by so many ranges.
     Offset(f64),
-    /// All its weights are so many times as large.
+    /// All weights are so many times as large.
     Stroke(f64),
-    /// It moves so many levels along the plane, as under another load.
+    /// The weights move so many levels along the plane, as under another load.
     Shift(f64),
-    /// Its noise is so many ranges.
+    /// The noise is so many ranges.
     Noise(f64),
 }
 
@@ -206,9 +205,9 @@ const JUMPS: [Jump; 11] = [
     Jump::Noise(0.5),
 ];
 
-/// What a jump half-way costs: the squares of the errors of the samples that something could be
-/// learned from, in ranges, the largest error, and the readings refused before the first one that
-/// was believed.
+/// The cost of a jump in the middle of a run: the sum of squared errors, in ranges, over samples
+/// that could be learned from, the largest error, and the number of readings refused before the
+/// first accepted one.
 fn cost(case: &Case, jump: Jump, seed: u64) -> (f64, f64, Option<u32>) {
     let mut rng = rng(seed);
     let (plant, mut there) = build(case.plane, case.operator, &case.offline);
@@ -258,10 +257,10 @@ fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
         }
         case.options.gate = 0.0;
         let open = cost(&case, jump, seed).0;
-        // So many samples at the largest error that was met, as a shift is met anew on each branch
-        // and growing noise followed by doublings. The rest is learned from other readings than
-        // without a gate, which matters for increments: their offset follows slowly, and the
-        // squares are up to 2.4 times as large.
+        // The bound allows so many samples with the largest error, because a shift shows again on
+        // each branch and the scale follows growing noise by doublings. The other readings are not
+        // the same as those learned from without a gate. This matters for increments: their offset
+        // follows slowly, and the squares are up to 2.4 times as large.
         let at_most = worst * worst * f64::from(burst);
         assert!(
             squares <= 3.0 * open + 8.0 * at_most,
@@ -270,8 +269,8 @@ fn a_jump_of_the_plant_costs_a_few_bursts_and_no_more() {
     }
 }
 
-/// A burst one shorter than `burst` is not learned and the reading that completes it is, held at
-/// one value as by a stuck sensor; in the first samples too.
+/// Readings stuck at one value: `burst − 1` of them are not learned from, and the next one is. In
+/// the first samples too.
 #[test]
 fn a_burst_is_told_from_a_jump_by_its_length() {
     for method in METHODS {

@@ -1,5 +1,5 @@
-//! The guards of the estimators: what teaches nothing, what is taken back, and that weights stay
-//! weights.
+//! The guards of the estimators: samples that teach nothing, roll-backs, and weights that stay
+//! finite and not negative.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -11,7 +11,7 @@ use common::{
 use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
 use rand::RngExt;
 
-/// A learner that has been over the plane, and an input within it to rest at.
+/// A learner after a way over the whole plane, and an input within the plane at which it rests.
 fn at_rest(method: Method<f64>, guards: Adaptation<f64>) -> (Learner, Vec<f64>, f64) {
     let k = 8;
     let plane = unit_plane(k);
@@ -39,7 +39,7 @@ fn no_drift_under_noise_without_excitation() {
         let mut rng = rng(6);
         let (mut learner, kept, rest) = at_rest(method, Adaptation::default());
         let offset = learner.estimator.offset();
-        // Half of `movement` to each side, in levels.
+        // Noise of half of `movement` to each side, in levels.
         let half = 0.4999 * learner.estimator.options().movement * learner.model.plane().step();
         for n in 0..1_000_000 {
             let noise = if n < 500_000 { 0.0 } else { half };
@@ -233,7 +233,7 @@ fn frozen_it_predicts_and_does_not_learn() {
                 );
             }
         }
-        // Kept by hand, wrecked, and taken back.
+        // Weights are kept by a call, damaged, and taken back.
         let kept = learner.estimator.parameters().to_vec();
         learner.estimator.keep();
         for input in strokes(&mut rng, &unit_plane(k), 200, 40) {

@@ -9,8 +9,8 @@ use hysteron_core::{
 };
 use rand::{Rng, RngExt};
 
-/// `|H(H⁻¹(y)) − y|` over a walk of targets, relative to the range of the output; the forward model
-/// is stepped apart, through the inputs in their own unit.
+/// `|H(H⁻¹(y)) − y|` over a walk of targets, relative to the range of the output. A separate
+/// forward model steps through the inputs.
 fn worst_return(plane: Plane<f64>, operator: Operator, weights: &[f64], rng: &mut impl Rng) -> f64 {
     let (model, mut state) = build(plane, operator, weights);
     let (_, mut forward) = build(plane, operator, weights);
@@ -84,7 +84,7 @@ fn rising_candidates(plane: &Plane<f64>, mu: &[f64], xi: &[f64], target: f64) ->
                 .map(|i| xi[at(i, m)] * mu[at(i, m)])
                 .sum();
             let moved: f64 = (e + f - n + 1..=m).map(|i| mu[at(i, m)]).sum();
-            // With no operator moved there is nothing to solve: no candidate.
+            // Where no operator moves, there is no candidate.
             (moved > 0.0).then(|| plane.level(m - 1) + plane.step() * (rest - still) / moved)
         })
         .fold(f64::INFINITY, f64::min)
@@ -128,7 +128,7 @@ fn equals_the_candidate_formulas_of_the_chapter() {
         let mut rng = rng(9000 + seed);
         let k = levels(&mut rng, 30);
         let plane = plane(&mut rng, k);
-        // Bounded below, so that the input is well determined by the output.
+        // Weights have a lower bound, so that the output determines the input well.
         let mu: Vec<f64> = (0..operator_count(k))
             .map(|_| rng.random_range(0.1..1.0))
             .collect();
@@ -156,7 +156,8 @@ fn equals_the_candidate_formulas_of_the_chapter() {
         rises > 5000 && falls > 5000,
         "{rises} rising, {falls} falling"
     );
-    // Both solve the same linear pieces; slopes of at least 0.1 amplify the rounding of the sums.
+    // Both solve the same linear pieces. Slopes of at least 0.1 amplify the rounding errors of the
+    // sums.
     assert!(worst <= 1e-9, "{worst:e}");
     println!(
         "inverse against (9), (10), (12), (13): {rises} rising, {falls} falling targets, largest difference {worst:.1e} ΔT"
@@ -189,7 +190,7 @@ fn out_of_reach_and_equal_targets() {
     }
 }
 
-/// One operator only: the output rests from 80 down to its left ridge and from there up to its
+/// A single operator: the output rests from 80 down to its left ridge, and from there up to its
 /// right one.
 fn dead_band() -> (Plane<f64>, Vec<f64>) {
     let mut weights = vec![0.0; operator_count(7)];
@@ -217,12 +218,12 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
         "{edge:?}"
     );
     assert!((model.output(&state) - y).abs() < 1e-12);
-    // The edge again: nothing is left to cross. Then up: across the whole band.
+    // At the edge again, nothing is left to cross. Then up, across the whole band.
     assert!((inverse.solve(&state, falling(y)).unwrap().input - edge.input).abs() < 1e-9);
     let rising = Target::new(y).heading(Some(Direction::Rising));
     let back = inverse.solve(&state, rising).unwrap();
     assert!((back.input - up.input).abs() < 1e-9, "{back:?}");
-    // A tolerance in output goes that much further; a target beyond it is followed, not
+    // A tolerance in the output moves the edge that much further. A target beyond it is held, not
     // anticipated.
     let loose = |y| falling(y).tolerance(0.3);
     assert!((inverse.solve(&state, loose(y)).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
@@ -233,7 +234,7 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
 #[test]
 fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
     let (plane, weights) = dead_band();
-    // In the output's unit, of which KP has twice as much.
+    // Tolerances are in the output's unit. The output of KP spans twice as much.
     for (operator, unit, offset) in [(Operator::Mkp, 1.0, 0.0), (Operator::Kp, 2.0, -3.0)] {
         let (model, mut state) = build(plane, operator, &weights);
         let inverse = model.inverse().unwrap();
@@ -242,8 +243,8 @@ fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
             inverse.step(&mut state, held).unwrap()
         };
         let up = to(2.0);
-        // Back by less: the input stays. On by as little: it follows. Back by more, though not by
-        // twice: it crosses.
+        // Back by less than the tolerance: the input stays. On by as little: it follows. Back by
+        // more, but less than twice: it crosses.
         assert_eq!(to(1.8).input, up.input);
         assert!(to(2.1).input > up.input);
         let down = to(1.7);
@@ -258,7 +259,7 @@ fn on_a_flat_stretch_the_first_input_is_returned() {
     let (plane, weights) = dead_band();
     let (model, mut state) = build(plane, Operator::Mkp, &weights);
     let inverse = model.inverse().unwrap();
-    // Full output is reached at β_6 = 70, although it lasts to 80.
+    // Full output is reached at β_6 = 70, and rests up to 80.
     assert!((inverse.step(&mut state, Target::new(3.0)).unwrap().input - 70.0).abs() < 1e-9);
     model.step(&mut state, 80.0).unwrap();
     // Zero is reached at α_1 = 20.
@@ -287,7 +288,7 @@ fn relays_jump_to_or_past_the_target() {
             } else {
                 reached <= target + rounding
             });
-            // One level less would not have done.
+            // One level less would not have been enough.
             let mut short = before.clone();
             let less = if rising {
                 input - plane.step()

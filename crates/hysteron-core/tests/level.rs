@@ -1,4 +1,4 @@
-//! The level of the output, which learning from increments follows apart from the weights.
+//! The offset, which the method on increments learns apart from the weights.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -11,9 +11,9 @@ use rand::RngExt;
 fn a_level_that_learning_made_worse_is_taken_back_and_said() {
     for operator in OPERATORS {
         let mut rng = rng(70);
-        // Longer than the plane: no increment ends, so that whatever comes is of the level. A gain
-        // near 2 follows noise so closely that the mean square error is some ten times that of the
-        // level that stands still.
+        // Increments are longer than the plane, so none ends and only the offset is learned. A gain
+        // near 2 follows noise so closely that the mean square error is about ten times that of a
+        // constant offset.
         let method = Method::Increments {
             gain: 1.9,
             span: 8.0,
@@ -37,7 +37,7 @@ fn a_level_that_learning_made_worse_is_taken_back_and_said() {
             }
             moved += usize::from(learner.estimator.offset() != 0.0);
         }
-        // Each trial ends so; the first sample is only where learning begins.
+        // Each trial ends with a roll-back. The first sample only starts the learning.
         assert_eq!(taken_back, (1000 - 1) / 50, "{operator:?}");
         assert!(moved > 900, "{moved}");
     }

@@ -1,4 +1,4 @@
-//! The properties that make it hysteresis of the Preisach kind, on random models.
+//! The properties of Preisach hysteresis, on random models.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -15,7 +15,7 @@ struct Case {
     /// Two inputs in order, within the plane.
     low: f64,
     high: f64,
-    /// Rounding of the outputs, far below any effect of a wrong turning point.
+    /// Rounding error of the outputs, far below the effect of a wrong turning point.
     close: f64,
 }
 
@@ -66,7 +66,7 @@ fn wiping_out() {
         let top = case.model.0.plane().max();
         let history = std::mem::take(&mut case.history);
         case.go(history);
-        // A larger maximum leaves nothing of what was before it, a saturating one nothing at all.
+        // A larger maximum wipes out all extremes inside it; a saturating one wipes out everything.
         let after = case.go([top, case.low, case.high]);
         let left: Vec<f64> = case.model.1.turning_points().collect();
         let (model, fresh) = (&case.model.0, &mut case.model.1);
@@ -87,7 +87,7 @@ fn return_point_memory_and_closed_minor_loops() {
         let first = case.go([high]);
         let inner: Vec<f64> = (0..50).map(|_| case.rng.random_range(low..high)).collect();
         case.go(inner);
-        // Back at the turning point, the loop is closed, whatever happened inside it.
+        // Back at the turning point, the loop is closed, whatever happened inside.
         assert!((case.go([high]) - first).abs() <= case.close);
         assert!((case.go([low, high]) - first).abs() <= case.close);
         assert!(case.model.1.corners() <= 2 * case.model.0.plane().levels());
@@ -122,7 +122,7 @@ fn congruency() {
 
 #[test]
 fn rate_independence() {
-    // Samples in between, or repeated, change nothing.
+    // Samples in between and repeated samples change nothing.
     for mut case in cases(200) {
         let history = std::mem::take(&mut case.history);
         let coarse: Vec<f64> = history.iter().map(|&t| case.go([t])).collect();
@@ -147,7 +147,7 @@ fn monotonicity() {
         let mut case = case.after_history();
         let plane = *case.model.0.plane();
         let mut last = case.go([case.low]);
-        // The range's own end last: computed from the others it may fall short by rounding.
+        // The end of the range itself, because the computed one may fall short by rounding.
         let low = case.low;
         let way = |n| low + (plane.max() - low) * f64::from(n) / 100.0;
         for t in (0..100).map(way).chain([plane.max()]) {

@@ -1,5 +1,4 @@
-//! What the inverse says of a target is true, whatever the state, target, heading, tolerance and
-//! operator.
+//! The status of the inverse is true for every state, target, heading, tolerance and operator.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -9,7 +8,7 @@ use hysteron_core::{Direction, Operator, Real, Solution, Status, Target, operato
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt};
 
-/// How the number type under test goes to and from `f64`.
+/// Conversion of the number type under test to and from `f64`.
 struct Numbers<T> {
     of: fn(f64) -> T,
     to: fn(T) -> f64,
@@ -24,12 +23,12 @@ const SINGLE: Numbers<f32> = Numbers {
     to: f64::from,
 };
 
-/// A model whose inverse is under attack, and the same model apart, which says what really happens.
+/// A model whose inverse is tested, and a separate copy that gives the true output.
 struct Attack<T: Real> {
     model: Owned<T>,
     apart: Owned<T>,
     numbers: Numbers<T>,
-    /// Outputs of the past: the targets that a branch began at are among them.
+    /// Past outputs. The targets at which a branch began are among them.
     outputs: Vec<f64>,
 }
 
@@ -47,8 +46,8 @@ impl<T: Real> Attack<T> {
         ((self.numbers.to)(low), (self.numbers.to)(high))
     }
 
-    /// Rounding of an output: of the sums, and of the input in its own unit on the steepest slope
-    /// there can be, all weights within one cell.
+    /// Rounding error of an output: that of the sums, and that of the input on the steepest
+    /// possible slope, with all weights in one cell.
     fn rounding(&self) -> f64 {
         let (plane, to) = (self.model.0.plane(), self.numbers.to);
         let (low, high) = self.range();
@@ -140,7 +139,7 @@ impl<T: Real> Attack<T> {
         let [min, max] = [plane.min(), plane.max()].map(self.numbers.to);
         let walk = hysteron_core::Plane::new(min, max, plane.levels()).unwrap();
         for _ in 0..20 {
-            // The forward model and the inverse take turns on one state.
+            // Forward model and inverse move the same state in turn.
             let count = rng.random_range(1..20);
             for input in inputs(rng, &walk, count) {
                 let input = (self.numbers.of)(input);
@@ -206,17 +205,17 @@ fn a_target_that_jumps_back_to_where_the_branch_began_is_followed() {
     }
 }
 
-/// A target that turns is met at the far edge of the dead band: one step further and the output
-/// moves.
+/// A target that turns gives the input at the far edge of the dead band. One step further the
+/// output moves.
 #[test]
 fn a_target_that_turns_is_met_at_the_edge_of_the_dead_band() {
     let mut edges = 0;
     for seed in 0..600 {
         let mut rng = rng(52_000 + seed);
         let k = levels(&mut rng, 30);
-        // Inputs are positions, so that rounding leaves no state just beside a grid line.
+        // Inputs equal positions, so that rounding puts no state just beside a grid line.
         let plane = hysteron_core::Plane::new(1.0, k as f64, k).unwrap();
-        // Either nothing or enough, so that a move can be told from rounding.
+        // Weights are zero or large enough to tell a move from rounding.
         let mu: Vec<f64> = (0..operator_count(k))
             .map(|_| f64::from(rng.random_range(0..3_u8)))
             .collect();
@@ -234,7 +233,7 @@ fn a_target_that_turns_is_met_at_the_edge_of_the_dead_band() {
             };
             let wanted = Target::new(target).heading(Some(heading));
             let edge = inverse.step(&mut state, wanted).unwrap();
-            // Relays stand on a level: the next one is a step away, and a little for rounding.
+            // Relays are at a level. The next one is a step away, and a little more for rounding.
             let further = plane.step()
                 * if operator == Operator::Relay {
                     1.001

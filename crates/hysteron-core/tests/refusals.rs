@@ -1,4 +1,4 @@
-//! What the core refuses, and that refusing changes nothing.
+//! The errors of the core, and that a call with an error changes nothing.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -32,7 +32,7 @@ fn planes() {
             "{min} to {max}"
         );
     }
-    // As wide as can be: ends with an answer, and where it is a plane, T_max reaches K.
+    // The widest ranges: the call ends, and if it gives a plane, T_max normalises to K.
     for levels in [2, 3, 20, 1000] {
         for max in [1e307, 1.37e308, f64::MAX] {
             if let Ok(plane) = Plane::new(0.0, max, levels) {
@@ -154,7 +154,7 @@ fn states_of_other_models_and_broken_saves() {
     let (_, mut wider) = build(Plane::new(0.0, 2.0, 3).unwrap(), Operator::Mkp, &[1.0; 6]);
     assert_eq!(model.step(&mut heavier, 0.5), Err(Error::StateMismatch));
     assert_eq!(model.step(&mut wider, 0.5), Err(Error::StateMismatch));
-    // Restoring carries a history over to another model.
+    // A history can be restored in another model.
     model.step(&mut state, 0.7).unwrap();
     let points: Vec<f64> = state.turning_points().collect();
     model.restore(&mut heavier, &points, 0.7).unwrap();

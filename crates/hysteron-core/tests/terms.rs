@@ -1,4 +1,4 @@
-//! The terms over the Everett table that a state gives to identification.
+//! The terms of a state over the Everett table, for identification.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -19,7 +19,7 @@ fn their_sum_is_the_output() {
             let output = model.step(&mut state, input).unwrap().output;
             let mut sum = 0.0;
             state.everett_terms(|index, factor| sum += factor * model.table()[index]);
-            // As the fast model against the definition.
+            // The bound of the fast model against the definition.
             assert!((sum - output).abs() <= 1e-12 * scale, "seed {seed}");
         }
     }

@@ -1,4 +1,4 @@
-//! Numbers and names that files and scripts rely on: a change of one of them is a change of format.
+//! Numbers and names in files and scripts. A change of one of them changes a format.
 
 use hysteron_core::{Outcome, Status};
 

@@ -17,8 +17,8 @@
  *
  * Worst case of one call with K levels:
  *   hys_step               passes at most 2K corners, in a loop of at most 2K + 3 iterations
- *   hys_inverse_step       two bisections, of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then
- *                          one hys_step
+ *   hys_inverse_step       two bisections, of at most log2(2K + 1) + 1 and log2(K) + 1 halvings,
+ *                          then one hys_step
  *   hys_reset_on           one hys_step
  *   hys_start, hys_reset_off   none of these loops
  *   hys_save, hys_rebase   one pass over at most 4K + 3 points

@@ -11,8 +11,8 @@
  *     static hys_adaptive adaptive;
  *     hys_adapt_options options;
  *     hys_adapt_defaults(&options);
- *     hys_adapt_start(&adaptive, &spring, spring_weights, spring.offset, &options, memory, SPRING_ADAPT_NUMBERS,
- *                     turns, SPRING_TURNS);
+ *     hys_adapt_start(&adaptive, &spring, spring_weights, spring.offset, &options, memory,
+ *                     SPRING_ADAPT_NUMBERS, turns, SPRING_TURNS);
  *     hys_adapt_step(&adaptive, temperature, displacement, &expected, &outcome);   each sample
  *
  * For a compensator, start a second state of `&adaptive.model` and call hys_rebase before each of

@@ -1,13 +1,16 @@
-//! What is run: every run of every test vector, and the runs that are measured. Used by the build
-//! script, which makes Rust constants of it, and by `host`, which makes C and model files.
+//! The runs: every run of every test vector, and the runs that are measured.
+//!
+//! The build script writes them as Rust constants; `host` writes them for C, with model files. The
+//! build script has no access to `hysteron-core`, so this file does not use it.
 
 use serde_json::Value;
 use std::path::Path;
 
-/// Levels of the models that are measured.
+/// Numbers of levels of the models that are measured.
 pub const LEVELS: [usize; 3] = [10, 20, 40];
 
-/// What a step is: the input is given, or it is wanted for a target and the policy is *hold* (0) or *anticipate* (±1).
+/// Kind of a step: a forward step with an input. Otherwise an inverse step with a target, and the
+/// kind is the policy: *hold* (0) or *anticipate* (±1).
 pub const FORWARD: i8 = 2;
 
 pub struct Model {
@@ -26,14 +29,14 @@ pub struct Model {
 
 pub struct Run {
     pub name: String,
-    /// Place among the models.
+    /// Index of the model.
     pub model: usize,
     pub tolerance: f64,
     /// Kind and value of each step: input or target.
     pub steps: Vec<(i8, f64)>,
-    /// Results that a vector expects, input or output, and the status, with the tolerance of the result.
+    /// Results that a vector expects: input or output, status, and the tolerance of the result.
     pub expected: Option<(Vec<f64>, Vec<i8>, f64)>,
-    /// Largest difference from the definition's output that is allowed in double.
+    /// Largest difference from the output of the definition that is allowed in double.
     pub output_tolerance: f64,
 }
 
@@ -115,7 +118,7 @@ fn vector(name: &str, model: usize, file: &Value, run: &Value) -> Run {
     }
 }
 
-/// Xorshift (Marsaglia 2003), in `[0, 1)`: the same numbers for everyone.
+/// Xorshift (Marsaglia 2003), in `[0, 1)`. It gives the same numbers on every machine.
 struct Random(u64);
 
 impl Random {
@@ -127,12 +130,13 @@ impl Random {
     }
 }
 
-/// Multiples of 1/1024, so that single precision starts from the same numbers.
+/// Rounds to a multiple of 1/1024, so that single precision has the same numbers.
 fn short(value: f64) -> f64 {
     (value * 1024.0).round() / 1024.0
 }
 
-/// An MKP model with weights in 1/64 from 1/8 to 9/8, none on the diagonal, so that there are dead bands.
+/// An MKP model with weights from 1/8 to 9/8, in multiples of 1/64. Weights on the diagonal are
+/// zero, which makes dead bands.
 fn bench_model(levels: usize) -> Model {
     let mut random = Random(0x9e37_79b9_7f4a_7c15 + levels as u64);
     let places = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
@@ -152,7 +156,7 @@ fn bench_model(levels: usize) -> Model {
     model(&format!("bench_{levels}"), json)
 }
 
-/// Samples of the runs that means are taken over.
+/// Number of samples of the runs over which means are taken.
 const SAMPLES: usize = 500;
 
 fn bench_runs(model: &Model, number: usize) -> Vec<Run> {
@@ -163,14 +167,15 @@ fn bench_runs(model: &Model, number: usize) -> Vec<Run> {
         tolerance: 0.0,
         steps,
         expected: None,
-        // The vectors' own: 1e-13 of the sum of the weights forward, 1e-12 where a target is met.
+        // The tolerances of the vectors: 1e-13 of the sum of the weights forward, 1e-12 for the
+        // inverse.
         output_tolerance: if name.starts_with("forward") {
             1e-13
         } else {
             1e-12
         } * total,
     };
-    // Both shapes as shares of a range, of the input and of the output.
+    // Both shapes as fractions of a range, of the input and of the output.
     let smooth = |n: usize| {
         let time = n as f64 / SAMPLES as f64;
         0.5 - 0.5 * (1.0 - 0.8 * time) * (30.0 * time).cos()
@@ -207,9 +212,9 @@ fn at(model: &Model, x: f64) -> (i8, f64) {
     (FORWARD, short(model.min + (x - 1.0) * step))
 }
 
-/// Loops nested so that the staircase has as many corners as a state can hold, 2K, two for each grid cell that it
-/// crosses: each is narrower by a quarter of a cell at both ends, and the ends come to a new cell in turn. The last
-/// one stands inside what is left.
+/// Nested loops that fill the staircase with as many corners as a state can have: 2K, two for each
+/// grid cell that it crosses. Each loop is narrower than the one before by a quarter of a cell at
+/// both ends, and the ends reach a new cell in turn. The last loop lies inside what is left.
 fn staircase(model: &Model) -> Vec<(i8, f64)> {
     let mut steps = Vec::new();
     let (mut high, mut low) = (model.levels as f64 - 0.125, 0.625);
@@ -222,7 +227,7 @@ fn staircase(model: &Model) -> Vec<(i8, f64)> {
     steps
 }
 
-/// One jump over a full staircase, to each place where that could cost most; then a search at random.
+/// One jump over a full staircase, to each position where it could cost most. Then a random search.
 fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
     let top = model.levels as f64;
     let mut steps = Vec::new();
@@ -238,7 +243,8 @@ fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
             top / 2.0 - 3.3,
         ] {
             let stairs = staircase(model);
-            // Full, or one or two turning points less: the jump turns the input, or does not.
+            // A full staircase, or one or two turning points fewer: the jump turns the input or
+            // does not.
             steps.extend(&stairs[..stairs.len() - back]);
             steps.push(at(model, x));
         }
@@ -247,11 +253,11 @@ fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
     let mut x = 0.0;
     for n in 0..2000 {
         x = match (random.next() * 4.0) as usize {
-            // In the same cell, which makes corners merge; on a level; next door; anywhere.
+            // In the same cell, which makes corners merge; on a level; in the next cell; anywhere.
             0 => f64::floor(x) + random.next(),
             1 => (random.next() * top).round(),
             2 => x + random.next() - 0.5,
-            // Loops that shrink from both ends.
+            // Loops that become narrower at both ends.
             _ => top * (0.5 + if n % 2 == 0 { 0.5 } else { -0.5 } * random.next()),
         };
         x = x.clamp(0.0, top);
@@ -260,7 +266,8 @@ fn forward_adversary(model: &Model) -> Vec<(i8, f64)> {
     steps
 }
 
-/// Targets all over the range, with each policy, from a full staircase; then forward and inverse at random.
+/// Targets all over the range, with each policy, from a full staircase. Then random forward and
+/// inverse steps.
 fn inverse_adversary(model: &Model, total: f64) -> Vec<(i8, f64)> {
     let mut steps = Vec::new();
     for back in 0..3 {

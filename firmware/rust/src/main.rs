@@ -1,5 +1,5 @@
-//! Every run in both number types through the Rust core. Standard output has the bits of each result; on
-//! the Cortex-M4F standard error has what it took.
+//! Every run in both number types through the Rust core. Standard output gets the bits of each
+//! result. On the Cortex-M4F, standard error gets the cost.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod port;

@@ -1,4 +1,5 @@
-//! What differs between the Cortex-M4F and the host: printing, counting instructions, measuring the stack.
+//! The differences between the Cortex-M4F and the host: printing, counting instructions, measuring
+//! the stack.
 
 #[cfg(target_os = "none")]
 pub use target::*;
@@ -13,15 +14,16 @@ mod target {
 
     pub use cortex_m_semihosting::{heprintln as note, hprintln as say};
 
-    /// With `-icount shift=7` an instruction takes 128 ns, of which SysTick at 25 MHz counts 40 each: 16 in 5
-    /// instructions. Being off by less than one tick, a difference of two readings tells the number exactly.
+    /// With `-icount shift=7` an instruction takes 128 ns. A tick of SysTick at 25 MHz is 40 ns, so
+    /// 5 instructions are 16 ticks. A difference of two readings is off by less than one tick, so
+    /// it gives the number of instructions exactly.
     const TICKS: u32 = 16;
     const INSTRUCTIONS: u32 = 5;
 
-    /// What a count of nothing gives.
+    /// The count for an empty step.
     static READING: AtomicU32 = AtomicU32::new(0);
 
-    /// Starts the counter and proves it.
+    /// Starts the counter and checks it.
     pub fn start() {
         if let Some(mut board) = Peripherals::take() {
             board.SYST.set_clock_source(SystClkSource::Core);
@@ -51,19 +53,19 @@ mod target {
         }
     }
 
-    /// A function of its own, so that nothing of what is measured slips past a reading.
+    /// A separate function, so that the compiler moves nothing of the step past a reading.
     #[inline(never)]
     fn ticks() -> u32 {
         SYST::get_current()
     }
 
-    /// What `step` gives, and how many instructions it took.
+    /// The result of `step`, and its number of instructions.
     #[inline(always)]
     pub fn count<R>(step: impl FnOnce() -> R) -> (R, u32) {
         let before = ticks();
         let result = step();
         let after = ticks();
-        // It counts down, in 24 bits.
+        // The counter counts down, in 24 bits.
         let ticks = before.wrapping_sub(after) & 0x00ff_ffff;
         let instructions = (ticks * INSTRUCTIONS + TICKS / 2) / TICKS;
         (result, instructions - READING.load(Relaxed))

@@ -1,4 +1,4 @@
-//! One run after the other, in one number type.
+//! All runs, one after the other, in one number type.
 
 use crate::port::{count, depth, note, say};
 use core::hint::black_box;
@@ -7,7 +7,7 @@ use hysteron_core::{
     turn_capacity,
 };
 
-/// The model as the model file has it.
+/// The model as in the model file.
 pub struct ModelData {
     pub operator: Operator,
     pub min: f64,
@@ -18,7 +18,8 @@ pub struct ModelData {
     pub weights: &'static [f64],
 }
 
-/// Steps that begin with every operator off: kind (2 forward; else the heading of an inverse step) and value.
+/// Steps, from all operators off: kind (2 for forward, otherwise the heading of an inverse step)
+/// and value.
 pub struct Run {
     pub name: &'static str,
     pub model: usize,
@@ -32,7 +33,7 @@ mod made {
 }
 
 const FORWARD: i8 = 2;
-/// Levels that there is memory for.
+/// The largest number of levels for which there is memory.
 const MOST: usize = 40;
 
 /// `f32` or `f64`.
@@ -62,7 +63,7 @@ pub fn all<T: Number>() -> Result<(), Error> {
 type Core<'a, T> = Model<T, &'a mut [T]>;
 type Memory<'a, T> = State<T, &'a mut [Turn<T>]>;
 
-/// The output in the model's unit, `offset + sign · Σ μ γ`, as the façade has it.
+/// The output in the model's unit, `offset + sign · Σ μ γ`, as the library computes it.
 struct Line<T> {
     offset: T,
     sign: T,
@@ -80,7 +81,7 @@ fn forward<T: Number>(
     Ok((line.offset + line.sign * step.output, 0))
 }
 
-/// An inverse step likewise: the input and the status.
+/// An inverse step as an application calls it: the input and the status.
 #[inline(never)]
 fn inverse<T: Number>(
     inverse: &Inverse<'_, T, &mut [T]>,
@@ -118,8 +119,8 @@ struct Subject<'a, T> {
 }
 
 impl<T: Number> Subject<'_, T> {
-    /// Result and status of one step, and how many instructions it took. Inlined, so that the stack holds
-    /// nothing between whoever measures and the step.
+    /// Result, status and number of instructions of one step. Inlined, so that the stack has
+    /// nothing between the measurement and the step.
     #[inline(always)]
     fn step(
         &self,
@@ -136,13 +137,13 @@ impl<T: Number> Subject<'_, T> {
     }
 }
 
-/// What the steps of one kind took.
+/// The cost of the steps of one kind.
 #[derive(Default)]
 struct Tally {
     steps: u32,
     instructions: u64,
     most: u32,
-    /// Which step took most.
+    /// Index of the step that took most.
     which: usize,
 }
 
@@ -184,7 +185,7 @@ fn one<T: Number>(run: &Run) -> Result<(), Error> {
     let mut tallies: [Tally; 2] = Default::default();
     say!("{number} {name}");
     for (n, &step) in run.steps.iter().enumerate() {
-        // A state saved and restored before this step has to take it in the same way.
+        // A state that was saved and restored before this step has to give the same result.
         let mut restored = model.state(&mut other_turns[..])?;
         let mut held = 0;
         for x in state.turning_points() {
@@ -219,7 +220,7 @@ fn one<T: Number>(run: &Run) -> Result<(), Error> {
     model.reset_off(&mut state)?;
     let used = depth(|| {
         for &step in run.steps {
-            // Its errors have shown above.
+            // Errors were reported above.
             let _ = black_box(subject.step(&mut state, step));
         }
     });

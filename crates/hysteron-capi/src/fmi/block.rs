@@ -7,19 +7,19 @@ pub(crate) type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// `sf_MKP`: from the input to the output.
+    /// `sf_MKP`: the model, from the input to the output.
     Forward,
-    /// `sf_Inverse_MKP`: from the wanted output to the input.
+    /// `sf_Inverse_MKP`: the inverse, from the wanted output to the input.
     Inverse,
 }
 
-/// A model as it stands in the FMU: `output = offset + sign · Σ μ γ`.
+/// A model as in the FMU: `output = offset + sign · Σ μ γ`.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) kind: Kind,
-    /// What the description of the FMU must say as well.
+    /// The token that the description of the FMU has too.
     pub(crate) token: String,
-    /// Of the model's text: states belong to it.
+    /// Checksum of the model's text. Saved states belong to it.
     pub(crate) checksum: u64,
     pub(crate) model: Model<f64, Vec<f64>>,
     pub(crate) offset: f64,
@@ -27,14 +27,14 @@ pub(crate) struct Block {
     pub(crate) sign: f64,
 }
 
-/// What a step takes, and a start.
+/// The values that a step needs, and the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Inputs {
     /// Input or target.
     pub(crate) signal: f64,
     /// Where the target goes next: 1, −1, or 0 for the policy *hold*.
     pub(crate) heading: i32,
-    /// How far the target may go back and still be held, from 0 on.
+    /// How far the target may go back and still be held, from 0.
     pub(crate) tolerance: f64,
     /// Whether all operators are on at the start.
     pub(crate) start_on: bool,
@@ -42,14 +42,15 @@ pub(crate) struct Inputs {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Outputs {
-    /// Output, or the input found.
+    /// The output, or the input found.
     pub(crate) signal: f64,
     /// −1, 0 or 1: where the input lay, or whether the target can be reached.
     pub(crate) flag: i32,
 }
 
 impl Block {
-    /// As in the FMU's description: the bottom of the plane, or the output with all operators off.
+    /// The start value in the FMU's description: the bottom of the plane, or the output with all
+    /// operators off.
     pub(crate) fn inputs(&self) -> Inputs {
         let signal = match self.kind {
             Kind::Forward => self.model.plane().bottom(),
@@ -72,7 +73,7 @@ impl Block {
         Ok(state)
     }
 
-    /// Where it fails, the state is as it was.
+    /// After an error the state stays as it is.
     pub(crate) fn step(&self, state: &mut State, inputs: &Inputs) -> Result<Outputs> {
         if !inputs.signal.is_finite() {
             let what = match self.kind {
@@ -111,7 +112,7 @@ impl Block {
         }
     }
 
-    /// For the output without sign.
+    /// The target for the output without sign.
     fn target(&self, inputs: &Inputs) -> Target<f64> {
         let rising = (inputs.heading > 0) == (self.sign > 0.0);
         Target {

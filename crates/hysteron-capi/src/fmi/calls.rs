@@ -1,4 +1,4 @@
-//! From a call in C to an instance and back to a status.
+//! Runs calls from C on an instance and returns a status.
 
 use super::instance::Instance;
 use super::logger::{CATEGORY, Logger};
@@ -19,7 +19,7 @@ struct Entry {
 
 static INSTANCES: Table<Entry> = Table::new(8);
 
-/// A handle where the standards have a pointer: it is never followed.
+/// A handle in place of the standards' pointer. It is never dereferenced.
 pub(crate) fn pointer_of(handle: u64) -> *mut c_void {
     without_provenance_mut(handle as usize)
 }
@@ -28,8 +28,8 @@ pub(crate) fn handle_of(pointer: *mut c_void) -> u64 {
     pointer.addr() as u64
 }
 
-/// Runs a call on its instance. Messages go out when the instance is free again: a callback may
-/// call.
+/// Runs a call on its instance. Messages are sent after the instance is released, because a
+/// callback may call this library.
 pub(crate) fn call(
     instance: *mut c_void,
     name: &str,
@@ -65,7 +65,7 @@ pub(crate) fn call(
     status.unwrap_or(FATAL)
 }
 
-/// A new instance, or null and a message.
+/// A new instance. After an error null, and a message.
 ///
 /// # Safety
 /// Texts are null or valid.
@@ -105,7 +105,7 @@ pub(crate) unsafe fn instantiate(
 }
 
 pub(crate) fn free(instance: *mut c_void) {
-    // Null and what was freed already are nothing to do, and there is no status to tell.
+    // Null and a freed handle are ignored: the function has no status to return.
     let _ = catch_unwind(|| INSTANCES.remove(handle_of(instance), "instance"));
 }
 
@@ -191,7 +191,8 @@ pub(crate) unsafe fn set<T: Value, C: Copy>(
     instance.set(references.iter().copied().zip(values))
 }
 
-/// Functions that this FMU's description says it has not, by the arguments after the instance.
+/// Functions that this FMU does not have, according to its description. By the arguments after the
+/// instance.
 macro_rules! refused {
     ($($name:ident($($more:ty),*);)*) => {$(
         #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! FMI 2.0 for co-simulation, function by function; what they do says the standard.
+//! FMI 2.0 for co-simulation, function by function, as the standard defines them.
 #![allow(missing_docs, non_snake_case)]
 
 use super::calls::{call, free, get, instantiate, logging, refused, set};
@@ -259,7 +259,7 @@ pub extern "C" fn fmi2DoStep(c: Component, from: f64, size: f64, _no_rollback: i
     call(c, "fmi2DoStep", |instance| instance.step(from, size))
 }
 
-/// Steps are never pending, so that there is nothing to ask about but the time.
+/// Steps are never pending, so only the time can be asked for.
 fn no_status(c: Component, name: &str) -> Status {
     match call(c, name, |_| Ok(())) {
         OK => DISCARD,

@@ -1,4 +1,4 @@
-//! FMI 3.0 for co-simulation, function by function; what they do says the standard.
+//! FMI 3.0 for co-simulation, function by function, as the standard defines them.
 #![allow(missing_docs, non_snake_case)]
 
 use super::calls::{call, free, get, instantiate, logging, refused, set};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 pub type Instance = *mut c_void;
 /// `fmi3FMUState`: a handle.
 pub type State = *mut c_void;
-/// `fmi3Boolean`, as a byte: that of a careless caller need not be 0 or 1.
+/// `fmi3Boolean` as a byte, because a caller may pass values other than 0 and 1.
 pub type Boolean = u8;
 
 #[unsafe(no_mangle)]
@@ -152,8 +152,8 @@ pub unsafe extern "C" fn fmi3DoStep(
     last: *mut f64,
 ) -> Status {
     call(c, "fmi3DoStep", |instance| {
-        // Each by itself: a tool that wants none of the flags may give one place for all.
-        // SAFETY: the contract of the crate.
+        // Each pointer is checked alone, because a tool that needs no flag may pass the same one
+        // for all. SAFETY: the contract of the crate.
         let (flags, last) = unsafe {
             let flags = [
                 Arguments::default().optional(event, "eventHandlingNeeded")?,
@@ -239,7 +239,7 @@ values!(
     |value| value != 0
 );
 
-/// Types that no variable here has: only nothing can be read or set.
+/// Types that no variable here has. Only empty lists can be read or set.
 macro_rules! no_values {
     ($($name:ident($($more:ty),*);)*) => {$(
         #[unsafe(no_mangle)]

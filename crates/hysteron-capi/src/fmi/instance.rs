@@ -1,11 +1,11 @@
-//! An instance: a block, where it stands in the order of calls, and its run.
+//! An instance: a block, its state in the order of calls, and its run.
 
 use super::block::{Block, Inputs, Kind, Outputs, State};
 use super::snapshot::SAVED;
 use super::values::Value;
 use super::{Problem, Result};
 
-/// The states of the standards' state machine that this FMU has.
+/// The states of the standards' state machine that this FMU uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Phase {
     Instantiated,
@@ -14,14 +14,14 @@ pub(crate) enum Phase {
     Terminated,
 }
 
-/// All that changes: what a saved state holds.
+/// Everything that changes. It is the content of a saved state.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
     pub(crate) phase: Phase,
     pub(crate) time: f64,
     pub(crate) stop: Option<f64>,
     pub(crate) inputs: Inputs,
-    /// Of the last step.
+    /// Results of the last step.
     pub(crate) outputs: Outputs,
     pub(crate) state: State,
 }
@@ -30,7 +30,7 @@ pub(crate) struct Run {
 pub(crate) struct Instance {
     pub(crate) block: Block,
     pub(crate) run: Run,
-    /// Saved states that end with the instance.
+    /// Saved states. They are freed with the instance.
     pub(crate) saved: Vec<u64>,
 }
 
@@ -56,7 +56,7 @@ impl Instance {
         &self.run.inputs
     }
 
-    /// Those of the last step; before the first one, those that follow from the start.
+    /// The results of the last step. Before the first one, those of the start.
     pub(crate) fn outputs(&self) -> Result<Outputs> {
         match self.run.phase {
             Phase::Instantiated | Phase::Initialising => Ok(self.begun()?.1),
@@ -64,7 +64,7 @@ impl Instance {
         }
     }
 
-    /// The state after the start inputs. Nothing is kept, so that a tool can try other ones.
+    /// The state after the start inputs. It is not kept, so that a tool can try other inputs.
     fn begun(&self) -> Result<(State, Outputs)> {
         let mut state = self.block.start(self.run.inputs.start_on)?;
         let outputs = self.block.step(&mut state, &self.run.inputs)?;
@@ -108,11 +108,11 @@ impl Instance {
         Ok(())
     }
 
-    /// The inputs act at once: the model depends on their order, not on time.
+    /// The inputs act at once, because the model depends on their order and not on time.
     pub(crate) fn step(&mut self, from: f64, size: f64) -> Result<()> {
         self.expect(&[Phase::Stepping])?;
         let to = from + size;
-        // Written so that NaN fails it.
+        // Written so that NaN fails the comparison.
         if !(size >= 0.0 && to.is_finite()) {
             return Err(Problem(format!("no step goes from {from} by {size}")));
         }
@@ -143,7 +143,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets all of the values, or none of them.
+    /// Sets all of the values or none.
     pub(crate) fn set<T: Value>(&mut self, values: impl Iterator<Item = (u32, T)>) -> Result<()> {
         self.expect(&[Phase::Instantiated, Phase::Initialising, Phase::Stepping])?;
         let mut inputs = self.run.inputs;
@@ -180,13 +180,13 @@ impl Run {
 impl Drop for Instance {
     fn drop(&mut self) {
         for handle in self.saved.drain(..) {
-            // One that was freed already is what it should be.
+            // A state that was freed already needs nothing.
             let _ = SAVED.remove(handle, "state");
         }
     }
 }
 
-/// Times that tools add up from steps differ by rounding.
+/// Tools add steps up to times, which gives rounding errors.
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
 }

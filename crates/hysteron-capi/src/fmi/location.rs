@@ -1,10 +1,10 @@
-//! Where the resources are: a URI in FMI 2.0.
+//! The folder of the resources, which FMI 2.0 gives as a URI.
 
 use super::{Problem, Result};
 use std::path::PathBuf;
 
-/// The folder that a `file:` URI names; what has no scheme is taken as a path, as some tools give
-/// it.
+/// The folder of a `file:` URI. A text without a scheme is taken as a path, because some tools pass
+/// one.
 pub(crate) fn of_uri(uri: &str) -> Result<PathBuf> {
     let path = path_of_uri(uri, cfg!(windows))
         .map_err(|problem| Problem(format!("fmuResourceLocation `{uri}`: {problem}")))?;
@@ -43,7 +43,7 @@ fn path_of_uri(uri: &str, windows: bool) -> std::result::Result<Vec<u8>, &'stati
         return Ok(without_slash(decoded(path)?, windows));
     }
     match windows {
-        // One slash too few, but it can only mean this.
+        // One slash is missing, but the meaning is clear.
         true if is_drive(host.as_bytes()) => decoded(after),
         true => Ok([b"//", &decoded(after)?[..]].concat()),
         false => Err("it is on another host"),

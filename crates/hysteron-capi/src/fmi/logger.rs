@@ -34,7 +34,7 @@ unsafe impl Send for Logger {}
 unsafe impl Sync for Logger {}
 
 impl Logger {
-    /// Errors are told until somebody turns them off: they are no debug messages.
+    /// Errors are reported until the tool turns them off. They are not debug messages.
     pub(crate) fn new(instance: &str, environment: *mut c_void, callback: Callback) -> Self {
         Self {
             instance: c_text(instance),
@@ -56,7 +56,7 @@ impl Logger {
         match self.callback {
             Callback::None => (),
             Callback::Fmi2(logger) => {
-                // `%` begins a conversion and `#` a value reference there.
+                // In these messages `%` starts a conversion and `#` a value reference.
                 let text = c_text(&text.replace('%', "%%").replace('#', "##"));
                 let name = self.instance.as_ptr();
                 // SAFETY: the caller's own function, with texts that live during the call and a

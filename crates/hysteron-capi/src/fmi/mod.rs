@@ -1,9 +1,9 @@
 //! The binary of an FMU: the functions of FMI 2.0 and 3.0 for co-simulation, one library for every
 //! model.
 //!
-//! The model comes from `resources/model.txt` of the FMU. What the standards give to the caller as
-//! a pointer, an instance or a saved state, is a handle here: one that was freed or never given is
-//! refused. No panic leaves a function.
+//! The model comes from `resources/model.txt` of the FMU. Instances and saved states, which are
+//! pointers in the standards, are handles here. A handle that was freed or never given is refused.
+//! No panic leaves a function.
 //!
 //! FMI 2.0.4 and 3.0.1, Modelica Association, <https://fmi-standard.org>.
 
@@ -25,7 +25,7 @@ mod values;
 use crate::fault::Fault;
 use std::fmt;
 
-/// What a function returns: the numbers are the same in FMI 2.0 and 3.0.
+/// The status of a function. The numbers are the same in FMI 2.0 and 3.0.
 pub type Status = i32;
 /// `fmi2OK`, `fmi3OK`
 pub const OK: Status = 0;
@@ -66,7 +66,7 @@ impl From<hysteron_core::Error> for Problem {
     }
 }
 
-/// FNV-1a: a changed byte always changes it.
+/// FNV-1a. Changing one byte always changes it.
 pub(crate) fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)

@@ -1,4 +1,4 @@
-//! The model inside the FMU: `model.txt`, lines that a program wrote for this one to read.
+//! The model inside the FMU: the text file `model.txt`.
 //!
 //! ```text
 //! hysteron-fmu 1
@@ -12,8 +12,8 @@
 //! …
 //! end 217 b1946ac92492d234
 //! ```
-//! The last line counts those before it and holds their FNV-1a checksum. Numbers are the shortest
-//! that read back as the same.
+//! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
+//! fewest digits that give the same number when it is read.
 
 use super::block::{Block, Kind};
 use super::{Problem, Result, checksum};
@@ -24,7 +24,7 @@ use std::str::FromStr;
 const FILE: &str = "model.txt";
 const HEAD: &str = "hysteron-fmu 1";
 
-/// Reads the model in the folder of the FMU's resources; faults name file and line.
+/// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
     let path = folder.join(FILE);
     let place = path.display();
@@ -37,7 +37,7 @@ pub(crate) fn read(folder: &Path) -> Result<Block> {
     })
 }
 
-/// Of a file alone: a pipe or a device in its place would be read for ever.
+/// Reads regular files only: a pipe or a device could be read for ever.
 fn content(path: &Path) -> std::io::Result<Vec<u8>> {
     let there = std::fs::metadata(path)?;
     if !there.is_file() {
@@ -54,7 +54,7 @@ struct Fault {
 
 type Parsed<T> = std::result::Result<T, Fault>;
 
-/// Lines with their number.
+/// Lines with their numbers.
 struct Lines<'a> {
     lines: std::str::Split<'a, char>,
     line: usize,
@@ -76,7 +76,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// What follows `key` on the next line: so many words.
+    /// The words after `key` on the next line, which has to have this number of them.
     fn entry<const N: usize>(&mut self, key: &str) -> Parsed<[&'a str; N]> {
         let line = self.next()?;
         let words: Option<Vec<&str>> = line
@@ -154,7 +154,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
             "{count} weights where K(K+1)/2 = {needed} are needed"
         ));
     }
-    // Grows with the lines that are there: a number alone reserves nothing.
+    // The vector grows with the lines. A number in the file alone allocates nothing.
     let mut weights = Vec::new();
     for _ in 0..operator_count(levels) {
         let line = lines.next()?;
@@ -182,7 +182,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
     })
 }
 
-/// Checks the last line, and gives its checksum.
+/// Checks the last line and returns its checksum.
 fn check_end(text: &str) -> Parsed<u64> {
     let count = text.matches('\n').count();
     let fault = |line: usize, problem: String| Err(Fault { line, problem });
@@ -290,7 +290,7 @@ mod tests {
             );
             assert!(fault.line >= line, "{replaced}: {fault:?}");
         }
-        // A large plane alone reserves nothing.
+        // A large number of levels alone allocates nothing.
         let mut lines = LINES;
         (lines[4], lines[6]) = ("plane 20.0 80.0 46340", "weights 1073720970");
         assert!(parse(closed(&lines).as_bytes()).unwrap_err().line >= 11);

@@ -6,7 +6,7 @@ use super::{Problem, Result, checksum};
 use crate::handles::Table;
 use std::sync::{Mutex, PoisonError};
 
-/// A run at some time, and the model that it is one of.
+/// A run at some time, and the checksum of its model.
 #[derive(Debug)]
 pub(crate) struct Saved {
     model: u64,
@@ -45,7 +45,7 @@ impl Instance {
         Ok(handle)
     }
 
-    /// A state of another instance will do if it is one of the same model.
+    /// A state of another instance is accepted if it is of the same model.
     fn owns(&self, saved: &Saved) -> Result<()> {
         match saved.model == self.block.checksum {
             true => Ok(()),
@@ -80,7 +80,7 @@ impl Instance {
     }
 }
 
-/// The first word: what this is, and the version of its form.
+/// The first word: the kind of data and the version of the format.
 const MARK: u64 = u64::from_le_bytes(*b"hysfmu01");
 const PHASES: [Phase; 4] = [
     Phase::Instantiated,
@@ -154,7 +154,7 @@ impl Run {
                 "the serialised state belongs to another model",
             ));
         }
-        // Beyond this line only a program that forges checksums can be wrong, and it must do no
+        // From here on, data can be wrong only if somebody forged the checksum. They must do no
         // harm either.
         let one = |word: &u64| {
             i32::try_from(*word as i64)
@@ -185,7 +185,7 @@ impl Run {
             },
             state,
         };
-        // Written so that NaN fails it.
+        // Written so that NaN fails the comparison.
         match run.inputs.tolerance >= 0.0 && run.time.is_finite() && run.outputs.signal.is_finite()
         {
             true => Ok(run),

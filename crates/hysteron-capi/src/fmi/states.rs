@@ -1,4 +1,4 @@
-//! The functions for saved states, which FMI 2.0 and 3.0 spell differently and mean alike.
+//! The functions for saved states. They are the same in FMI 2.0 and 3.0 but for their names.
 
 use super::calls::{call, handle_of, pointer_of};
 use super::{Problem, Status};

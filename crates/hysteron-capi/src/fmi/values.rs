@@ -1,13 +1,13 @@
-//! The variables of a block by their value references, as the FMU's description has them.
+//! The variables of a block by their value references, as in the FMU's description.
 
 use super::block::{Inputs, Kind};
 use super::instance::Instance;
 use super::{Problem, Result};
 
 const TIME: u32 = 0;
-/// Input, or target.
+/// The input, or the target.
 const SIGNAL: u32 = 1;
-/// Output, or the input found.
+/// The output, or the input found.
 const RESULT: u32 = 2;
 /// `clipped`, or `status`.
 const FLAG: u32 = 3;
@@ -15,7 +15,7 @@ const HEADING: u32 = 4;
 const TOLERANCE: u32 = 5;
 const START_ON: u32 = 6;
 
-/// A type of value that an FMU has variables of.
+/// A type of the FMU's variables.
 pub(crate) trait Value: Copy {
     fn get(instance: &Instance, reference: u32) -> Result<Self>;
     fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()>;
@@ -35,9 +35,9 @@ impl Value for f64 {
 
     fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()> {
         match (reference, kind) {
-            // What is not finite is refused by the step, which can say so where it matters.
+            // The step refuses numbers that are not finite, with a message.
             (SIGNAL, _) => inputs.signal = self,
-            // Written so that NaN fails it.
+            // Written so that NaN fails the comparison.
             (TOLERANCE, Kind::Inverse) if self >= 0.0 && self.is_finite() => {
                 inputs.tolerance = self
             }

@@ -1,4 +1,5 @@
-/* The form with handles: save and restore, adaptation, and what is left of a model after it was freed. */
+/* The form with handles: save and restore, adaptation, and what is left of a model after it was
+ * freed. */
 #include "check.h"
 #include <math.h>
 #include <string.h>

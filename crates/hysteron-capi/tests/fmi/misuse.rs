@@ -1,4 +1,4 @@
-//! What must not be called, or not so: an error, a message, and nothing else.
+//! Calls that are not allowed give an error and a message, and change nothing.
 
 use crate::api::*;
 use hysteron_capi::fmi::{fmi2, fmi3};

@@ -1,8 +1,7 @@
-//! What the benchmarks share: ratios within one run.
+//! Ratios of times within one run, for the benchmarks.
 //!
-//! Machines are shared and noisy, so nothing here is a time to quote: both sides of a ratio run in
-//! turn, several times, and the median of the ratios is printed with its smallest and largest
-//! value.
+//! Times on a shared, noisy machine mean little. So both sides of a ratio run in turn, several
+//! times. The median of the ratios is printed, with the smallest and the largest.
 #![allow(clippy::unwrap_used, dead_code)]
 
 use crate::common::rng;
@@ -27,7 +26,7 @@ pub fn title() {
     );
 }
 
-/// Times `slow` and `fast` in turn; prints `slow / fast` beside `aim` and the median time of each.
+/// Times `slow` and `fast` in turn. Prints `slow / fast` beside `aim`, and the median time of each.
 pub fn ratio(name: &str, aim: &str, mut slow: impl FnMut() -> f64, mut fast: impl FnMut() -> f64) {
     let _warm_up = (slow(), fast());
     let mut pairs: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (slow(), fast())).collect();

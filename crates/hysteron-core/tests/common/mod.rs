@@ -1,4 +1,4 @@
-//! Random models and the input sequences that are hardest on a turning-point memory.
+//! Random models, and input sequences that are hard for a memory of turning points.
 #![allow(dead_code, clippy::unwrap_used)]
 
 use hysteron_core::{
@@ -20,7 +20,7 @@ pub fn levels(rng: &mut impl Rng, most: usize) -> usize {
     2 + (spread * spread * (most - 1) as f64) as usize
 }
 
-/// Weights of several kinds: dense, mostly zero, one only, of very different size.
+/// Weights of several kinds: dense, mostly zero, a single one, and of very different sizes.
 pub fn weights(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
     let n = operator_count(levels);
     match rng.random_range(0..5) {
@@ -81,7 +81,7 @@ pub fn inputs(rng: &mut impl Rng, plane: &Plane<f64>, count: usize) -> Vec<f64> 
                 out.push(x);
             }
             4 => {
-                // Oscillation that narrows between two random places.
+                // An oscillation that narrows between two random positions.
                 let (low, high) = (rng.random::<f64>() * span, rng.random::<f64>() * span);
                 let (low, high) = (low.min(high), low.max(high));
                 let middle = low + rng.random::<f64>() * (high - low);
@@ -105,13 +105,14 @@ pub fn inputs(rng: &mut impl Rng, plane: &Plane<f64>, count: usize) -> Vec<f64> 
 pub fn nested(rng: &mut impl Rng, levels: usize, deep: usize, out: &mut Vec<f64>) {
     let p = rng.random_range(0..levels) as f64;
     let q = rng.random_range(0..=p as usize) as f64;
-    // Parts of the cell that maxima and minima narrow to; on the diagonal cell they must not cross.
+    // The fractions of the cell to which maxima and minima narrow. In a diagonal cell they must not
+    // cross.
     let to_high: f64 = rng.random();
     let to_low = if p == q { to_high } else { rng.random() };
     let widest = (1.0 - f64::EPSILON, 0.0);
     let (mut high, mut low) = widest;
     for _ in 0..deep {
-        // Now and then wide again within the cell.
+        // From time to time wide again, within the cell.
         if rng.random_bool(0.02) {
             (high, low) = widest;
         }
@@ -199,8 +200,8 @@ impl Learner {
     }
 }
 
-/// A walk of reversals over the whole plane in strokes of `samples` samples: excites every operator
-/// in time.
+/// Strokes of `samples` samples with random reversals over the whole plane. In the long run they
+/// excite every operator.
 pub fn strokes(rng: &mut impl Rng, plane: &Plane<f64>, count: usize, samples: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(count);
     let mut from = plane.bottom();

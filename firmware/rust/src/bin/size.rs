@@ -1,4 +1,5 @@
-//! The image whose size is measured: nothing, a forward step, or a forward and an inverse step for ever.
+//! The image whose size is measured: an endless loop over nothing, a forward step, or a forward and
+//! an inverse step.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,10 +1,11 @@
-//! Whether digits are right: against the plain definition in double, and against what the vectors expect.
+//! Checks the results against the plain definition in double and against the test vectors.
 
 use crate::data::{FORWARD, Model, Run};
 use crate::tables::is_measured;
 use hysteron_core::{Definition, Operator, Plane};
 
-/// Tolerances in single precision: those in double hold for as many units of rounding, `2⁻²³/2⁻⁵²` times as large.
+/// Tolerances in single precision are `2⁻²³/2⁻⁵²` times those in double: the same number of
+/// rounding units.
 const COARSER: f64 = (1_u64 << 29) as f64;
 
 pub fn digits(
@@ -36,7 +37,7 @@ pub fn digits(
         .iter()
         .filter(|run| !plain || is_measured(&models[run.model]))
         .count();
-    // The plain loop runs in one number type at a time.
+    // Each file has the results of the plain loop in one number type.
     if seen != if plain { expected } else { 2 * expected } {
         return Err(format!(
             "{seen} runs instead of {expected} in each number type"
@@ -59,7 +60,7 @@ fn result(row: &str, number: &str) -> Result<(f64, i8), String> {
     parse().ok_or(format!("no result: {row}"))
 }
 
-/// The largest difference as a share of its tolerance.
+/// The largest difference, relative to its tolerance.
 fn one(
     model: &Model,
     run: &Run,
@@ -103,7 +104,7 @@ fn one(
             let beyond = (output - value).abs() - run.tolerance;
             judge(beyond.max(0.0), run.output_tolerance);
         }
-        // The bisection knows no status.
+        // The bisection gives no status.
         if !plain && status != expected {
             return Err(format!("step {n}: status {status} instead of {expected}"));
         }

@@ -1,4 +1,5 @@
-//! On the host: `tables` writes models and runs for C, `check` judges digits, `report` fills the page.
+//! The program on the host: `tables` writes models and runs for C, `check` checks results, `report`
+//! writes the page.
 
 mod check;
 #[path = "../../data.rs"]

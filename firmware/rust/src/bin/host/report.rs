@@ -1,4 +1,4 @@
-//! The page with its tables, from what the images wrote to standard error and from their sizes.
+//! Writes the page with its tables, from the standard error of the images and from their sizes.
 
 use crate::check::operator;
 use crate::data::{FORWARD, LEVELS, Model, Run};
@@ -13,7 +13,7 @@ const ROUTES: [(&str, &str); 3] = [
     ("rust", "Rust core"),
 ];
 
-/// Times fewer instructions than the plain loop at 20 levels.
+/// The aim: so many times fewer instructions than the plain loop at 20 levels.
 const AIMS: [(&str, f64); 2] = [("forward", 10.0), ("inverse", 20.0)];
 const AIM_LEVELS: usize = 20;
 
@@ -45,16 +45,16 @@ pub fn page(data: &Data, page: &str, measures: &str) -> Result<String, String> {
 /// Lines of tab-separated words: route, what, number type, run, …
 struct Measures<'a>(Vec<Vec<&'a str>>);
 
-/// The step of one kind that took most instructions.
+/// The step of one kind that took the most instructions.
 struct Worst<'a> {
     run: &'a str,
     instructions: f64,
-    /// Its place in the run.
+    /// Its index in the run.
     place: usize,
 }
 
 impl<'a> Measures<'a> {
-    /// The words after those that begin a line.
+    /// The words of a line after these first ones.
     fn find(&self, start: &[&str]) -> Result<&[&'a str], String> {
         let row = self.0.iter().find(|row| row.starts_with(start));
         row.map(|row| &row[start.len()..])
@@ -67,7 +67,7 @@ impl<'a> Measures<'a> {
         number.ok_or(format!("no number: {start:?} {words:?}"))
     }
 
-    /// Of all runs at these levels.
+    /// Over all runs with this number of levels.
     fn most(
         &self,
         route: &str,
@@ -225,7 +225,7 @@ impl<'a> Measures<'a> {
     }
 }
 
-/// What the step asks for, and how many corners the state held before it.
+/// The target or input of the step, and the number of corners in the state before it.
 fn step((models, runs): &Data, worst: &Worst<'_>) -> Result<String, String> {
     let run = runs
         .iter()

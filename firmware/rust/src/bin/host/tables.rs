@@ -1,4 +1,4 @@
-//! What `rust/build.rs` makes for Rust, for C: the runs, and a model file for each model.
+//! Writes the runs for C, as `rust/build.rs` does for Rust, and a model file for each model.
 
 use crate::data::{Model, Run};
 use std::fmt::{Debug, Write};
@@ -30,7 +30,7 @@ pub fn write((models, runs): &(Vec<Model>, Vec<Run>), folder: &Path) -> Result<(
     for (n, run) in runs.iter().enumerate() {
         let model = &models[run.model];
         let (kinds, values): (Vec<i8>, Vec<f64>) = run.steps.iter().copied().unzip();
-        // The plain loop is the baseline of what is measured, not of the vectors.
+        // The plain loop is the baseline of the measured runs only.
         let (open, close) = if is_measured(model) {
             ("", "")
         } else {
