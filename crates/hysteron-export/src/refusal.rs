@@ -1,8 +1,9 @@
-//! What no export takes.
+//! What both exports refuse.
 
 use hysteron::{Error, Model, Remedy, Result, Setting};
 
-/// Refuses what runs nowhere but here: a model is exported at one load and without a thermal body.
+/// Refuses models that cannot be exported: a model is exported at one load and without a thermal
+/// body.
 pub(crate) fn check(model: &Model) -> Result<()> {
     if model.thermal.is_some() {
         let text = "the model has a thermal body, which needs the time of each sample: only the \
