@@ -192,7 +192,7 @@ def test_what_does_not_run_by_itself_has_no_state(recording, swings):
     load = np.repeat([1.0, 2.0, 3.0], 1000)
     model = pyhysteron.fit(swings, load * recording.output, load=load, levels=5, bootstrap=0)
     for begin in (model.start, lambda: model.restore({"turning_points": [0.0], "input": 20.0})):
-        with pytest.raises(pyhysteron.FitError, match="take it at one load first, from 1 to 3"):
+        with pytest.raises(pyhysteron.FitError, match="depends on the load `load`, from 1 to 3"):
             begin()
     assert model.at_load(2.0).start().step(50.0) == model.at_load(2.0).simulate([50.0])[0]
     assert "under load" in repr(model)

@@ -1,4 +1,5 @@
-//! What a call through the C interface costs beside the same step in Rust: `cargo bench -p hysteron-capi`.
+//! What a call through the C interface costs beside the same step in Rust: `cargo bench -p
+//! hysteron-capi`.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../hysteron-core/tests/common/mod.rs"]

@@ -7,16 +7,23 @@ use std::path::{Path, PathBuf};
 const ABOUT: &str = "\
 /* The C interface of hysteron: models of hysteresis, their exact inverse, and adaptation.
  *
- * Made from the code by `cargo run -p hysteron-capi --example header`: not to be edited.
+ * Generated from the code by `cargo run -p hysteron-capi --example header`. Do not edit.
  *
- * Every function that can fail returns HYSTERON_OK or another of the codes below; outputs are written only with HYSTERON_OK, but
- * for counts that say how much room is needed, and arrays, which may then hold zeros. Pointers point to as many elements as the
- * count beside them says. No two of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
- * Handles (uint64_t) are numbers: one that was freed, or never given, is refused.
- * Functions `hysteron_core_...` allocate nothing: their objects lie in the caller's memory, must not be moved, and
- * end with it. Where an initialisation fails in memory that holds an object, that object is as it was, or refused from
- * then on: HYSTERON_HANDLE. Their outputs are the sum over the operators, without offset and sign. An object that a call
- * changes belongs to one thread at a time there; handles may be used from any thread.
+ * Every function that can fail returns HYSTERON_OK or another of the codes below. Results are
+ * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and arrays,
+ * which may then have zeros.
+ *
+ * A pointer points to as many elements as the count beside it says, one where there is no count. No
+ * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
+ *
+ * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
+ * used from any thread.
+ *
+ * Functions `hysteron_core_...` do not allocate. Their objects lie in memory of the caller. An
+ * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
+ * that has an object, that object either stays as it is or is refused from then on:
+ * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
+ * sign. Only one thread at a time may use an object that a call changes.
  */";
 
 /// The header that is in the repository.

@@ -1,15 +1,22 @@
 /* The C interface of hysteron: models of hysteresis, their exact inverse, and adaptation.
  *
- * Made from the code by `cargo run -p hysteron-capi --example header`: not to be edited.
+ * Generated from the code by `cargo run -p hysteron-capi --example header`. Do not edit.
  *
- * Every function that can fail returns HYSTERON_OK or another of the codes below; outputs are written only with HYSTERON_OK, but
- * for counts that say how much room is needed, and arrays, which may then hold zeros. Pointers point to as many elements as the
- * count beside them says. No two of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
- * Handles (uint64_t) are numbers: one that was freed, or never given, is refused.
- * Functions `hysteron_core_...` allocate nothing: their objects lie in the caller's memory, must not be moved, and
- * end with it. Where an initialisation fails in memory that holds an object, that object is as it was, or refused from
- * then on: HYSTERON_HANDLE. Their outputs are the sum over the operators, without offset and sign. An object that a call
- * changes belongs to one thread at a time there; handles may be used from any thread.
+ * Every function that can fail returns HYSTERON_OK or another of the codes below. Results are
+ * written only with HYSTERON_OK. Exceptions are counts, which then give the size needed, and arrays,
+ * which may then have zeros.
+ *
+ * A pointer points to as many elements as the count beside it says, one where there is no count. No
+ * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
+ *
+ * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
+ * used from any thread.
+ *
+ * Functions `hysteron_core_...` do not allocate. Their objects lie in memory of the caller. An
+ * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
+ * that has an object, that object either stays as it is or is refused from then on:
+ * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
+ * sign. Only one thread at a time may use an object that a call changes.
  */
 
 #ifndef HYSTERON_H
@@ -19,7 +26,7 @@
 #include <stdint.h>
 
 /**
- * All is well.
+ * No error.
  */
 #define HYSTERON_OK 0
 
@@ -34,7 +41,7 @@
 #define HYSTERON_RANGE 2
 
 /**
- * Not as many weights as `K(K + 1)/2`.
+ * The number of weights is not `K(K + 1)/2`.
  */
 #define HYSTERON_WEIGHT_COUNT 3
 
@@ -64,7 +71,7 @@
 #define HYSTERON_TURNING_POINTS 8
 
 /**
- * A state was used with another model than the one that made it.
+ * A state was used with a model other than the one that made it.
  */
 #define HYSTERON_STATE_MISMATCH 9
 
@@ -84,17 +91,17 @@
 #define HYSTERON_FILE 20
 
 /**
- * A model file says something that cannot be.
+ * A model file is not valid.
  */
 #define HYSTERON_MODEL_FILE 21
 
 /**
- * A recording cannot be used as it is.
+ * A recording is not valid.
  */
 #define HYSTERON_RECORDING 22
 
 /**
- * Model or options do not allow this.
+ * The model or the options do not allow this call.
  */
 #define HYSTERON_FIT 23
 
@@ -104,7 +111,7 @@
 #define HYSTERON_FILTER 24
 
 /**
- * The virtual rig was asked for something outside its physics.
+ * A value lies outside the physics of the simulated rig.
  */
 #define HYSTERON_RIG 25
 
@@ -124,27 +131,27 @@
 #define HYSTERON_THERMAL 28
 
 /**
- * A scenario says something that cannot be.
+ * A scenario is not valid.
  */
 #define HYSTERON_SCENARIO 29
 
 /**
- * A controller cannot be made as told.
+ * The options of a controller are not valid.
  */
 #define HYSTERON_CONTROL 30
 
 /**
- * A model cannot be carried to where it should run.
+ * A model cannot be exported to this target.
  */
 #define HYSTERON_EXPORT 31
 
 /**
- * A null pointer was passed where there must be none.
+ * A pointer is null that must not be.
  */
 #define HYSTERON_NULL 100
 
 /**
- * No such handle or object: never made, freed already, or of another kind.
+ * There is no such handle or object: it was never made, was freed, or is of another kind.
  */
 #define HYSTERON_HANDLE 101
 
@@ -159,12 +166,12 @@
 #define HYSTERON_VALUE 103
 
 /**
- * Memory is not aligned to what it shall hold.
+ * Memory is not aligned as its content needs.
  */
 #define HYSTERON_ALIGNMENT 104
 
 /**
- * Arrays overlap that must not.
+ * Two arrays of the call overlap.
  */
 #define HYSTERON_OVERLAP 105
 
@@ -189,22 +196,22 @@
 #define HYSTERON_RELAY 2
 
 /**
- * Policy of the inverse: the input stands still while the target does.
+ * Policy of the inverse: hold. The input stands still while the target does.
  */
 #define HYSTERON_HOLD 0
 
 /**
- * Policy of the inverse: the target rises next, so that a dead band is crossed at once.
+ * Policy of the inverse: the target rises next. The input crosses a dead band at once.
  */
 #define HYSTERON_RISING 1
 
 /**
- * Policy of the inverse: the target falls next, so that a dead band is crossed at once.
+ * Policy of the inverse: the target falls next. The input crosses a dead band at once.
  */
 #define HYSTERON_FALLING -1
 
 /**
- * Within reach, or inside the plane.
+ * The target is reached, or the input lies inside the plane.
  */
 #define HYSTERON_INSIDE 0
 
@@ -219,7 +226,7 @@
 #define HYSTERON_HIGH 1
 
 /**
- * The target lies inside a jump of a relay model: the output lies beyond it.
+ * The target lies inside a jump of a relay model. The output lies beyond it.
  */
 #define HYSTERON_PASSED 2
 
@@ -244,7 +251,7 @@
 #define HYSTERON_LEARNED 0
 
 /**
- * Outcome of a sample: the error was within the dead zone, or an increment is not finished.
+ * Outcome of a sample: the error lies within the dead zone, or an increment is not finished.
  */
 #define HYSTERON_WAITING 1
 
@@ -264,8 +271,7 @@
 #define HYSTERON_ROLLED_BACK 4
 
 /**
- * Outcome of a sample: the reading differs too much from what was expected, and has not done so
- * for long.
+ * Outcome of a sample: the reading is taken as an outlier.
  */
 #define HYSTERON_REJECTED 5
 
@@ -285,7 +291,7 @@ typedef struct HysteronCoreModel HysteronCoreModel;
 typedef struct HysteronCoreState HysteronCoreState;
 
 /**
- * Options of adaptation; `hysteron_adaptation_default` fills in the usual ones.
+ * Options of adaptation. `hysteron_adaptation_default` writes the defaults.
  */
 typedef struct HysteronAdaptation {
   /**
@@ -293,19 +299,19 @@ typedef struct HysteronAdaptation {
    */
   int32_t method;
   /**
-   * Samples learned from on which weights are judged, from 1.
+   * Samples learned from after which weights are compared with the last good ones, from 1.
    */
   uint32_t trial;
   /**
-   * Gradient and increments: share of the error that is taken away, above 0 and below 2.
+   * Gradient and increments: fraction of the error that a sample removes, above 0 and below 2.
    */
   double gain;
   /**
-   * Increments: levels from the beginning of one to its end, 1/8 to 8.
+   * Increments: levels from the start of an increment to its end, 1/8 to 8.
    */
   double span;
   /**
-   * Least squares: above 0 and up to 1, which forgets nothing.
+   * Least squares: forgetting factor, above 0 and up to 1. 1 forgets nothing.
    */
   double forgetting;
   /**
@@ -313,15 +319,16 @@ typedef struct HysteronAdaptation {
    */
   double noise;
   /**
-   * Least squares: standard deviation of a weight from the one at the start; above 0.
+   * Least squares: standard deviation of a weight from the off-line one, in the output's unit;
+   * above 0.
    */
   double spread;
   /**
-   * Least squares: levels over which deviations of weights go together, from 0.
+   * Least squares: levels over which deviations of weights are correlated, from 0.
    */
   double correlation;
   /**
-   * How freely the offset moves, beside one weight, from 0.
+   * How freely the offset moves, relative to one weight, from 0.
    */
   double offset_share;
   /**
@@ -329,7 +336,7 @@ typedef struct HysteronAdaptation {
    */
   double dead_zone;
   /**
-   * Share by which weights return to those at the start with each update, 0 to 1.
+   * Fraction of the way that weights return to the off-line ones with each update, 0 to 1.
    */
   double leakage;
   /**
@@ -337,29 +344,29 @@ typedef struct HysteronAdaptation {
    */
   double movement;
   /**
-   * How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+   * Readings with a surprise above so many times the usual one are refused, from 2. 0: none is.
    */
   double gate;
   /**
-   * Readings in a row beyond the gate that are learned from, where they agree, from 1.
+   * So many refused readings in a row that agree are learned from, from 1.
    */
   uint32_t burst;
 } HysteronAdaptation;
 
 /**
- * What a sample taught.
+ * Result of a step that learns.
  */
 typedef struct HysteronLearning {
   /**
-   * Output that was expected before anything was learned from the sample.
+   * Output predicted before the estimator learned from the sample.
    */
   double output;
   /**
-   * Measured less expected.
+   * Measured output less predicted output.
    */
   double error;
   /**
-   * `HYSTERON_LEARNED` and so on.
+   * Outcome: `HYSTERON_LEARNED` to `HYSTERON_REJECTED`.
    */
   int32_t outcome;
   /**
@@ -369,7 +376,7 @@ typedef struct HysteronLearning {
 } HysteronLearning;
 
 /**
- * What a model is.
+ * Properties of a model.
  */
 typedef struct HysteronModelInfo {
   /**
@@ -381,11 +388,11 @@ typedef struct HysteronModelInfo {
    */
   int32_t sign;
   /**
-   * `K`.
+   * `K`, the number of levels.
    */
   size_t levels;
   /**
-   * `N = K(K + 1)/2`.
+   * `N = K(K + 1)/2`, the number of operators.
    */
   size_t weights;
   /**
@@ -393,15 +400,15 @@ typedef struct HysteronModelInfo {
    */
   double min;
   /**
-   * Highest level.
+   * Highest level, in the input's unit.
    */
   double max;
   /**
-   * One step below the lowest level, where every operator is off.
+   * One step below the lowest level, in the input's unit. Every operator is off there.
    */
   double bottom;
   /**
-   * What is added to the sum of the operators.
+   * Offset: what is added to the sum of the operators.
    */
   double offset;
   /**
@@ -413,7 +420,7 @@ typedef struct HysteronModelInfo {
    */
   double output_on;
   /**
-   * Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
+   * Default tolerance for reversals of a target: 1 % of the output's range.
    */
   double noise_band;
 } HysteronModelInfo;
@@ -423,28 +430,29 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * Adapts all weights of `model`, and its offset; `options` may be null for the usual ones.
+ * Makes a model that adapts all weights of `model` and its offset. `options` may be null for the
+ * defaults.
  */
 int32_t hysteron_adaptive_new(uint64_t model, const struct HysteronAdaptation *options, uint64_t *adaptive);
 
 /**
- * Frees it.
+ * Frees the handle.
  */
 int32_t hysteron_adaptive_free(uint64_t adaptive);
 
 /**
- * Moves to `input`, tells the output expected there, and learns from the one `measured`.
+ * Moves to `input`, predicts the output there, and learns from the output `measured`.
  */
 int32_t hysteron_adaptive_step(uint64_t adaptive, double input, double measured, struct HysteronLearning *learning);
 
 /**
- * Moves to `input` and tells the output expected there, without learning.
+ * Moves to `input` and writes the output predicted there, without learning.
  */
 int32_t hysteron_adaptive_predict(uint64_t adaptive, double input, double *output);
 
 /**
- * As `hysteron_inverse_step`, by the weights as they are now. It moves a state of its own, apart from the one that follows the
- * plant, which begins with all operators off.
+ * As `hysteron_inverse_step`, with the present weights. The inverse has a state of its own,
+ * separate from the state that follows the plant. It starts with all operators off.
  */
 int32_t hysteron_adaptive_inverse_step(uint64_t adaptive,
                                        double target,
@@ -454,17 +462,17 @@ int32_t hysteron_adaptive_inverse_step(uint64_t adaptive,
                                        int32_t *status);
 
 /**
- * The model as it is now: a model of its own, to be freed with `hysteron_model_free`.
+ * Makes a model with the present weights and offset. Free it with `hysteron_model_free`.
  */
 int32_t hysteron_adaptive_model(uint64_t adaptive, uint64_t *model);
 
 /**
- * All operators off, those of the inverse too; the weights stay.
+ * Switches all operators off, those of the inverse too. The weights stay.
  */
 int32_t hysteron_adaptive_reset(uint64_t adaptive);
 
 /**
- * While frozen (not 0), nothing is learned.
+ * Stops learning (`frozen` not 0), or resumes it (0).
  */
 int32_t hysteron_adaptive_freeze(uint64_t adaptive, int32_t frozen);
 
@@ -474,12 +482,13 @@ int32_t hysteron_adaptive_freeze(uint64_t adaptive, int32_t frozen);
 int32_t hysteron_adaptive_keep(uint64_t adaptive);
 
 /**
- * Goes back to the last good weights.
+ * Returns to the last good weights.
  */
 int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 
 /**
- * The text of a status code: valid for ever, never null. What was wrong in particular says `hysteron_last_error`.
+ * The text of a status code. It is never null and stays valid. `hysteron_last_error` gives the
+ * details of the last error.
  */
 const char *hysteron_error_message(int32_t code);
 
@@ -489,13 +498,15 @@ const char *hysteron_error_message(int32_t code);
 const char *hysteron_version(void);
 
 /**
- * Bytes for an estimator of a model of `levels` levels; 0 where there is none. Aligned as a `uint64_t` is.
+ * Size in bytes of an estimator for a model with `levels` levels. 0 if there is no such estimator.
+ * The memory has to be aligned like a `uint64_t`.
  */
 size_t hysteron_core_estimator_size(size_t levels, const struct HysteronAdaptation *options);
 
 /**
- * Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too:
- * states made before are to be brought up to date with `hysteron_core_state_rebase`, or made after this.
+ * Makes an estimator of all weights of `model` and of an offset. It starts from the weights and
+ * the offset given, and writes these weights to the model. Make states after this call, or bring
+ * older ones up to date with `hysteron_core_state_rebase`.
  */
 int32_t hysteron_core_estimator_init(struct HysteronCoreModel *model,
                                      const struct HysteronAdaptation *options,
@@ -507,8 +518,9 @@ int32_t hysteron_core_estimator_init(struct HysteronCoreModel *model,
                                      struct HysteronCoreEstimator **estimator);
 
 /**
- * Moves `state` to `input`, tells the output that `model` and offset expect there, and learns from the one `measured`. A state
- * made before the weights changed is brought up to date; others of this model are refused until then.
+ * Moves `state` to `input`, predicts the output with the present weights and offset, and learns
+ * from the output `measured`. `state` is brought up to date with the weights. Other states of this
+ * model are refused until `hysteron_core_state_rebase` brings them up to date.
  */
 int32_t hysteron_core_estimator_step(struct HysteronCoreEstimator *estimator,
                                      struct HysteronCoreModel *model,
@@ -518,40 +530,41 @@ int32_t hysteron_core_estimator_step(struct HysteronCoreEstimator *estimator,
                                      struct HysteronLearning *learning);
 
 /**
- * The offset as it is now.
+ * Writes the present offset.
  */
 int32_t hysteron_core_estimator_offset(const struct HysteronCoreEstimator *estimator, double *offset);
 
 /**
- * While frozen (not 0), nothing is learned.
+ * Stops learning (`frozen` not 0), or resumes it (0).
  */
 int32_t hysteron_core_estimator_freeze(struct HysteronCoreEstimator *estimator, int32_t frozen);
 
 /**
- * Brings a state of `model` up to date with weights that an estimator has changed: for the state of an inverse beside the
- * one that follows the plant.
+ * Brings a state of `model` up to date after an estimator changed the weights. An inverse that
+ * runs beside the estimator needs it for its own state.
  */
 int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model,
                                    struct HysteronCoreState *state);
 
 /**
- * What was wrong with the last call that failed in this thread (functions `hysteron_core_…` leave no text).
+ * The text of the last error in this thread. Functions `hysteron_core_…` leave no text.
  *
- * Copies as much as fits into `text`, of `size` bytes, with a zero byte at the end, and returns the bytes that the whole
- * takes with that zero. With a null pointer it only tells the size.
+ * Copies as much of it as fits into the `size` bytes of `text`, with a zero byte at the end.
+ * Returns the size of the whole text in bytes, with the zero byte. `text` may be null to ask for
+ * the size.
  */
 size_t hysteron_last_error(char *text,
                            size_t size);
 
 /**
- * Bytes for a model of `levels` levels with 1 table, or with the 2 that adaptation by increments needs; 0 where there is no
- * such model. The memory has to be aligned as a `uint64_t` is.
+ * Size in bytes of a model with `levels` levels and `tables` tables: 1, or 2 for adaptation by
+ * increments. 0 if there is no such model. The memory has to be aligned like a `uint64_t`.
  */
 size_t hysteron_core_model_size(size_t levels,
                                 size_t tables);
 
 /**
- * Makes a model in `memory`; the weights as for `hysteron_model_new`, and not needed afterwards.
+ * Makes a model in `memory`. Weights are as for `hysteron_model_new`; they are copied.
  */
 int32_t hysteron_core_model_init(void *memory,
                                  size_t bytes,
@@ -564,12 +577,13 @@ int32_t hysteron_core_model_init(void *memory,
                                  struct HysteronCoreModel **model);
 
 /**
- * Bytes for a state of a model of `levels` levels; 0 where there is no such model. Aligned as a `uint64_t` is.
+ * Size in bytes of a state of a model with `levels` levels. 0 if there is no such model. The
+ * memory has to be aligned like a `uint64_t`.
  */
 size_t hysteron_core_state_size(size_t levels);
 
 /**
- * Makes a state of `model` in `memory`, all operators off.
+ * Makes a state of `model` in `memory`, with all operators off.
  */
 int32_t hysteron_core_state_init(const struct HysteronCoreModel *model,
                                  void *memory,
@@ -577,12 +591,12 @@ int32_t hysteron_core_state_init(const struct HysteronCoreModel *model,
                                  struct HysteronCoreState **state);
 
 /**
- * All operators off.
+ * Switches all operators off.
  */
 int32_t hysteron_core_state_reset(const struct HysteronCoreModel *model, struct HysteronCoreState *state);
 
 /**
- * Moves to `input` and gives `Σ μ γ`; `clipped` may be null.
+ * Moves to `input` and writes the output `Σ μ γ`. `clipped` may be null.
  */
 int32_t hysteron_core_step(const struct HysteronCoreModel *model,
                            struct HysteronCoreState *state,
@@ -629,23 +643,25 @@ int32_t hysteron_core_state_restore(const struct HysteronCoreModel *model,
                                     double input);
 
 /**
- * Reads a model file. The handle is to be freed with `hysteron_model_free`.
+ * Reads the model file at `path`. Free the handle with `hysteron_model_free`.
  */
 int32_t hysteron_model_read(const char *path, uint64_t *model);
 
 /**
- * Takes the text of a model file.
+ * Makes a model from the text of a model file.
  */
 int32_t hysteron_model_parse(const char *json, uint64_t *model);
 
 /**
- * Writes the model file, whole or not at all; one that is there already is replaced.
+ * Writes the model file to `path` and replaces a file of that name. After an error there is no
+ * incomplete file.
  */
 int32_t hysteron_model_write(uint64_t model, const char *path);
 
 /**
- * A model of `count = K(K + 1)/2` weights, row by row: `j = 1…K`, within a row `i = 1…j`; `K` levels from `min` to `max`.
- * Its output is `offset + sign · Σ μ γ`, the sign 1 or −1.
+ * Makes a model with `K` levels from `min` to `max`, in the input's unit, and `count = K(K + 1)/2`
+ * weights, row by row: `j = 1…K`, within a row `i = 1…j`. Its output is `offset + sign · Σ μ γ`.
+ * `sign` is 1 or −1.
  */
 int32_t hysteron_model_new(int32_t operator_kind,
                            double min,
@@ -658,29 +674,30 @@ int32_t hysteron_model_new(int32_t operator_kind,
                            uint64_t *model);
 
 /**
- * The model at one load, of a model that depends on a load: a model of its own.
+ * Makes the model at one load from a model that depends on a load.
  */
 int32_t hysteron_model_at_load(uint64_t model, double load, uint64_t *at_load);
 
 /**
- * Frees a model. States made of it stay as they are.
+ * Frees a model. States of it stay valid.
  */
 int32_t hysteron_model_free(uint64_t model);
 
 /**
- * What the model is.
+ * Writes what the model is.
  */
 int32_t hysteron_model_info(uint64_t model, struct HysteronModelInfo *info);
 
 /**
- * Copies the weights. `count` becomes their number, also where `capacity` is too small for them.
+ * Copies the weights, row by row. `count` becomes their number, also if `capacity` is too small.
  */
 int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity, size_t *count);
 
 /**
- * Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
- * `"temperature [degC]"`. As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
- * the whole takes with that zero, and `text` may be null with size 0.
+ * Copies the name of the input (`quantity` 0) or of the output (1), and its unit in brackets if it
+ * has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
+ * with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
+ * byte. `text` may be null with size 0.
  */
 int32_t hysteron_model_quantity(uint64_t model,
                                 int32_t quantity,
@@ -689,9 +706,10 @@ int32_t hysteron_model_quantity(uint64_t model,
                                 size_t *needed);
 
 /**
- * A state of `model`, all operators off. It keeps what it needs of the model, which may be freed before it.
+ * Makes a state of `model` with all operators off. `model` may be freed before the state.
  *
- * A model that depends on a load, or has a thermal body in front, has no state: take it at one load.
+ * A model that depends on a load or has a thermal body has no such state. Use it at one load
+ * (`hysteron_model_at_load`).
  */
 int32_t hysteron_state_new(uint64_t model, uint64_t *state);
 
@@ -701,24 +719,24 @@ int32_t hysteron_state_new(uint64_t model, uint64_t *state);
 int32_t hysteron_state_free(uint64_t state);
 
 /**
- * All operators off, as at the bottom of the plane.
+ * Switches all operators off, as at the bottom of the plane.
  */
 int32_t hysteron_state_reset(uint64_t state);
 
 /**
- * All operators on, as at the top of the plane.
+ * Switches all operators on, as at the top of the plane.
  */
 int32_t hysteron_state_saturate(uint64_t state);
 
 /**
- * Moves to `input` and gives the output; `clipped`, which may be null, says whether the input lay outside the plane:
- * `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
+ * Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
+ * or `HYSTERON_HIGH` for an input outside the plane. It may be null.
  */
 int32_t hysteron_step(uint64_t state, double input, double *output, int32_t *clipped);
 
 /**
- * Moves through `count` inputs and writes as many outputs; the arrays must not overlap. Where one input is not finite, the state
- * stays as it was.
+ * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. If an
+ * input is not finite, the state stays as it is.
  */
 int32_t hysteron_run(uint64_t state,
                      const double *input,
@@ -726,11 +744,13 @@ int32_t hysteron_run(uint64_t state,
                      size_t count);
 
 /**
- * Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
- * `HYSTERON_LOW`, `HYSTERON_HIGH` or `HYSTERON_PASSED`.
+ * Finds the input that gives `target` and moves the state there. `status` becomes
+ * `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH` or
+ * `HYSTERON_PASSED`.
  *
- * `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
- * how far a target may go back and still stand still, in the output's unit.
+ * `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
+ * `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
+ * `tolerance`, in the output's unit, is held.
  */
 int32_t hysteron_inverse_step(uint64_t state,
                               double target,
@@ -740,9 +760,10 @@ int32_t hysteron_inverse_step(uint64_t state,
                               int32_t *status);
 
 /**
- * Finds the inputs for `count` targets, one after the other, and moves the state through them. `heading` has as many elements,
- * each as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD` throughout; so has `status`, which may be null. No array may
- * overlap another. Where one target or heading cannot be, the state stays as it was.
+ * Finds the inputs for `count` targets, one after the other, and moves the state through them.
+ * `heading` has `count` elements as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD`.
+ * `status` has `count` elements, or is null. Arrays must not overlap. If a target or a heading is
+ * not valid, the state stays as it is.
  */
 int32_t hysteron_inverse_run(uint64_t state,
                              const double *target,
@@ -753,8 +774,9 @@ int32_t hysteron_inverse_run(uint64_t state,
                              size_t count);
 
 /**
- * Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
- * the series never moves. Reversals of up to `band` are noise.
+ * Writes where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or
+ * `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
+ * are noise.
  */
 int32_t hysteron_headings(const double *target,
                           size_t count,
@@ -762,8 +784,8 @@ int32_t hysteron_headings(const double *target,
                           int32_t *heading);
 
 /**
- * Saves the state: its turning points, at most `capacity`, and the last input. `count` becomes the number of turning points,
- * also where `capacity` is too small for them.
+ * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
+ * input. `count` becomes the number of turning points, also if `capacity` is too small.
  */
 int32_t hysteron_state_save(uint64_t state,
                             double *points,
@@ -772,12 +794,13 @@ int32_t hysteron_state_save(uint64_t state,
                             double *input);
 
 /**
- * Puts back what `hysteron_state_save` gave, of a state of this model or of one with the same plane: bit for bit.
+ * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
+ * with the same plane.
  */
 int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
 
 /**
- * Fills in the usual options, of the method that `method` names.
+ * Writes the default options of `method`.
  */
 int32_t hysteron_adaptation_default(int32_t method, struct HysteronAdaptation *options);
 

@@ -1,4 +1,4 @@
-//! A model that learns, by handle.
+//! Models that learn, by handle.
 
 use crate::fault::{Result, guard};
 use crate::handles::Table;
@@ -16,7 +16,8 @@ fn with(adaptive: u64, work: impl FnOnce(&mut Adaptive) -> Result<()>) -> Result
     work(&mut learner)
 }
 
-/// Adapts all weights of `model`, and its offset; `options` may be null for the usual ones.
+/// Makes a model that adapts all weights of `model` and its offset. `options` may be null for the
+/// defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_new(
     model: u64,
@@ -40,13 +41,13 @@ pub unsafe extern "C" fn hysteron_adaptive_new(
     })
 }
 
-/// Frees it.
+/// Frees the handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_free(adaptive: u64) -> i32 {
     guard(|| LEARNERS.remove(adaptive, "adaptive"))
 }
 
-/// Moves to `input`, tells the output expected there, and learns from the one `measured`.
+/// Moves to `input`, predicts the output there, and learns from the output `measured`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_step(
     adaptive: u64,
@@ -64,7 +65,7 @@ pub unsafe extern "C" fn hysteron_adaptive_step(
     })
 }
 
-/// Moves to `input` and tells the output expected there, without learning.
+/// Moves to `input` and writes the output predicted there, without learning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_predict(
     adaptive: u64,
@@ -81,8 +82,8 @@ pub unsafe extern "C" fn hysteron_adaptive_predict(
     })
 }
 
-/// As `hysteron_inverse_step`, by the weights as they are now. It moves a state of its own, apart from the one that follows the
-/// plant, which begins with all operators off.
+/// As `hysteron_inverse_step`, with the present weights. The inverse has a state of its own,
+/// separate from the state that follows the plant. It starts with all operators off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
     adaptive: u64,
@@ -111,7 +112,7 @@ pub unsafe extern "C" fn hysteron_adaptive_inverse_step(
     })
 }
 
-/// The model as it is now: a model of its own, to be freed with `hysteron_model_free`.
+/// Makes a model with the present weights and offset. Free it with `hysteron_model_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64) -> i32 {
     guard(|| {
@@ -124,13 +125,13 @@ pub unsafe extern "C" fn hysteron_adaptive_model(adaptive: u64, model: *mut u64)
     })
 }
 
-/// All operators off, those of the inverse too; the weights stay.
+/// Switches all operators off, those of the inverse too. The weights stay.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_reset(adaptive: u64) -> i32 {
     guard(|| with(adaptive, |learner| Ok(learner.reset()?)))
 }
 
-/// While frozen (not 0), nothing is learned.
+/// Stops learning (`frozen` not 0), or resumes it (0).
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_freeze(adaptive: u64, frozen: i32) -> i32 {
     guard(|| {
@@ -152,7 +153,7 @@ pub extern "C" fn hysteron_adaptive_keep(adaptive: u64) -> i32 {
     })
 }
 
-/// Goes back to the last good weights.
+/// Returns to the last good weights.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_adaptive_roll_back(adaptive: u64) -> i32 {
     guard(|| with(adaptive, |learner| Ok(learner.roll_back()?)))

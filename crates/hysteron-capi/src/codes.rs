@@ -2,13 +2,13 @@
 
 use std::ffi::{CStr, c_char};
 
-/// All is well.
+/// No error.
 pub const HYSTERON_OK: i32 = 0;
 /// Fewer than 2 or too many levels.
 pub const HYSTERON_LEVELS: i32 = 1;
 /// The plane's range is not finite, empty or too narrow.
 pub const HYSTERON_RANGE: i32 = 2;
-/// Not as many weights as `K(K + 1)/2`.
+/// The number of weights is not `K(K + 1)/2`.
 pub const HYSTERON_WEIGHT_COUNT: i32 = 3;
 /// A weight, or the weights' sum, is not finite.
 pub const HYSTERON_WEIGHT_NOT_FINITE: i32 = 4;
@@ -20,7 +20,7 @@ pub const HYSTERON_MEMORY_TOO_SMALL: i32 = 6;
 pub const HYSTERON_INPUT_NOT_FINITE: i32 = 7;
 /// Turning points to restore do not nest.
 pub const HYSTERON_TURNING_POINTS: i32 = 8;
-/// A state was used with another model than the one that made it.
+/// A state was used with a model other than the one that made it.
 pub const HYSTERON_STATE_MISMATCH: i32 = 9;
 /// There is no such operator.
 pub const HYSTERON_OPERATOR: i32 = 10;
@@ -28,15 +28,15 @@ pub const HYSTERON_OPERATOR: i32 = 10;
 pub const HYSTERON_ADAPTATION: i32 = 11;
 /// A file cannot be read or written.
 pub const HYSTERON_FILE: i32 = 20;
-/// A model file says something that cannot be.
+/// A model file is not valid.
 pub const HYSTERON_MODEL_FILE: i32 = 21;
-/// A recording cannot be used as it is.
+/// A recording is not valid.
 pub const HYSTERON_RECORDING: i32 = 22;
-/// Model or options do not allow this.
+/// The model or the options do not allow this call.
 pub const HYSTERON_FIT: i32 = 23;
 /// A filter's arguments do not fit the data.
 pub const HYSTERON_FILTER: i32 = 24;
-/// The virtual rig was asked for something outside its physics.
+/// A value lies outside the physics of the simulated rig.
 pub const HYSTERON_RIG: i32 = 25;
 /// A step of the preparation cannot be done.
 pub const HYSTERON_PREPARATION: i32 = 26;
@@ -44,28 +44,29 @@ pub const HYSTERON_PREPARATION: i32 = 26;
 pub const HYSTERON_DESIGN: i32 = 27;
 /// A thermal body cannot be run here.
 pub const HYSTERON_THERMAL: i32 = 28;
-/// A scenario says something that cannot be.
+/// A scenario is not valid.
 pub const HYSTERON_SCENARIO: i32 = 29;
-/// A controller cannot be made as told.
+/// The options of a controller are not valid.
 pub const HYSTERON_CONTROL: i32 = 30;
-/// A model cannot be carried to where it should run.
+/// A model cannot be exported to this target.
 pub const HYSTERON_EXPORT: i32 = 31;
-/// A null pointer was passed where there must be none.
+/// A pointer is null that must not be.
 pub const HYSTERON_NULL: i32 = 100;
-/// No such handle or object: never made, freed already, or of another kind.
+/// There is no such handle or object: it was never made, was freed, or is of another kind.
 pub const HYSTERON_HANDLE: i32 = 101;
 /// A text is not UTF-8.
 pub const HYSTERON_TEXT: i32 = 102;
 /// A constant or a size is not one of those allowed.
 pub const HYSTERON_VALUE: i32 = 103;
-/// Memory is not aligned to what it shall hold.
+/// Memory is not aligned as its content needs.
 pub const HYSTERON_ALIGNMENT: i32 = 104;
-/// Arrays overlap that must not.
+/// Two arrays of the call overlap.
 pub const HYSTERON_OVERLAP: i32 = 105;
 /// A defect of this library, caught at its boundary.
 pub const HYSTERON_INTERNAL: i32 = 106;
 
-/// The text of a status code: valid for ever, never null. What was wrong in particular says `hysteron_last_error`.
+/// The text of a status code. It is never null and stays valid. `hysteron_last_error` gives the
+/// details of the last error.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_error_message(code: i32) -> *const c_char {
     text_of(code).as_ptr()

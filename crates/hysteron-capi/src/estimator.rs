@@ -1,4 +1,4 @@
-//! Adaptation over memory that the caller owns.
+//! Adaptation in memory of the caller.
 
 use crate::fault::guard_plain;
 use crate::memory::{HysteronCoreModel, HysteronCoreState};
@@ -16,7 +16,8 @@ impl Kind for HysteronCoreEstimator {
     type Content = Estimator<f64, &'static mut [f64]>;
 }
 
-/// Bytes for an estimator of a model of `levels` levels; 0 where there is none. Aligned as a `uint64_t` is.
+/// Size in bytes of an estimator for a model with `levels` levels. 0 if there is no such estimator.
+/// The memory has to be aligned like a `uint64_t`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_size(
     levels: usize,
@@ -33,8 +34,9 @@ pub unsafe extern "C" fn hysteron_core_estimator_size(
     }
 }
 
-/// Makes an estimator of all weights of `model`, and of an offset beside it, from those given, which the model takes too:
-/// states made before are to be brought up to date with `hysteron_core_state_rebase`, or made after this.
+/// Makes an estimator of all weights of `model` and of an offset. It starts from the weights and
+/// the offset given, and writes these weights to the model. Make states after this call, or bring
+/// older ones up to date with `hysteron_core_state_rebase`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_init(
     model: *mut HysteronCoreModel,
@@ -48,7 +50,8 @@ pub unsafe extern "C" fn hysteron_core_estimator_init(
 ) -> i32 {
     guard_plain(|| {
         let mut arguments = Arguments::default();
-        // SAFETY: the contract of the crate; every bit pattern is a value of each field of the options.
+        // SAFETY: the contract of the crate; every bit pattern is a value of each field of the
+        // options.
         let (model, options, weights, room, out) = unsafe {
             (
                 arguments.object(model, "model")?,
@@ -66,8 +69,9 @@ pub unsafe extern "C" fn hysteron_core_estimator_init(
     })
 }
 
-/// Moves `state` to `input`, tells the output that `model` and offset expect there, and learns from the one `measured`. A state
-/// made before the weights changed is brought up to date; others of this model are refused until then.
+/// Moves `state` to `input`, predicts the output with the present weights and offset, and learns
+/// from the output `measured`. `state` is brought up to date with the weights. Other states of this
+/// model are refused until `hysteron_core_state_rebase` brings them up to date.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_step(
     estimator: *mut HysteronCoreEstimator,
@@ -93,7 +97,7 @@ pub unsafe extern "C" fn hysteron_core_estimator_step(
     })
 }
 
-/// The offset as it is now.
+/// Writes the present offset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_offset(
     estimator: *const HysteronCoreEstimator,
@@ -113,7 +117,7 @@ pub unsafe extern "C" fn hysteron_core_estimator_offset(
     })
 }
 
-/// While frozen (not 0), nothing is learned.
+/// Stops learning (`frozen` not 0), or resumes it (0).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_estimator_freeze(
     estimator: *mut HysteronCoreEstimator,
@@ -126,8 +130,8 @@ pub unsafe extern "C" fn hysteron_core_estimator_freeze(
     })
 }
 
-/// Brings a state of `model` up to date with weights that an estimator has changed: for the state of an inverse beside the
-/// one that follows the plant.
+/// Brings a state of `model` up to date after an estimator changed the weights. An inverse that
+/// runs beside the estimator needs it for its own state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_state_rebase(
     model: *const HysteronCoreModel,

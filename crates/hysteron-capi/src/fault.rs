@@ -1,4 +1,4 @@
-//! From results to status codes, and the detail of the last failure.
+//! Status codes from results, and the text of the last error.
 
 use crate::codes::{HYSTERON_INTERNAL, HYSTERON_OK, hysteron_error_message};
 #[cfg(feature = "handles")]
@@ -52,19 +52,19 @@ thread_local! {
     static LAST: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Runs a function of the form with handles, which may allocate: a failure leaves its text.
+/// Runs a function of the form with handles. It may allocate, and an error leaves its text.
 pub(crate) fn guard(work: impl FnOnce() -> Result<()>) -> i32 {
     let (code, text) = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return HYSTERON_OK,
         Ok(Err(fault)) => (fault.code(), fault.to_string()),
         Err(_) => (HYSTERON_INTERNAL, "the library panicked".into()),
     };
-    // While a thread ends there is no place for the text any more.
+    // While a thread ends, the text cannot be kept any more.
     let _ = LAST.try_with(|last| last.replace(text));
     code
 }
 
-/// Runs a function of the form without allocation: the code is all it leaves.
+/// Runs a function of the form without allocation. An error leaves its code only.
 pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => HYSTERON_OK,
@@ -73,7 +73,7 @@ pub(crate) fn guard_plain(work: impl FnOnce() -> Result<()>) -> i32 {
     }
 }
 
-/// Lets `read` see the text of the last failure of this thread; `None` while the thread ends.
+/// Calls `read` with the text of the last error of this thread. `None` while the thread ends.
 pub(crate) fn with_last<T>(read: impl FnOnce(&str) -> T) -> Option<T> {
     LAST.try_with(|last| read(&last.borrow())).ok()
 }

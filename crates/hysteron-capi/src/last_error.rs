@@ -1,13 +1,14 @@
-//! The text of the last failure.
+//! The text of the last error.
 
 use crate::fault::with_last;
 use crate::pointer::Arguments;
 use std::ffi::c_char;
 
-/// What was wrong with the last call that failed in this thread (functions `hysteron_core_…` leave no text).
+/// The text of the last error in this thread. Functions `hysteron_core_…` leave no text.
 ///
-/// Copies as much as fits into `text`, of `size` bytes, with a zero byte at the end, and returns the bytes that the whole
-/// takes with that zero. With a null pointer it only tells the size.
+/// Copies as much of it as fits into the `size` bytes of `text`, with a zero byte at the end.
+/// Returns the size of the whole text in bytes, with the zero byte. `text` may be null to ask for
+/// the size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_last_error(text: *mut c_char, size: usize) -> usize {
     let size = if text.is_null() { 0 } else { size };

@@ -1,18 +1,20 @@
-//! The C interface of hysteron, in two forms: handles over the façade, and the core over memory that the caller owns.
-//! With the feature `fmi`, the functions of an FMU's binary as well.
+//! The C interface of hysteron. It has two forms: handles to objects of the library, and objects of
+//! the core in memory of the caller. The feature `fmi` adds the functions of an FMU's binary.
 //!
-//! Every function that can fail returns a status: [`HYSTERON_OK`], the number of the library's own error
-//! (`hysteron::Error::code`), or one from 100 on for a fault in the call itself. Outputs are written only with
-//! [`HYSTERON_OK`], but for counts that say how much room is needed. No panic leaves a function.
+//! Every function that can fail returns a status: [`HYSTERON_OK`], the number of the library's
+//! error (`hysteron::Error::code`), or a number from 100 on for an error in the call itself.
+//! Results are written only with [`HYSTERON_OK`]. Exceptions are counts, which then give the size
+//! needed. No panic leaves a function.
 //!
 //! # Safety
-//! One contract for all functions: a pointer is null or points to as many elements as the count beside it says (one where
-//! there is no count), valid for the call; texts end with a zero byte. Null, wrong alignment, and two pointers of a call that
-//! share memory are refused; whether other memory is valid nobody can tell. Handles need no care: whatever number is passed, it is
-//! one that lives or it is refused.
-// The contract above is that of each function; C has no better way to pass many things than many arguments.
+//! All functions have the same contract. A pointer is null, or it points to as many elements as the
+//! count beside it says, one where there is no count. The memory is valid during the call. Texts
+//! end with a zero byte. Functions refuse null pointers, wrong alignment, and two pointers of a
+//! call that share memory. They cannot tell whether other memory is valid. Handles are safe: a
+//! number that is not the handle of a live object is refused.
+// Each function has the contract above. C functions need many arguments.
 #![allow(clippy::missing_safety_doc, clippy::too_many_arguments)]
-// Without the handles some of what both parts share has no use.
+// Without the handles, some shared code is unused.
 #![cfg_attr(not(feature = "handles"), allow(dead_code))]
 
 #[cfg(feature = "handles")]

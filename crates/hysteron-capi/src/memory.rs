@@ -1,9 +1,10 @@
-//! Model and state over memory that the caller owns: nothing is allocated.
+//! Models and states in memory of the caller. Nothing is allocated.
 //!
-//! An object lies at the beginning of its memory, with its numbers behind it. It must not be moved, and ends with the
-//! memory. Where an initialisation fails in memory that holds an object, that object is as it was, or refused from then on
-//! (`HYSTERON_HANDLE`). Outputs are `Σ μ γ` of the operators, without offset and sign. One thread at a time for each object
-//! that is written to (a state; model and estimator while weights are learned).
+//! An object lies at the beginning of its memory, followed by its numbers. It must not be moved,
+//! and it ends with the memory. Where an initialisation fails in memory that has an object, that
+//! object either stays as it is or is refused from then on (`HYSTERON_HANDLE`). Outputs are `Σ μ γ`
+//! of the operators, without offset and sign. Only one thread at a time may use an object that is
+//! changed: a state, and model and estimator while weights are learned.
 
 use crate::fault::guard_plain;
 use crate::pointer::Arguments;
@@ -28,8 +29,8 @@ impl Kind for HysteronCoreState {
     type Content = State<f64, &'static mut [Turn<f64>]>;
 }
 
-/// Bytes for a model of `levels` levels with 1 table, or with the 2 that adaptation by increments needs; 0 where there is no
-/// such model. The memory has to be aligned as a `uint64_t` is.
+/// Size in bytes of a model with `levels` levels and `tables` tables: 1, or 2 for adaptation by
+/// increments. 0 if there is no such model. The memory has to be aligned like a `uint64_t`.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_core_model_size(levels: usize, tables: usize) -> usize {
     if !(2..=MAX_LEVELS).contains(&levels) || !(1..=2).contains(&tables) {
@@ -38,7 +39,7 @@ pub extern "C" fn hysteron_core_model_size(levels: usize, tables: usize) -> usiz
     size::<HysteronCoreModel, f64>(tables * table_len(levels)).unwrap_or(0)
 }
 
-/// Makes a model in `memory`; the weights as for `hysteron_model_new`, and not needed afterwards.
+/// Makes a model in `memory`. Weights are as for `hysteron_model_new`; they are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_model_init(
     memory: *mut c_void,
@@ -70,7 +71,8 @@ pub unsafe extern "C" fn hysteron_core_model_init(
     })
 }
 
-/// Bytes for a state of a model of `levels` levels; 0 where there is no such model. Aligned as a `uint64_t` is.
+/// Size in bytes of a state of a model with `levels` levels. 0 if there is no such model. The
+/// memory has to be aligned like a `uint64_t`.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_core_state_size(levels: usize) -> usize {
     if !(2..=MAX_LEVELS).contains(&levels) {
@@ -79,7 +81,7 @@ pub extern "C" fn hysteron_core_state_size(levels: usize) -> usize {
     size::<HysteronCoreState, Turn<f64>>(turn_capacity(levels)).unwrap_or(0)
 }
 
-/// Makes a state of `model` in `memory`, all operators off.
+/// Makes a state of `model` in `memory`, with all operators off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_state_init(
     model: *const HysteronCoreModel,
@@ -103,7 +105,7 @@ pub unsafe extern "C" fn hysteron_core_state_init(
     })
 }
 
-/// All operators off.
+/// Switches all operators off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_state_reset(
     model: *const HysteronCoreModel,
@@ -122,7 +124,7 @@ pub unsafe extern "C" fn hysteron_core_state_reset(
     })
 }
 
-/// Moves to `input` and gives `Σ μ γ`; `clipped` may be null.
+/// Moves to `input` and writes the output `Σ μ γ`. `clipped` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_step(
     model: *const HysteronCoreModel,

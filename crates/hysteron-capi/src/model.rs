@@ -11,7 +11,7 @@ use std::path::Path;
 
 pub(crate) static MODELS: Table<Model> = Table::new(1);
 
-/// Reads a model file. The handle is to be freed with `hysteron_model_free`.
+/// Reads the model file at `path`. Free the handle with `hysteron_model_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u64) -> i32 {
     guard(|| {
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn hysteron_model_read(path: *const c_char, model: *mut u6
     })
 }
 
-/// Takes the text of a model file.
+/// Makes a model from the text of a model file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u64) -> i32 {
     guard(|| {
@@ -45,7 +45,8 @@ pub unsafe extern "C" fn hysteron_model_parse(json: *const c_char, model: *mut u
     })
 }
 
-/// Writes the model file, whole or not at all; one that is there already is replaced.
+/// Writes the model file to `path` and replaces a file of that name. After an error there is no
+/// incomplete file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_write(model: u64, path: *const c_char) -> i32 {
     guard(|| {
@@ -55,8 +56,9 @@ pub unsafe extern "C" fn hysteron_model_write(model: u64, path: *const c_char) -
     })
 }
 
-/// A model of `count = K(K + 1)/2` weights, row by row: `j = 1…K`, within a row `i = 1…j`; `K` levels from `min` to `max`.
-/// Its output is `offset + sign · Σ μ γ`, the sign 1 or −1.
+/// Makes a model with `K` levels from `min` to `max`, in the input's unit, and `count = K(K + 1)/2`
+/// weights, row by row: `j = 1…K`, within a row `i = 1…j`. Its output is `offset + sign · Σ μ γ`.
+/// `sign` is 1 or −1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_new(
     operator_kind: i32,
@@ -85,7 +87,7 @@ pub unsafe extern "C" fn hysteron_model_new(
     })
 }
 
-/// The model at one load, of a model that depends on a load: a model of its own.
+/// Makes the model at one load from a model that depends on a load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_at_load(model: u64, load: f64, at_load: *mut u64) -> i32 {
     guard(|| {
@@ -96,13 +98,13 @@ pub unsafe extern "C" fn hysteron_model_at_load(model: u64, load: f64, at_load: 
     })
 }
 
-/// Frees a model. States made of it stay as they are.
+/// Frees a model. States of it stay valid.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_model_free(model: u64) -> i32 {
     guard(|| MODELS.remove(model, "model"))
 }
 
-/// What the model is.
+/// Writes what the model is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronModelInfo) -> i32 {
     guard(|| {
@@ -127,7 +129,7 @@ pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronMode
     })
 }
 
-/// Copies the weights. `count` becomes their number, also where `capacity` is too small for them.
+/// Copies the weights, row by row. `count` becomes their number, also if `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_weights(
     model: u64,
@@ -150,9 +152,10 @@ pub unsafe extern "C" fn hysteron_model_weights(
     })
 }
 
-/// Copies what the input (`quantity` 0) or the output (1) is: its name, and its unit in brackets where it has one, as in
-/// `"temperature [degC]"`. As much as fits into `text`, of `size` bytes, with a zero byte at the end; `needed` becomes the bytes that
-/// the whole takes with that zero, and `text` may be null with size 0.
+/// Copies the name of the input (`quantity` 0) or of the output (1), and its unit in brackets if it
+/// has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
+/// with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
+/// byte. `text` may be null with size 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_quantity(
     model: u64,

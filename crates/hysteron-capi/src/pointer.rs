@@ -1,4 +1,4 @@
-//! Pointers from C: checked as far as they can be, once, here.
+//! Pointers from C, checked as far as possible.
 
 use crate::codes::{
     HYSTERON_ALIGNMENT, HYSTERON_INTERNAL, HYSTERON_NULL, HYSTERON_OVERLAP, HYSTERON_TEXT,
@@ -8,14 +8,13 @@ use crate::fault::{Fault, Result};
 use std::ffi::{CStr, c_char};
 use std::ops::Range;
 
-/// No function has more pointers.
+/// The largest number of pointers of a function.
 const MOST: usize = 6;
 
-/// The pointers of one call. Each is checked by itself, and refused where it shares memory with one
-/// before it.
+/// The pointers of one call. Each is checked, and refused if it shares memory with one before it.
 ///
-/// This is the only way to the memory behind a pointer, so that no function can forget a pair.
-/// Nothing is written while pointers are taken: a function takes them all first.
+/// Memory behind a pointer is reached in this way only, so that no function can forget a pair. A
+/// function takes all its pointers before it writes.
 #[derive(Default)]
 pub(crate) struct Arguments {
     taken: [Range<usize>; MOST],
@@ -69,7 +68,7 @@ impl Arguments {
         Ok(Out(place))
     }
 
-    /// As [`Arguments::out`], of a result that nobody needs to want.
+    /// As [`Arguments::out`], for a result whose pointer may be null.
     ///
     /// # Safety
     /// As [`Arguments::out`].
@@ -169,7 +168,7 @@ pub(crate) trait Number: Copy {}
 impl Number for f64 {}
 
 impl<T> ArrayOut<T> {
-    /// Writes one element; there is none from the count on.
+    /// Writes one element. An index from the count on is ignored.
     pub(crate) fn set(&self, n: usize, value: T) {
         if n < self.count {
             // SAFETY: valid for a write by the contract of `Arguments::array_out`, not null and
@@ -178,14 +177,14 @@ impl<T> ArrayOut<T> {
         }
     }
 
-    /// Writes `values`, as far as there is room.
+    /// Writes as many of `values` as there is room for.
     pub(crate) fn write(&self, values: impl Iterator<Item = T>) {
         let values = values.take(self.count).enumerate();
         values.for_each(|(n, value)| self.set(n, value));
     }
 
-    /// Writes all of `values`, which are `needed`; `count` says so even where there is no room for
-    /// them.
+    /// Writes all of `values`, whose number is `needed`. `count` gets that number even without
+    /// room.
     pub(crate) fn write_all(
         &self,
         values: impl Iterator<Item = T>,
@@ -203,7 +202,7 @@ impl<T> ArrayOut<T> {
 }
 
 impl<T: Number> ArrayOut<T> {
-    /// The array itself, which may never have been written: zeros now.
+    /// The array itself, filled with zeros, because it may never have been written.
     pub(crate) fn zeros(&mut self) -> &mut [T] {
         if self.count == 0 {
             return &mut [];
@@ -218,8 +217,8 @@ impl<T: Number> ArrayOut<T> {
 }
 
 impl ArrayOut<c_char> {
-    /// Copies as much of `from` as fits with a zero byte at the end; gives the bytes that the whole
-    /// takes.
+    /// Copies as much of `from` as fits, with a zero byte at the end. Returns the size of the whole
+    /// in bytes.
     pub(crate) fn write_text(&self, from: &str) -> usize {
         if self.count > 0 {
             let mut length = from.len().min(self.count - 1);

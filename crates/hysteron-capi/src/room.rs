@@ -1,4 +1,4 @@
-//! Objects in memory that the caller owns: made, found again, never taken for what they are not.
+//! Objects in memory of the caller: made there, and recognised when they are used.
 
 use crate::codes::HYSTERON_HANDLE;
 use crate::fault::{Fault, Result};
@@ -6,12 +6,12 @@ use crate::pointer::{Arguments, Out, check};
 use hysteron_core::Error;
 use std::ffi::c_void;
 
-/// What every object begins with.
+/// The head of every object.
 #[repr(C)]
 struct Head {
-    /// Which kind of object follows: a number that random memory hardly has, or 0 for none.
+    /// The kind of object that follows, a number that random memory hardly has. 0 for none.
     mark: u64,
-    /// Of the object as a whole.
+    /// Size of the whole object in bytes.
     bytes: usize,
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn size<K: Kind, E>(count: usize) -> Option<usize> {
 }
 
 impl Arguments {
-    /// The object behind a pointer that an initialisation gave.
+    /// The object at a pointer from an initialisation.
     ///
     /// # Safety
     /// `pointer` is null or points to memory of at least the size of an object, which nobody else
@@ -50,7 +50,7 @@ impl Arguments {
         unsafe { Ok(&mut *self.content::<K>(pointer, name)?) }
     }
 
-    /// As [`Arguments::object`], of one that is read only: others may read it too.
+    /// As [`Arguments::object`], for an object that is only read. Others may read it too.
     ///
     /// # Safety
     /// As for [`Arguments::object`], but others may read it.
@@ -104,10 +104,10 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// Makes an object of `count` elements and what `make` puts in front of them.
+    /// Makes an object with `count` elements, and with the content that `make` returns.
     ///
-    /// An object that was here is gone as soon as its elements are written over: its mark goes
-    /// first, so that it is refused from then on even where `make` fails.
+    /// An older object in this memory ends when its elements are overwritten. Its mark is cleared
+    /// first, so that it is refused from then on, even if `make` fails.
     pub(crate) fn fill<K: Kind, E: Default + 'static>(
         self,
         count: usize,

@@ -12,7 +12,7 @@ use crate::types::{
 use hysteron::{Model, State, headings};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A state, with the model that it is one of.
+/// A state, together with its model.
 struct Running {
     model: Arc<Model>,
     state: Mutex<State>,
@@ -26,9 +26,10 @@ impl Running {
 
 static STATES: Table<Running> = Table::new(2);
 
-/// A state of `model`, all operators off. It keeps what it needs of the model, which may be freed before it.
+/// Makes a state of `model` with all operators off. `model` may be freed before the state.
 ///
-/// A model that depends on a load, or has a thermal body in front, has no state: take it at one load.
+/// A model that depends on a load or has a thermal body has no such state. Use it at one load
+/// (`hysteron_model_at_load`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 {
     guard(|| {
@@ -48,7 +49,7 @@ pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
     guard(|| STATES.remove(state, "state"))
 }
 
-/// All operators off, as at the bottom of the plane.
+/// Switches all operators off, as at the bottom of the plane.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
     guard(|| {
@@ -58,7 +59,7 @@ pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
     })
 }
 
-/// All operators on, as at the top of the plane.
+/// Switches all operators on, as at the top of the plane.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
     guard(|| {
@@ -68,8 +69,8 @@ pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
     })
 }
 
-/// Moves to `input` and gives the output; `clipped`, which may be null, says whether the input lay outside the plane:
-/// `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
+/// Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
+/// or `HYSTERON_HIGH` for an input outside the plane. It may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_step(
     state: u64,
@@ -96,8 +97,8 @@ pub unsafe extern "C" fn hysteron_step(
     })
 }
 
-/// Moves through `count` inputs and writes as many outputs; the arrays must not overlap. Where one input is not finite, the state
-/// stays as it was.
+/// Moves through `count` inputs and writes as many outputs. The arrays must not overlap. If an
+/// input is not finite, the state stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_run(
     state: u64,
@@ -121,11 +122,13 @@ pub unsafe extern "C" fn hysteron_run(
     })
 }
 
-/// Finds the input that gives `target`, moves the state there, and says whether it reaches the target: `HYSTERON_INSIDE`,
-/// `HYSTERON_LOW`, `HYSTERON_HIGH` or `HYSTERON_PASSED`.
+/// Finds the input that gives `target` and moves the state there. `status` becomes
+/// `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH` or
+/// `HYSTERON_PASSED`.
 ///
-/// `heading` is the policy: `HYSTERON_HOLD`, or `HYSTERON_RISING` or `HYSTERON_FALLING` where the target goes next; `tolerance`
-/// how far a target may go back and still stand still, in the output's unit.
+/// `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
+/// `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
+/// `tolerance`, in the output's unit, is held.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_inverse_step(
     state: u64,
@@ -154,9 +157,10 @@ pub unsafe extern "C" fn hysteron_inverse_step(
     })
 }
 
-/// Finds the inputs for `count` targets, one after the other, and moves the state through them. `heading` has as many elements,
-/// each as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD` throughout; so has `status`, which may be null. No array may
-/// overlap another. Where one target or heading cannot be, the state stays as it was.
+/// Finds the inputs for `count` targets, one after the other, and moves the state through them.
+/// `heading` has `count` elements as in `hysteron_inverse_step`, or is null for `HYSTERON_HOLD`.
+/// `status` has `count` elements, or is null. Arrays must not overlap. If a target or a heading is
+/// not valid, the state stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_inverse_run(
     state: u64,
@@ -196,8 +200,9 @@ pub unsafe extern "C" fn hysteron_inverse_run(
     })
 }
 
-/// Where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or `HYSTERON_FALLING`, `HYSTERON_HOLD` where
-/// the series never moves. Reversals of up to `tolerance` are noise.
+/// Writes where each of `count` targets goes next, for `hysteron_inverse_run`: `HYSTERON_RISING` or
+/// `HYSTERON_FALLING`, or `HYSTERON_HOLD` if the series never moves. Reversals of up to `tolerance`
+/// are noise.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_headings(
     target: *const f64,
@@ -226,8 +231,8 @@ pub unsafe extern "C" fn hysteron_headings(
     })
 }
 
-/// Saves the state: its turning points, at most `capacity`, and the last input. `count` becomes the number of turning points,
-/// also where `capacity` is too small for them.
+/// Saves the state: its turning points as normalised positions, at most `capacity`, and the last
+/// input. `count` becomes the number of turning points, also if `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_save(
     state: u64,
@@ -255,7 +260,8 @@ pub unsafe extern "C" fn hysteron_state_save(
     })
 }
 
-/// Puts back what `hysteron_state_save` gave, of a state of this model or of one with the same plane: bit for bit.
+/// Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
+/// with the same plane.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_restore(
     state: u64,

@@ -1,4 +1,4 @@
-//! Constants and structures of the interface, and what they are in the library.
+//! Constants and structures of the interface, and their counterparts in the library.
 
 use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result};
@@ -13,20 +13,20 @@ pub const HYSTERON_KP: i32 = 1;
 /// Operator: relay of the classical Preisach model, −1 or 1.
 pub const HYSTERON_RELAY: i32 = 2;
 
-/// Policy of the inverse: the input stands still while the target does.
+/// Policy of the inverse: hold. The input stands still while the target does.
 pub const HYSTERON_HOLD: i32 = 0;
-/// Policy of the inverse: the target rises next, so that a dead band is crossed at once.
+/// Policy of the inverse: the target rises next. The input crosses a dead band at once.
 pub const HYSTERON_RISING: i32 = 1;
-/// Policy of the inverse: the target falls next, so that a dead band is crossed at once.
+/// Policy of the inverse: the target falls next. The input crosses a dead band at once.
 pub const HYSTERON_FALLING: i32 = -1;
 
-/// Within reach, or inside the plane.
+/// The target is reached, or the input lies inside the plane.
 pub const HYSTERON_INSIDE: i32 = 0;
 /// The target lies below every output, or the input below the plane.
 pub const HYSTERON_LOW: i32 = -1;
 /// The target lies above every output, or the input above the plane.
 pub const HYSTERON_HIGH: i32 = 1;
-/// The target lies inside a jump of a relay model: the output lies beyond it.
+/// The target lies inside a jump of a relay model. The output lies beyond it.
 pub const HYSTERON_PASSED: i32 = 2;
 
 /// Method of adaptation: normalised gradient.
@@ -38,7 +38,7 @@ pub const HYSTERON_LEAST_SQUARES: i32 = 2;
 
 /// Outcome of a sample: the weights moved.
 pub const HYSTERON_LEARNED: i32 = 0;
-/// Outcome of a sample: the error was within the dead zone, or an increment is not finished.
+/// Outcome of a sample: the error lies within the dead zone, or an increment is not finished.
 pub const HYSTERON_WAITING: i32 = 1;
 /// Outcome of a sample: the input did not move.
 pub const HYSTERON_AT_REST: i32 = 2;
@@ -46,11 +46,10 @@ pub const HYSTERON_AT_REST: i32 = 2;
 pub const HYSTERON_FROZEN: i32 = 3;
 /// Outcome of a sample: the last good weights are back.
 pub const HYSTERON_ROLLED_BACK: i32 = 4;
-/// Outcome of a sample: the reading differs too much from what was expected, and has not done so
-/// for long.
+/// Outcome of a sample: the reading is taken as an outlier.
 pub const HYSTERON_REJECTED: i32 = 5;
 
-/// What a model is.
+/// Properties of a model.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronModelInfo {
@@ -58,69 +57,70 @@ pub struct HysteronModelInfo {
     pub operator_kind: i32,
     /// 1: the output rises with the input; −1: it falls.
     pub sign: i32,
-    /// `K`.
+    /// `K`, the number of levels.
     pub levels: usize,
-    /// `N = K(K + 1)/2`.
+    /// `N = K(K + 1)/2`, the number of operators.
     pub weights: usize,
     /// Lowest level, in the input's unit.
     pub min: f64,
-    /// Highest level.
+    /// Highest level, in the input's unit.
     pub max: f64,
-    /// One step below the lowest level, where every operator is off.
+    /// One step below the lowest level, in the input's unit. Every operator is off there.
     pub bottom: f64,
-    /// What is added to the sum of the operators.
+    /// Offset: what is added to the sum of the operators.
     pub offset: f64,
     /// Output with every operator off.
     pub output_off: f64,
     /// Output with every operator on.
     pub output_on: f64,
-    /// Reversals of a target that count as noise where nobody says otherwise: 1 % of the output's range.
+    /// Default tolerance for reversals of a target: 1 % of the output's range.
     pub usual_tolerance: f64,
 }
 
-/// Options of adaptation; `hysteron_adaptation_default` fills in the usual ones.
+/// Options of adaptation. `hysteron_adaptation_default` writes the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronAdaptation {
     /// `HYSTERON_GRADIENT`, `HYSTERON_INCREMENTS` or `HYSTERON_LEAST_SQUARES`.
     pub method: i32,
-    /// Samples learned from on which weights are judged, from 1.
+    /// Samples learned from after which weights are compared with the last good ones, from 1.
     pub trial: u32,
-    /// Gradient and increments: share of the error that is taken away, above 0 and below 2.
+    /// Gradient and increments: fraction of the error that a sample removes, above 0 and below 2.
     pub gain: f64,
-    /// Increments: levels from the beginning of one to its end, 1/8 to 8.
+    /// Increments: levels from the start of an increment to its end, 1/8 to 8.
     pub span: f64,
-    /// Least squares: above 0 and up to 1, which forgets nothing.
+    /// Least squares: forgetting factor, above 0 and up to 1. 1 forgets nothing.
     pub forgetting: f64,
     /// Least squares: standard deviation of a reading's error, in the output's unit; above 0.
     pub noise: f64,
-    /// Least squares: standard deviation of a weight from the one at the start; above 0.
+    /// Least squares: standard deviation of a weight from the off-line one, in the output's unit;
+    /// above 0.
     pub spread: f64,
-    /// Least squares: levels over which deviations of weights go together, from 0.
+    /// Least squares: levels over which deviations of weights are correlated, from 0.
     pub correlation: f64,
-    /// How freely the offset moves, beside one weight, from 0.
+    /// How freely the offset moves, relative to one weight, from 0.
     pub offset_share: f64,
     /// Errors up to this are noise, in the output's unit, from 0.
     pub dead_zone: f64,
-    /// Share by which weights return to those at the start with each update, 0 to 1.
+    /// Fraction of the way that weights return to the off-line ones with each update, 0 to 1.
     pub leakage: f64,
     /// Levels between two samples that are learned from, from 0.
     pub movement: f64,
-    /// How many times the usual surprise a reading may be off to be learned from, from 2; 0: any.
+    /// Readings with a surprise above so many times the usual one are refused, from 2. 0: none is.
     pub gate: f64,
-    /// Readings in a row beyond the gate that are learned from, where they agree, from 1.
+    /// So many refused readings in a row that agree are learned from, from 1.
     pub burst: u32,
 }
 
-/// What a sample taught.
+/// Result of a step that learns.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronLearning {
-    /// Output that was expected before anything was learned from the sample.
+    /// Output predicted before the estimator learned from the sample.
     pub output: f64,
-    /// Measured less expected.
+    /// Measured output less predicted output.
     pub error: f64,
-    /// `HYSTERON_LEARNED` and so on.
+    /// Outcome: `HYSTERON_LEARNED` to `HYSTERON_REJECTED`.
     pub outcome: i32,
     /// Where the input lay: `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
     pub clipped: i32,

@@ -7,12 +7,12 @@ mod measure;
 
 use common::{GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, options, rng, weights};
 use hysteron_core::{
-    Adaptation, Estimator, Method, Operator, estimator_len_of_parts, operator_count,
+    Adaptation, Estimator, Method, Operator, estimator_len_of_basis, operator_count,
 };
 use measure::{definition, random_weights, ratio, seconds, smooth, title, unit_plane};
 use std::hint::black_box;
 
-const PARTS: usize = 6;
+const MEMBERS: usize = 6;
 
 /// Every sample is learned from, however short the way to it.
 fn always(method: Method<f64>) -> Adaptation<f64> {
@@ -45,17 +45,19 @@ fn learning(method: Method<f64>, levels: usize, input: &[f64]) -> impl FnMut() -
     }
 }
 
-/// Seconds per sample of a method over shares of parts.
-fn learning_shares(method: Method<f64>, levels: usize, input: &[f64]) -> impl FnMut() -> f64 {
+/// Seconds per sample of a method over the coefficients of a basis.
+fn learning_coefficients(method: Method<f64>, levels: usize, input: &[f64]) -> impl FnMut() -> f64 {
     let (offline, measured) = (random_weights(levels), measured(levels, input));
     let (mut model, mut state) = build(unit_plane(levels), Operator::Mkp, &offline);
     let mut rng = rng(3);
-    let parts: Vec<f64> = (0..PARTS).flat_map(|_| weights(&mut rng, levels)).collect();
-    let memory = vec![0.0; estimator_len_of_parts(levels, method, PARTS)];
-    let shares = [1.0 / PARTS as f64; PARTS];
+    let basis: Vec<f64> = (0..MEMBERS)
+        .flat_map(|_| weights(&mut rng, levels))
+        .collect();
+    let memory = vec![0.0; estimator_len_of_basis(levels, method, MEMBERS)];
+    let coefficients = [1.0 / MEMBERS as f64; MEMBERS];
     let options = always(method);
     let mut estimator =
-        Estimator::of_parts(options, &mut model, &parts, &shares, 0.0, memory).unwrap();
+        Estimator::of_basis(options, &mut model, &basis, &coefficients, 0.0, memory).unwrap();
     move || {
         seconds(input.len(), || {
             for (&t, &y) in input.iter().zip(&measured) {
@@ -68,7 +70,7 @@ fn learning_shares(method: Method<f64>, levels: usize, input: &[f64]) -> impl Fn
 
 fn main() {
     let smooth = smooth(100_000);
-    let shares = Method::LeastSquares {
+    let coefficients = Method::LeastSquares {
         forgetting: 0.99,
         noise: 0.01,
         spread: 1.0,
@@ -91,8 +93,8 @@ fn main() {
             against("least squares", &mut learning(LEAST_SQUARES, levels, input));
         }
         against(
-            "least squares, 6 shares",
-            &mut learning_shares(shares, levels, &smooth[..5000]),
+            "least squares, 6 coefficients",
+            &mut learning_coefficients(coefficients, levels, &smooth[..5000]),
         );
     }
 }

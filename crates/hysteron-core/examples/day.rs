@@ -1,9 +1,10 @@
 //! A day at 100 Hz: `cargo run --release -p hysteron-core --example day`.
 //!
-//! Each method learns a known plant for 24 hours, 8.64 million samples, through strokes of seconds to minutes and rests in
-//! between, with noise on input and output. The table says whether anything drifts: error of the output and of the weights
-//! in the first and in the last hour, the smallest weight there ever was, and how well the inverse
-//! returned, at every tenth second. Memory is what was given at the start: the core has no allocator that it could ask for more.
+//! Each method learns a known plant for 24 hours, 8.64 million samples, through strokes of seconds
+//! to minutes and rests in between, with noise on input and output. The table says whether anything
+//! drifts: error of the output and of the weights in the first and in the last hour, the smallest
+//! weight there ever was, and how well the inverse returned, at every tenth second. Memory is what
+//! was given at the start: the core has no allocator that it could ask for more.
 
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Outcome, Plane, Target, Turn,

@@ -1,41 +1,49 @@
-//! Turning points, and the branch that the input travels between two of them.
+//! Turning points, and the branch on which the input moves between two of them.
 
 use core::slice::IterMut;
 
 use crate::everett::{Grid, Split};
 use crate::scalar::Real;
 
-/// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there with `γ` in `[0, 1]`.
+/// A turning point of the input: the normalised position `0 ≤ x ≤ K`, and `Σ μ γ` there, with `γ`
+/// in `[0, 1]`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turn<T> {
     pub(crate) x: T,
     pub(crate) y: T,
 }
 
-/// The start of every history among the turning points: the input below the plane, after endless
-/// heights. There are enough of these for a look at two corners back to need no case of its own.
+/// Index of the first turning point of every history: the input at the bottom of the plane.
+///
+/// The elements before it are sentinels with infinite positions. There are enough of them that
+/// merging can look two corners back without a special case.
 pub(crate) const START: usize = LOOK + 1;
 
-/// How far back from the branch's own turning point a merge looks: the two corners before it.
+/// How many turning points before the start of the branch a merge reads: two corners.
 const LOOK: usize = 4;
 
-/// Where the input is, and the branch it is on. `Copy`, so that a loop over samples can hold it in registers.
+/// Where the input is, and the branch it is on.
+///
+/// `Copy`, so that a loop over samples can keep it in registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place<T> {
-    /// Normalised position, never −0; for relays the level last reached, as a whole number.
+pub(crate) struct Position<T> {
+    /// Normalised position, never −0. For relays the index of the level last reached.
     pub(crate) x: T,
     /// `Σ μ γ` at `x`.
     pub(crate) y: T,
-    /// The turning point that the branch began at, counted like `START`, which is a minimum.
+    /// Index of the turning point at which the branch began. `START` is a minimum; minima and
+    /// maxima alternate from there.
     pub(crate) top: usize,
-    /// The cell of that turning point, its output, and the position of the extreme that ends the
-    /// branch: all follow from `top`, kept because they change only with it.
+    // These three follow from `top`. They are kept because they change only with it.
+    /// Grid cell of the turning point at which the branch began.
     began: Split<T>,
+    /// `Σ μ γ` at that turning point.
     began_y: T,
+    /// Position at which the branch ends: the extreme before that turning point.
     end: T,
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> Position<T> {
     pub(crate) fn start(levels: usize) -> Self {
         Self {
             x: T::ZERO,
@@ -52,10 +60,10 @@ impl<T: Real> Place<T> {
         self.top % 2 == START % 2
     }
 
-    /// Moves to each of the normalised positions, in `[0, K]` and never −0, and puts `Σ μ γ` in its stead:
-    /// amortised `O(1)` each.
+    /// Moves to each of `positions` and replaces it by `Σ μ γ` there. Amortised `O(1)` each.
     ///
-    /// Each direction has its own code, so that along a branch nothing is left to choose.
+    /// Positions are normalised, in `[0, K]` and never −0. Each direction has its own code, so that
+    /// no sample along a branch tests the direction.
     #[inline(always)]
     pub(crate) fn travel(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>, positions: &mut [T]) {
         let mut rest = positions.iter_mut();
@@ -69,13 +77,13 @@ impl<T: Real> Place<T> {
         }
     }
 
-    /// Whether this is the same position on the same branch, whatever the outputs.
+    /// Whether both are the same position on the same branch. Outputs are not compared.
     pub(crate) fn is_at(&self, other: &Self) -> bool {
-        let key = |place: &Self| (place.x, place.top, place.began, place.end);
+        let key = |position: &Self| (position.x, position.top, position.began, position.end);
         key(self) == key(other)
     }
 
-    /// Works out the outputs anew along the turning points and at the present position.
+    /// Computes the outputs of another table at all turning points and at the present position.
     pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
         let split = |x| Split::of(x, grid.levels);
         let along = |from: Turn<T>, to: T| {
@@ -94,7 +102,8 @@ impl<T: Real> Place<T> {
         self.y = along(last, self.x);
     }
 
-    /// Goes one way until the input turns; gives the position that lies the other way, if there is one.
+    /// Follows `next` and the `rest` in one direction until the input turns. Returns the position
+    /// that lies in the other direction, `None` at the end of the positions.
     #[inline(always)]
     fn go<'a, const RISING: bool>(
         &mut self,
@@ -116,7 +125,7 @@ impl<T: Real> Place<T> {
         None
     }
 
-    /// Moves to `x` if the branch goes there; says whether it does.
+    /// Moves to `x` if it lies on the branch ahead. Returns whether it does.
     #[inline(always)]
     fn follow<const RISING: bool>(&mut self, grid: Grid<'_, T>, x: T) -> bool {
         if before::<T, RISING>(x, self.x) || !before::<T, RISING>(x, self.end) {
@@ -132,10 +141,11 @@ impl<T: Real> Place<T> {
         true
     }
 
-    /// Changes to the next branch on the way to `x`; says whether it goes the other way.
+    /// Changes to the next branch on the way to `x`. Returns whether that branch has the other
+    /// direction.
     ///
     /// Where the input turned, the present position becomes a turning point. Where the branch
-    /// ended, the extreme there is wiped out with the opposite one after it.
+    /// ended, the turning points that it began and ended at are wiped out.
     #[inline(always)]
     fn leave<const RISING: bool>(
         &mut self,
@@ -147,7 +157,8 @@ impl<T: Real> Place<T> {
         if !turned {
             self.top -= 2;
             if self.top < START {
-                // Below everything: all operators are off, as at the start, and the next way is up.
+                // The bottom of the plane: all operators are off, as at the start. From here the
+                // input can only rise.
                 self.top = START;
                 self.x = T::ZERO;
                 turned = true;
@@ -168,15 +179,16 @@ impl<T: Real> Place<T> {
         turned
     }
 
-    /// Merges the corner that falls to the present position with those before it, if they are close
-    /// enough to share a grid cell, and do; says whether they do.
+    /// Merges the corner that ends at the present position with the one before it, if both and the
+    /// corner before them lie in one grid cell. Returns whether it did.
     ///
-    /// With fewer than two corners before, one of them is an endless height, which is not close.
+    /// A cheap test of distance comes first. With fewer than two corners before, it reads a
+    /// sentinel, whose position is infinite, and fails.
     #[inline(always)]
     fn merged(&self, turns: &mut [Turn<T>], grid: Grid<'_, T>) -> bool {
         let recent = turns.get_mut(self.top - LOOK..);
         let Some(recent) = recent.and_then(|turns| turns.first_chunk_mut()) else {
-            return false; // the memory has this many elements beyond the bound
+            return false; // unreachable: `top` lies within the memory
         };
         let [outer_max, outer_min, _, _, peak] = recent;
         outer_max.x - peak.x < T::ONE
@@ -185,19 +197,20 @@ impl<T: Real> Place<T> {
     }
 }
 
-/// Whether a branch comes to `a` before `b`.
+/// Whether a branch of this direction reaches `a` before `b`.
 #[inline(always)]
 fn before<T: Real, const RISING: bool>(a: T, b: T) -> bool {
     if RISING { a.precedes(b) } else { b.precedes(a) }
 }
 
-/// Makes one corner of the last one and the one that falls to `min`, where both lie in one grid cell
-/// with the corner before them; says whether they do.
+/// Replaces two corners by one, where both lie in one grid cell with the corner before them: the
+/// last one among the turning points and the one from its peak down to `min`. Returns whether it
+/// did.
 ///
-/// In the cell, `γ ← min(max(γ, u'), v')` and then `γ ← min(max(γ, u''), v'')`, with `u'' < u'` and
-/// `v' < v''`. Since the corner before has left `γ < v'`, both together equal
-/// `γ ← min(max(γ, u), v'')` with `u = clamp(v', u'', u')`. Everything outside the cell sees only
-/// the corner before and the last minimum.
+/// In the cell the first corner maps `γ ← min(max(γ, u'), v')` and the second
+/// `γ ← min(max(γ, u''), v'')`, with `u'' < u'` and `v' < v''`. The corner before them has left
+/// `γ < v'`. So both together equal `γ ← min(max(γ, u), v'')` with `u = clamp(v', u'', u')`: one
+/// corner. The operators outside the cell depend only on the corner before and on the last minimum.
 #[cold]
 #[inline(never)]
 fn merge<T: Real>(recent: &mut [Turn<T>; LOOK + 1], grid: Grid<'_, T>, min: T) -> bool {
@@ -210,8 +223,8 @@ fn merge<T: Real>(recent: &mut [Turn<T>; LOOK + 1], grid: Grid<'_, T>, min: T) -
     }
     let (p, q) = here;
     let held = T::from_index(p) + (inner_min - T::from_index(q));
-    let max = held.limited(peak, inner_max);
-    // From the corner before on, so that ten thousand of these leave no more rounding than one.
+    let max = held.clamp(peak, inner_max);
+    // Computed from the corner before, so that rounding errors do not add up over many merges.
     let at_max = recent[1].y + grid.everett(split(max), split(outer_min));
     let at_min = at_max - grid.everett(split(max), split(min));
     recent[2] = Turn { x: max, y: at_max };

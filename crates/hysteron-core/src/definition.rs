@@ -1,6 +1,6 @@
-//! The model as the chapter defines it, equation (2): every operator, every sample, `O(K²)`.
+//! The model as the chapter defines it, equation (2): every operator at every sample, `O(K²)`.
 //!
-//! Kept plain on purpose: it is what the fast paths are tested against.
+//! It is plain on purpose: the tests compare the fast model with it.
 
 use crate::error::Error;
 use crate::operator::Operator;
@@ -9,7 +9,7 @@ use crate::plane::Plane;
 use crate::plane::{operator_count, operator_index};
 use crate::scalar::Real;
 
-/// The plain model over weights and operator states that the caller holds.
+/// The model by its definition, over weights and operator states of the caller.
 ///
 /// ```
 /// use hysteron_core::{Definition, Operator, Plane};
@@ -30,10 +30,13 @@ pub struct Definition<'a, T> {
 }
 
 impl<'a, T: Real> Definition<'a, T> {
-    /// A plain model; both slices hold `K(K + 1)/2` numbers. All operators start off.
+    /// A model with all operators off.
+    ///
+    /// `weights` and `states` have exactly `K(K + 1)/2` elements each, row by row
+    /// ([`operators`](crate::operators)).
     ///
     /// # Errors
-    /// [`Error::WeightCount`], [`Error::MemoryTooSmall`].
+    /// [`Error::WeightCount`] or [`Error::MemoryTooSmall`] for any other length.
     pub fn new(
         plane: Plane<T>,
         operator: Operator,
@@ -63,10 +66,10 @@ impl<'a, T: Real> Definition<'a, T> {
         })
     }
 
-    /// Moves to `input` and returns `H = Σ μ_ij γ_ij`.
+    /// Moves to `input` and returns the output `H = Σ μ_ij γ_ij`, with the operators' own outputs.
     ///
     /// # Errors
-    /// [`Error::InputNotFinite`]; the states are then as they were.
+    /// [`Error::InputNotFinite`]; the states then stay as they are.
     pub fn step(&mut self, input: T) -> Result<T, Error> {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });

@@ -1,28 +1,30 @@
-//! What can go wrong in the core.
+//! The errors of the core.
 
 use core::fmt;
 
-/// Why the core refused a call. The state is never touched when an error is returned.
+/// Why the core refused a call. A call that returns an error has changed nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
     /// Fewer than 2 or more than [`crate::MAX_LEVELS`] levels.
     Levels(usize),
-    /// The plane's range is not finite, or empty, or too narrow to tell its levels apart.
+    /// The plane's range is not finite, is empty, or is so narrow that neighbouring levels
+    /// coincide.
     Range,
-    /// As many weights as operators are needed: `expected = K(K + 1)/2`.
+    /// The number of weights is not that of the operators, `K(K + 1)/2`, or of a basis, that for
+    /// each of its members.
     WeightCount {
-        /// `K(K + 1)/2`.
+        /// How many are needed.
         expected: usize,
         /// How many were given.
         found: usize,
     },
     /// A weight is NaN or infinite, or the weights' sum overflows.
     WeightNotFinite {
-        /// Its place, row by row: `j = 1…K`, within a row `i = 1…j`; counted from 0.
+        /// Index of the weight, from 0, row by row ([`operators`](crate::operators)).
         index: usize,
     },
-    /// The inverse needs weights that are not negative.
+    /// The inverse and estimators need weights that are not negative.
     NegativeWeights(NegativeWeights),
     /// Memory that the caller provides is too small.
     MemoryTooSmall {
@@ -31,35 +33,36 @@ pub enum Error {
         /// Elements given.
         found: usize,
     },
-    /// An input (or target) is NaN or infinite.
+    /// An input, a target or a reading is NaN or infinite.
     InputNotFinite {
-        /// Its place in the array; 0 for a single sample.
+        /// Index in the array, from 0. 0 for a single sample.
         index: usize,
     },
-    /// Turning points to restore do not nest: they must be finite, alternate, lie in `[0, K]`
-    /// and each within the two before it.
+    /// Turning points to restore do not nest. They must be finite, lie in `[0, K]`, start with a
+    /// maximum and alternate, each within the two before it.
     TurningPoints {
-        /// The first one that does not fit, counted from 0.
+        /// Index of the first one that does not fit, from 0.
         index: usize,
     },
-    /// A state was used with another model than the one that made it.
+    /// A state was used with a model other than the one that made it.
     StateMismatch,
-    /// There is no operator `(i, j)`: `1 ≤ i ≤ j ≤ K`.
+    /// There is no operator `(i, j)`: `1 ≤ i ≤ j ≤ K` does not hold.
     Operator {
-        /// Index of `α`.
+        /// Index of the level `α`, at which the operator switches off.
         i: usize,
-        /// Index of `β`.
+        /// Index of the level `β`, at which the operator switches on.
         j: usize,
     },
     /// An option of an estimator is out of its range.
     Adaptation {
-        /// Its name.
+        /// Name of the option, as in [`Adaptation`](crate::Adaptation) and
+        /// [`Method`](crate::Method).
         option: &'static str,
     },
 }
 
 impl Error {
-    /// A number for each kind of error that never changes, for interfaces without enums.
+    /// The number of the kind of error, for interfaces without enumerations. It never changes.
     #[must_use]
     pub const fn code(self) -> i32 {
         match self {
@@ -78,12 +81,12 @@ impl Error {
     }
 }
 
-/// Which weights are negative: how many, and the first of them.
+/// Which weights are negative: their number, and the first three of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NegativeWeights {
     /// How many weights are below zero.
     pub count: usize,
-    /// `(i, j)` of the first ones, counted from 1 as in equation (3).
+    /// `(i, j)` of the first three, counted from 1 as in equation (3).
     pub first: [Option<(usize, usize)>; 3],
 }
 

@@ -1,27 +1,29 @@
-//! The Everett function of the model: what the output loses when the input falls from `M` to `m`.
+//! The Everett function `e(M, m)` of the model: by how much the output falls when the input falls
+//! from the maximum `M` to the minimum `m`.
 //!
 //! An MKP operator is the average of ideal relays whose thresholds lie on the diagonal of its grid
-//! cell, so the whole model is a classical Preisach model. Its Everett function on grid corners is
-//! the prefix sum `C[p][q] = Σ μ_ij over j ≤ p, i > q`, and between corners it is exactly piecewise
-//! linear on triangles (Everett 1955; Mayergoyz 1991).
+//! cell. So the whole model is a classical Preisach model. On the corners of the grid its Everett
+//! function is the prefix sum `C[p][q] = Σ μ_ij over j ≤ p, i > q`. Between the corners it is
+//! exactly linear on each of the two triangles of a cell (Everett 1955; Mayergoyz 1991).
 
 use crate::error::{Error, NegativeWeights};
 use crate::plane::{operator_count, operator_index};
 use crate::scalar::Real;
 
-/// Elements of the table for `levels` levels: `(K + 1)(K + 2)/2`, the corners `0 ≤ q ≤ p ≤ K`.
+/// Number of elements of the Everett table for `levels` levels: `(K + 1)(K + 2)/2`, one for each
+/// corner `0 ≤ q ≤ p ≤ K`.
 #[must_use]
 pub const fn table_len(levels: usize) -> usize {
     (levels + 1) * (levels + 2) / 2
 }
 
-/// Place of `C[p][q]`, `0 ≤ q ≤ p ≤ K`, in the table.
+/// Index of `C[p][q]`, `0 ≤ q ≤ p ≤ K`, in the Everett table: row by row, from 0.
 #[must_use]
 pub const fn table_index(p: usize, q: usize) -> usize {
     p * (p + 1) / 2 + q
 }
 
-/// Checks `weights` and tells which are negative.
+/// Checks the number and the values of `weights`. Returns which are negative, `None` for none.
 pub(crate) fn check<T: Real>(
     levels: usize,
     weights: &[T],
@@ -31,13 +33,13 @@ pub(crate) fn check<T: Real>(
         return Err(Error::WeightCount { expected, found });
     }
     let mut negative: Option<NegativeWeights> = None;
-    // No output can be larger than this, twice for operators of ±1.
+    // Bound of the output; for operators of ±1 the bound is twice this.
     let mut size = T::ZERO;
     for j in 1..=levels {
         for i in 1..=j {
             let index = operator_index(i, j);
             let weight = weights[index];
-            size = size + weight.larger(-weight);
+            size = size + weight.max(-weight);
             if !(size + size).is_finite() {
                 return Err(Error::WeightNotFinite { index });
             }
@@ -46,7 +48,7 @@ pub(crate) fn check<T: Real>(
                     count: 0,
                     first: [None; 3],
                 });
-                if let Some(free) = which.first.iter_mut().find(|place| place.is_none()) {
+                if let Some(free) = which.first.iter_mut().find(|slot| slot.is_none()) {
                     *free = Some((i, j));
                 }
                 which.count += 1;
@@ -56,7 +58,7 @@ pub(crate) fn check<T: Real>(
     Ok(negative)
 }
 
-/// Writes the table of `weights` to the front of `table`.
+/// Writes the Everett table of `weights` to the first elements of `table`.
 pub(crate) fn fill<T: Real>(levels: usize, weights: &[T], table: &mut [T]) {
     table[0] = T::ZERO;
     for p in 1..=levels {
@@ -65,16 +67,17 @@ pub(crate) fn fill<T: Real>(levels: usize, weights: &[T], table: &mut [T]) {
     }
 }
 
-/// Row `p ≥ 1` of a table and the one above it.
+/// Row `p ≥ 1` of a table, and the row above it.
 pub(crate) fn rows<T>(table: &mut [T], p: usize) -> (&[T], &mut [T]) {
     let (above, row) = table[table_index(p - 1, 0)..].split_at_mut(p);
     (above, &mut row[..=p])
 }
 
-/// Row `p` of the table of `weights` from the row above it.
+/// Computes row `p` of the table of `weights` from the row above it.
 ///
-/// Row sums first, then rows on rows, so that every entry is a sum of at most `2K` terms and
-/// weights that are exactly zero leave neighbouring entries exactly equal.
+/// The sum within the row is formed first and then added to the row above. So every entry results
+/// from at most `2K` additions, and weights that are exactly zero make neighbouring entries exactly
+/// equal.
 pub(crate) fn fill_row<T: Real>(p: usize, weights: &[T], above: &[T], row: &mut [T]) {
     row[p] = T::ZERO;
     let weights = &weights[operator_index(1, p)..][..p];
@@ -85,10 +88,11 @@ pub(crate) fn fill_row<T: Real>(p: usize, weights: &[T], above: &[T], row: &mut 
     }
 }
 
-/// A normalised input split into its grid cell and the place within it: `x = cell + part`, `0 ≤ part ≤ 1`.
+/// A normalised position as its grid cell and the fraction of that cell: `x = cell + part`,
+/// `0 ≤ part ≤ 1`.
 ///
-/// On a grid line it is either of the two cells: the Everett function is continuous. `x = K` is the
-/// far end of the last cell, so that a cell always has a corner beyond it.
+/// A position on a grid line may belong to either cell, because the Everett function is continuous.
+/// `x = K` is the upper end of the last cell, so that the table has a corner above every cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Split<T> {
     pub(crate) cell: usize,
@@ -98,7 +102,7 @@ pub(crate) struct Split<T> {
 impl<T: Real> Split<T> {
     #[inline(always)]
     pub(crate) fn of(x: T, levels: usize) -> Self {
-        let middle = (x - T::HALF).smaller(T::from_index(levels - 1));
+        let middle = (x - T::HALF).min(T::from_index(levels - 1));
         let (start, cell) = middle.nearest_index();
         Self {
             cell,
@@ -109,36 +113,41 @@ impl<T: Real> Split<T> {
 
 /// `e(M, m)` as three table entries and their factors.
 ///
-/// Both triangles of the definition in one form: with `u`, `v` the parts of `M`, `m`,
-/// `e = (1 − max) C[p][q] + (max − min) C_mid + min C[p+1][q+1]`, `max` and `min` of `u` and `v`, where
-/// `C_mid` is the corner on the side of the larger part.
+/// `M` lies in cell `p` with part `u`, `m` in cell `q` with part `v`. One form covers both
+/// triangles: `e = (1 − max(u, v)) C[p][q] + (max(u, v) − min(u, v)) C_mid + min(u, v)
+/// C[p+1][q+1]`. `C_mid` is `C[p+1][q]` where `u > v` and `C[p][q+1]` otherwise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Triangle<T> {
+    /// Index of `C[p][q]`.
     pub(crate) near: usize,
+    /// Index of `C_mid`.
     pub(crate) mid: usize,
+    /// Index of `C[p+1][q+1]`.
     pub(crate) far: usize,
+    /// `max(u, v)`.
     pub(crate) larger: T,
+    /// `min(u, v)`.
     pub(crate) smaller: T,
 }
 
 impl<T: Real> Triangle<T> {
-    /// The triangle that `(M, m)` lies in. Where `M = m` the terms cancel to exactly zero.
+    /// The triangle that has `(M, m)`. Where `M = m` the terms cancel to exactly zero.
     #[inline(always)]
     pub(crate) fn of(max: Split<T>, min: Split<T>) -> Self {
         let near = table_index(max.cell, min.cell);
-        // On to C[p+1][q] or C[p][q+1].
+        // From C[p][q] to C[p+1][q] or to C[p][q+1].
         let step = if max.part > min.part { max.cell + 1 } else { 1 };
         Self {
             near,
             mid: near + step,
             far: near + max.cell + 2,
-            larger: max.part.larger(min.part),
-            smaller: max.part.smaller(min.part),
+            larger: max.part.max(min.part),
+            smaller: max.part.min(min.part),
         }
     }
 }
 
-/// The Everett function of a model: its table, and the grid that this stands on.
+/// The Everett function of a model: its table, and the number of levels of its grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grid<'a, T> {
     pub(crate) table: &'a [T],

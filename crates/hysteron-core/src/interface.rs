@@ -1,28 +1,31 @@
-//! The state seen on the plane, as in the chapter's Fig. 6.
+//! The state as the staircase on the plane, as in Fig. 6 of the chapter.
 
 use crate::branch::Turn;
 use crate::error::Error;
+use crate::memory::Memory;
 use crate::operator::mkp;
 use crate::plane::Plane;
 use crate::scalar::Real;
 use crate::state::State;
 
-/// Which of the plane's three sets an operator belongs to.
+/// Which of the three sets of the plane an operator belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Region {
     /// `S_min`: the operator is fully off.
     Min,
-    /// `S_bon`: it lies on the boundary, at an intermediate state.
+    /// `S_bon`: the operator lies on the boundary, in an intermediate state.
     Boundary,
-    /// `S_max`: it is fully on.
+    /// `S_max`: the operator is fully on.
     Max,
 }
 
-impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
-    /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`, by equation (5) over the turning points. `O(depth)`.
+impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
+    /// The state `γ_ij` in `[0, 1]` of operator `(i, j)`, `1 ≤ i ≤ j ≤ K`.
+    ///
+    /// Applies equation (5) to each turning point: `O(n)` for `n` of them.
     ///
     /// # Errors
-    /// [`Error::Operator`].
+    /// [`Error::Operator`] for indices out of range.
     pub fn gamma(&self, i: usize, j: usize) -> Result<T, Error> {
         if i < 1 || i > j || j > self.levels() {
             return Err(Error::Operator { i, j });
@@ -47,15 +50,17 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         })
     }
 
-    /// The staircase between what is on and what is off: its vertices `(α, β)` in the input's unit,
-    /// from the left edge of the plane to the diagonal.
+    /// The staircase between the operators that are on and those that are off.
+    ///
+    /// Gives its vertices `(α, β)` in the input's unit, from the left edge of the plane to the
+    /// diagonal.
     pub fn staircase<'a>(&'a self, plane: &'a Plane<T>) -> impl Iterator<Item = (T, T)> + 'a {
         let mut vertex = (T::ZERO, T::ZERO);
         let last = self.turning_points().count() - 1;
         self.turning_points()
             .enumerate()
             .flat_map(move |(n, x)| {
-                // A maximum is a height of the staircase, a minimum a place along it.
+                // A maximum is a height β of the staircase, a minimum a position α along it.
                 if n % 2 == 0 {
                     vertex.1 = x;
                 } else {

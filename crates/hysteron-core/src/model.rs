@@ -1,14 +1,15 @@
-//! The forward model, `O(1)` per sample whatever the number of levels.
+//! The forward model: amortised `O(1)` per sample, independent of the number of levels.
 
 use crate::branch::Turn;
 use crate::error::{Error, NegativeWeights};
 use crate::everett;
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::plane::{Clipped, Plane};
 use crate::scalar::Real;
 use crate::state::State;
 
-/// A model ready to run: the configuration apart from the [`State`].
+/// A model ready to run. It is constant while it runs; what changes is a [`State`].
 ///
 /// `C` is the memory for the Everett table: `&mut [T]`, an array or a vector with at least
 /// [`crate::table_len`] elements.
@@ -32,24 +33,24 @@ pub struct Model<T, C> {
     operator: Operator,
     pub(crate) table: C,
     pub(crate) negative: Option<NegativeWeights>,
-    /// Tells models apart, for a state holds outputs of the one that made it.
+    /// Identifies the model, because a state has outputs of the model that made it.
     pub(crate) stamp: u64,
-    /// Where the table in use begins: a model that is renewed row by row has room for two.
+    /// Index at which the table in use begins. A model that is renewed row by row has two tables.
     pub(crate) base: usize,
     /// The next row to renew in the other table, from 1.
     pub(crate) renewed: usize,
 }
 
-/// What one step gives.
+/// The result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Output<T> {
-    /// `H = Σ μ_ij γ_ij`, with the operator's own outputs.
+    /// `H = Σ μ_ij γ_ij`, with the operators' own outputs.
     pub output: T,
-    /// Whether the input lay outside the plane, and at which end.
+    /// The end of the plane that the input lay beyond; `None` within the active range.
     pub clipped: Option<Clipped>,
 }
 
-/// How many samples of an array lay outside the plane.
+/// How many samples of an array lay outside the plane's active range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ClippedCount {
     /// Below `T_min − ΔT`.
@@ -58,11 +59,16 @@ pub struct ClippedCount {
     pub high: usize,
 }
 
-impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
-    /// Builds the Everett table of `weights` (`N = K(K + 1)/2`, row by row: `j = 1…K`, `i = 1…j`) in `table`. `O(K²)`.
+impl<T: Real, C: Memory<T>> Model<T, C> {
+    /// Builds the Everett table of `weights` in `table`. `O(K²)`.
+    ///
+    /// There are `N = K(K + 1)/2` weights, row by row ([`operators`](crate::operators)), in the
+    /// output's unit. They may be negative; such a model has no inverse.
     ///
     /// # Errors
-    /// [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::MemoryTooSmall`].
+    /// [`Error::WeightCount`] for another number of weights, [`Error::WeightNotFinite`] for a
+    /// weight or a sum of weights that is not finite, [`Error::MemoryTooSmall`] for a `table` with
+    /// fewer than [`crate::table_len`] elements.
     pub fn new(
         plane: Plane<T>,
         operator: Operator,
@@ -104,61 +110,66 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         self.operator
     }
 
-    /// The weights below zero, if there are any.
+    /// Which weights are below zero; `None` for none.
     #[must_use]
     pub fn negative_weights(&self) -> Option<NegativeWeights> {
         self.negative
     }
 
-    /// The outputs with every operator off and with every operator on.
+    /// The outputs with every operator off and with every operator on, in this order.
     #[must_use]
     pub fn output_range(&self) -> (T, T) {
         (self.outward(T::ZERO), self.outward(self.total()))
     }
 
-    /// A state with every operator off, over memory for at least [`crate::turn_capacity`] turning points.
+    /// A state with every operator off, over memory for at least [`crate::turn_capacity`] turning
+    /// points.
     ///
     /// # Errors
-    /// [`Error::MemoryTooSmall`].
+    /// [`Error::MemoryTooSmall`] for fewer elements.
     pub fn state<S>(&self, memory: S) -> Result<State<T, S>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         State::new(&self.plane, self.operator, self.stamp, memory)
     }
 
-    /// Every operator off, the input at the bottom of the plane. The state may have been that of
-    /// another model of the same levels and operator.
+    /// Switches every operator off. The input is then the bottom of the plane, `T_min − ΔT`.
+    ///
+    /// The state may be that of another model with the same number of levels and the same operator.
     ///
     /// # Errors
-    /// [`Error::StateMismatch`].
+    /// [`Error::StateMismatch`] for a state of another size or operator.
     pub fn reset_off<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         state.reset_off(&self.plane, self.stamp);
         Ok(())
     }
 
-    /// Every operator on (saturated), the input at `T_max`.
+    /// Switches every operator on (saturation). The input is then `T_max`.
     ///
     /// # Errors
-    /// [`Error::StateMismatch`].
+    /// As [`Model::reset_off`].
     pub fn reset_on<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.reset_off(state)?;
         self.step(state, self.plane.max())?;
         Ok(())
     }
 
-    /// Rebuilds the state that gave, in this model or one with other weights, `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]).
+    /// Rebuilds a state from its `turning_points` ([`State::turning_points`]) and its `input`
+    /// ([`State::input`]).
+    ///
+    /// They may come from this model or from one with other weights on the same plane.
     ///
     /// # Errors
-    /// [`Error::StateMismatch`], [`Error::InputNotFinite`], [`Error::TurningPoints`] where the
-    /// points are not finite, leave `[0, K]` or do not nest; the state is then as it was.
+    /// [`Error::StateMismatch`], [`Error::InputNotFinite`], and [`Error::TurningPoints`] for points
+    /// that are not finite, leave `[0, K]` or do not nest. The state then stays as it is.
     pub fn restore<S>(
         &self,
         state: &mut State<T, S>,
@@ -166,7 +177,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         input: T,
     ) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         if !input.is_finite() {
@@ -174,7 +185,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         }
         let (mut low, mut high) = (T::ZERO, T::from_index(self.plane.levels()));
         for (index, &x) in turning_points.iter().enumerate() {
-            // Comparisons written so that NaN fails them.
+            // Written so that NaN fails the comparison.
             if !(low <= x && x <= high) {
                 return Err(Error::TurningPoints { index });
             }
@@ -183,20 +194,24 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         state.reset_off(&self.plane, self.stamp);
         state.travel(self.table(), T::ZERO, input);
         for &x in turning_points {
-            // Never −0, which has no place in the order of positions.
-            state.travel(self.table(), x.larger(T::ZERO), input);
+            // No −0: positions are compared by their bits.
+            state.travel(self.table(), x.max(T::ZERO), input);
         }
         Ok(())
     }
 
-    /// Moves to `input` and returns the output: amortised `O(1)`, at most `2K` turning points passed.
+    /// Moves to `input` and returns the output.
+    ///
+    /// Amortised `O(1)`; a single step passes at most `2K` corners. Inputs beyond the plane act as
+    /// its ends.
     ///
     /// # Errors
-    /// [`Error::InputNotFinite`], [`Error::StateMismatch`]; the state is then as it was.
+    /// [`Error::InputNotFinite`] for NaN and infinity, [`Error::StateMismatch`] for a state of
+    /// another model. The state then stays as it is.
     #[inline]
     pub fn step<S>(&self, state: &mut State<T, S>, input: T) -> Result<Output<T>, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.check(state)?;
         if !input.is_finite() {
@@ -209,11 +224,13 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         })
     }
 
-    /// Steps through `input` and writes the outputs to `output`, as many as inputs.
+    /// Steps through `input` and writes as many outputs to the first elements of `output`.
+    ///
+    /// Returns how many inputs lay beyond each end of the plane.
     ///
     /// # Errors
-    /// As [`Model::step`], and [`Error::MemoryTooSmall`] where `output` is shorter than `input`;
-    /// the state is then as it was.
+    /// As [`Model::step`], and [`Error::MemoryTooSmall`] where `output` is shorter than `input`.
+    /// State and `output` then stay as they are.
     pub fn run<S>(
         &self,
         state: &mut State<T, S>,
@@ -221,7 +238,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         output: &mut [T],
     ) -> Result<ClippedCount, Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.check(state)?;
         let found = output.len();
@@ -229,7 +246,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             let needed = input.len();
             return Err(Error::MemoryTooSmall { needed, found });
         };
-        // One pass without an early exit, so that checking costs next to nothing.
+        // One pass without an early exit, so that the compiler can vectorise it.
         let mut count = ClippedCount::default();
         let mut finite = true;
         for &t in input {
@@ -241,7 +258,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
             let index = input.iter().position(|t| !t.is_finite()).unwrap_or(0);
             return Err(Error::InputNotFinite { index });
         }
-        // What the operators put out is linear in their states: one gain and offset for all.
+        // The sum of the operators' outputs is linear in `Σ μ γ`: one gain and one offset for all.
         let (gain, offset) = self.outward_line();
         state.run(&self.plane, self.table(), input, output, |y| {
             gain * y + offset
@@ -253,31 +270,33 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[must_use]
     pub fn output<S>(&self, state: &State<T, S>) -> T
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
-        self.outward(state.place().y)
+        self.outward(state.branch_position().y)
     }
 
-    /// The Everett table, from [`crate::table_index`]`(0, 0)` on: [`crate::table_len`] elements or more.
+    /// The Everett table, ordered by [`crate::table_index`].
+    ///
+    /// It has at least [`crate::table_len`] elements; elements beyond these have no meaning.
     #[must_use]
     pub fn table(&self) -> &[T] {
         &self.table.as_ref()[self.base..]
     }
 
-    /// `Σ μ_ij`.
+    /// `Σ μ_ij`, the sum of all weights.
     #[must_use]
     pub fn total(&self) -> T {
         self.table()[everett::table_index(self.plane.levels(), 0)]
     }
 
-    /// From `Σ μ γ` to the sum of the operators' own outputs.
+    /// The output `H` from `sum`, which is `Σ μ γ`.
     #[inline(always)]
     pub(crate) fn outward(&self, sum: T) -> T {
         let (gain, offset) = self.outward_line();
         gain * sum + offset
     }
 
-    /// Gain and offset of that: `γ` itself, or `2γ − 1` for each operator.
+    /// Gain and offset from `Σ μ γ` to `H`. The output of an operator is `γ` or `2γ − 1`.
     #[inline(always)]
     fn outward_line(&self) -> (T, T) {
         match self.operator {
@@ -289,7 +308,7 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     #[inline(always)]
     pub(crate) fn check<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         if state.stamp() == self.stamp {
             self.fits(state)
@@ -298,11 +317,11 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         }
     }
 
-    /// Whether a state's memory is of the right size and kind.
+    /// Checks that a state has the model's number of levels and operator.
     #[inline(always)]
     pub(crate) fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         if state.levels() == self.plane.levels() && state.operator() == self.operator {
             Ok(())
@@ -312,8 +331,8 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
     }
 }
 
-/// FNV-1a over whole numbers instead of bytes: quick, and different for different weights but by a
-/// chance of one in 2⁶⁴.
+/// A hash of the model: FNV-1a over whole numbers in place of bytes, which is faster. Different
+/// models have the same stamp with a probability of about 2⁻⁶⁴.
 fn stamp<'a, T: Real + 'a>(operator: Operator, numbers: impl Iterator<Item = &'a T>) -> u64 {
     let start = 0xcbf2_9ce4_8422_2325 ^ operator as u64;
     numbers.fold(start, |hash, number| {

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::scalar::Real;
 
-/// Most levels a plane may have: its operators are then counted within 31 bits.
+/// The largest number of levels of a plane. The number of operators then fits 31 bits.
 pub const MAX_LEVELS: usize = 46_340;
 
 /// Number of operators on a plane of `levels` levels, `N = K(K + 1)/2`.
@@ -12,19 +12,36 @@ pub const fn operator_count(levels: usize) -> usize {
     levels * (levels + 1) / 2
 }
 
-/// Place of operator `(i, j)`, `1 ≤ i ≤ j`, among the weights: row by row, `j = 1…K`, within a row `i = 1…j`.
-/// Level 0, which has no operators, counts as 1.
+/// Index of operator `(i, j)`, `1 ≤ i ≤ j`, among the weights, from 0: row by row, `j = 1…K`, and
+/// within a row `i = 1…j`.
+///
+/// An `i` or `j` of 0 gives the same index as 1.
 #[must_use]
 pub const fn operator_index(i: usize, j: usize) -> usize {
     j * j.saturating_sub(1) / 2 + i.saturating_sub(1)
 }
 
+/// All operators `(i, j)` of a plane of `levels` levels, in the order of the weights: `j = 1…K`,
+/// and within each row `i = 1…j`.
+///
+/// There are [`operator_count`]`(levels)` of them; the one at position `n` has
+/// [`operator_index`]`(i, j) = n`.
+///
+/// ```
+/// use hysteron_core::operators;
+/// let all: Vec<_> = operators(3).collect();
+/// assert_eq!(all, [(1, 1), (1, 2), (2, 2), (1, 3), (2, 3), (3, 3)]);
+/// ```
+pub fn operators(levels: usize) -> impl Iterator<Item = (usize, usize)> {
+    (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)))
+}
+
 /// Which end of the plane an input was clipped to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clipped {
-    /// Below `T_min − ΔT`: taken as that, where every operator is off.
+    /// The input lay below `T_min − ΔT`. It acts as that value: every operator is off.
     Low,
-    /// Above `T_max`: taken as that, where every operator is on.
+    /// The input lay above `T_max`. It acts as that value: every operator is on.
     High,
 }
 
@@ -61,8 +78,8 @@ impl<T: Real> Plane<T> {
         let steps = T::from_index(levels - 1);
         let step = (max - min) / steps;
         let mut per_unit = steps / (max - min);
-        // Rounded up, so that T_max never falls short of K. The range is too wide for that where
-        // adding a rounding unit no longer adds anything.
+        // Rounded up, so that T_max normalises to K and no less. In a very wide range the addition
+        // has no effect; `reaches` refuses that range.
         for _ in 0..2 {
             if (max - min) * per_unit < steps {
                 per_unit = per_unit + per_unit * T::EPSILON;
@@ -70,8 +87,8 @@ impl<T: Real> Plane<T> {
         }
         let reaches = (max - min) * per_unit >= steps;
         let bottom = min - step;
-        // Some rounding units from each other, so that no two levels coincide.
-        let largest = max.larger(-max).larger(min.larger(-min));
+        // Levels are several rounding units apart, so that no two coincide.
+        let largest = max.max(-max).max(min.max(-min));
         let distinct = step > largest * T::EPSILON * T::from_index(4);
         if !(step.is_finite() && per_unit.is_finite() && bottom.is_finite() && distinct && reaches)
         {
@@ -123,7 +140,7 @@ impl<T: Real> Plane<T> {
         operator_count(self.levels)
     }
 
-    /// `T_min − ΔT`, where the lowest ridge starts: the active input range is `[bottom, max]`.
+    /// `T_min − ΔT`, where the lowest ridge begins. The active input range is `[bottom, max]`.
     #[must_use]
     pub fn bottom(&self) -> T {
         self.bottom
@@ -140,10 +157,10 @@ impl<T: Real> Plane<T> {
     #[inline(always)]
     pub fn normalise(&self, input: T) -> T {
         let x = (input - self.min) * self.per_unit + T::ONE;
-        x.limited(T::ZERO, T::from_index(self.levels))
+        x.clamp(T::ZERO, T::from_index(self.levels))
     }
 
-    /// Whether `input` lies outside the active range, and on which side.
+    /// The end of the active range that `input` lies beyond; `None` within the range.
     #[must_use]
     pub fn clipped(&self, input: T) -> Option<Clipped> {
         if input > self.max {
@@ -165,20 +182,21 @@ impl<T: Real> Plane<T> {
         }
     }
 
-    /// A move just large enough to be one: a relay that stands on its level switches on the next move only.
+    /// The smallest change of the input that a relay model surely sees, in the input's unit.
+    ///
+    /// A relay switches only where the input moves. A relay whose level is the present input needs
+    /// such a change to switch.
     #[must_use]
     pub fn nudge(&self) -> T {
-        let size = self
-            .max
-            .larger(-self.max)
-            .larger(self.bottom.larger(-self.bottom));
+        let size = self.max.max(-self.max).max(self.bottom.max(-self.bottom));
         size * (T::EPSILON + T::EPSILON)
     }
 
-    /// The highest level at or below `input`, 0 if there is none: relays up to it switch on when rising.
+    /// The highest level at or below `input`, 0 for none. On a rising input, relays up to this
+    /// level switch on.
     pub(crate) fn level_at_or_below(&self, input: T) -> usize {
         let near = self.normalise(input).floor_index();
-        // The levels themselves decide, not the rounding of the normalised position.
+        // The levels decide, because the normalised position is rounded.
         if near < self.levels && self.level(near + 1) <= input {
             near + 1
         } else if near > 0 && self.level(near) > input {
@@ -188,7 +206,8 @@ impl<T: Real> Plane<T> {
         }
     }
 
-    /// The lowest level at or above `input`, `K + 1` if there is none: relays from it on switch off when falling.
+    /// The lowest level at or above `input`, `K + 1` for none. On a falling input, relays from this
+    /// level on switch off.
     pub(crate) fn level_at_or_above(&self, input: T) -> usize {
         let below = self.level_at_or_below(input);
         if below > 0 && self.level(below) >= input {

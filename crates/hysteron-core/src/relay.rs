@@ -1,10 +1,13 @@
-//! Relays move in jumps: their normalised positions are the whole numbers of the levels passed.
+//! Positions of relay models. Relays switch at levels only, so their normalised positions are whole
+//! numbers.
 
 use crate::plane::Plane;
 use crate::scalar::Real;
 
-/// The position after `input`, from the last input and the position there. Rising, it is the last level
-/// reached; falling, the level below the last one left. There the Everett function is the table itself.
+/// The position after `input`, from the `last` input and the position `x` there.
+///
+/// For a rising input it is the last level reached. For a falling input it is the level below the
+/// last one left. At such positions the Everett function equals a table entry.
 pub(crate) fn position<T: Real>(plane: &Plane<T>, (last, x): (T, T), input: T) -> T {
     if input > last {
         T::from_index(plane.level_at_or_below(input))
@@ -15,24 +18,27 @@ pub(crate) fn position<T: Real>(plane: &Plane<T>, (last, x): (T, T), input: T) -
     }
 }
 
-/// The input that takes a relay up to position `level`; the last input, where it is there or above.
+/// The input that takes a relay model up to position `level`. It is the last input where the
+/// position is there already or above.
 ///
-/// A relay switches on only where the input rises, so the input moves even if the level is the last input.
+/// A relay switches on only where the input rises. So the input moves even if it is the level
+/// already.
 pub(crate) fn up_to<T: Real>(plane: &Plane<T>, (last, x): (T, T), level: usize) -> T {
     if x >= T::from_index(level) {
         last
     } else {
-        plane.level(level).larger(last + plane.nudge())
+        plane.level(level).max(last + plane.nudge())
     }
 }
 
-/// The input that takes a relay down to position `level`; the last input, where it is there or below.
+/// The input that takes a relay model down to position `level`. It is the last input where the
+/// position is there already or below.
 ///
-/// Position `level` is reached by switching off at the level above it.
+/// The relays of the level above `level` have to switch off for it.
 pub(crate) fn down_to<T: Real>(plane: &Plane<T>, (last, x): (T, T), level: usize) -> T {
     if x <= T::from_index(level) {
         last
     } else {
-        plane.level(level + 1).smaller(last - plane.nudge())
+        plane.level(level + 1).min(last - plane.nudge())
     }
 }

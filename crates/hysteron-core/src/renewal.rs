@@ -3,17 +3,18 @@
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::plane::operator_index;
 use crate::scalar::Real;
 use crate::state::State;
 
-impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
-    /// Puts other weights in the place of the present ones. `O(K²)`. States of the model have to be
-    /// [rebased](Model::rebase) after it.
+impl<T: Real, C: Memory<T>> Model<T, C> {
+    /// Replaces the weights. `O(K²)`. States of the model have to be [rebased](Model::rebase)
+    /// afterwards.
     ///
     /// # Errors
-    /// [`Error::WeightCount`], [`Error::WeightNotFinite`]; the model is then as it was.
+    /// As [`Model::new`] for the weights. The model then stays as it is.
     ///
     /// ```
     /// use hysteron_core::{Model, Operator, Plane, Turn, table_len, turn_capacity};
@@ -35,8 +36,10 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
         Ok(())
     }
 
-    /// Writes the whole table anew: `row(p, above, row)` gives row `p` from the one above it. The weights that this
-    /// makes must not be negative; where they may overflow, [`Model::is_finite`] tells.
+    /// Writes the whole table: `row(p, above, row)` computes row `p` from the row above it.
+    ///
+    /// The weights of the new table must not be negative. They may overflow; [`Model::is_finite`]
+    /// tells whether they did.
     pub(crate) fn rewrite(&mut self, mut row: impl FnMut(usize, &[T], &mut [T])) {
         let levels = self.plane().levels();
         let table = &mut self.table.as_mut()[self.base..];
@@ -49,13 +52,16 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
         self.changed();
     }
 
-    /// Writes one row of a second table and, after the last, changes over to it; says whether it did. `O(K)`.
+    /// Writes the next row of the second table. After the last row the model uses that table.
+    /// Returns whether it changed over. `O(K)`.
     ///
-    /// Until then the model keeps the table it has, so that at each instant it is the model of weights that are
-    /// finite and not negative. As each table is summed from the weights, no rounding piles up.
+    /// Until then the model keeps its table. So at each instant it is the model of weights that are
+    /// finite and not negative. Each table is summed from the weights, so rounding errors do not
+    /// add up from table to table.
     ///
     /// # Errors
-    /// [`Error::WeightNotFinite`] where the weights so far overflow: the pass begins again.
+    /// [`Error::WeightNotFinite`] where the weights of the rows so far overflow. The next call
+    /// starts with the first row again.
     pub(crate) fn renew_row(
         &mut self,
         mut row: impl FnMut(usize, &[T], &mut [T]),
@@ -94,27 +100,31 @@ impl<T: Real, C: AsRef<[T]> + AsMut<[T]>> Model<T, C> {
     }
 
     fn changed(&mut self) {
-        // Any odd number runs through all of them; this one spreads them (Knuth 1997, section 6.4).
+        // With an odd increment, 2⁶⁴ changes pass before a stamp comes again. This increment
+        // spreads the stamps (Knuth 1997, section 6.4).
         self.stamp = self.stamp.wrapping_add(0x9e37_79b9_7f4a_7c15);
     }
 }
 
 impl<T: Real, C: AsRef<[T]>> Model<T, C> {
-    /// Gives `state`, of this model before its weights changed or of one with other weights, the outputs of these weights. The
-    /// operators stay as they are. `O(K)`.
+    /// Recomputes the outputs in `state` with the weights of this model. The operators stay as they
+    /// are. `O(K)`.
+    ///
+    /// The state may be of this model before its weights changed, or of a model with other weights
+    /// on the same plane.
     ///
     /// # Errors
-    /// [`Error::StateMismatch`].
+    /// [`Error::StateMismatch`] for a state of another size or operator.
     pub fn rebase<S>(&self, state: &mut State<T, S>) -> Result<(), Error>
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         self.fits(state)?;
         state.rebase(self.table(), self.stamp);
         Ok(())
     }
 
-    /// Whether no output can overflow, with weights that are not negative.
+    /// Whether no output can overflow. For models without negative weights.
     pub(crate) fn is_finite(&self) -> bool {
         (self.total() + self.total()).is_finite()
     }

@@ -1,4 +1,4 @@
-//! The two number types the core runs on.
+//! The two number types of the core.
 
 use core::fmt::{Debug, Display};
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -11,8 +11,12 @@ mod sealed {
 
 /// A floating-point number: `f32` or `f64`, nothing else (the trait is sealed).
 ///
-/// It holds only what the operators need, so that the core depends on no numeric crate and on no
-/// function of `std`.
+/// It has only what the core needs. So the core depends on no numeric crate and on no function of
+/// `std`.
+///
+/// [`Real::max`], [`Real::min`] and [`Real::clamp`] are for generic code. On a value whose type is
+/// known to be `f32` or `f64`, the inherent methods of the same name are called instead. The two
+/// differ for NaN, and the inherent `clamp` panics for limits in the wrong order.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -32,41 +36,45 @@ pub trait Real:
     const ONE: Self;
     /// One half.
     const HALF: Self;
-    /// Larger than every number.
+    /// Positive infinity.
     const INFINITY: Self;
-    /// Distance from one to the next larger number.
+    /// Distance from one to the next larger number: 2⁻²³ for `f32`, 2⁻⁵² for `f64`.
     const EPSILON: Self;
 
-    /// The nearest number to a count.
+    /// The number nearest to `n`, for `n < 2³¹`.
     fn from_index(n: usize) -> Self;
-    /// `⌊self⌋` of a number in `0 ≤ self < 2³¹`; 0 below that range, 2³¹ − 1 above.
+    /// `⌊self⌋` for `0 ≤ self < 2³¹`. Below that range and for NaN it is 0, above it is 2³¹ − 1.
     fn floor_index(self) -> usize;
-    /// The nearest whole number to `self` in `−½ ≤ self < 2²²`, ties to even, as a number and as an index.
+    /// The whole number nearest to `self`, as a number and as an index, for `−½ ≤ self < 2²²`. Ties
+    /// go to the even one.
     fn nearest_index(self) -> (Self, usize);
-    /// Whether `self < other`, both at least 0 and neither −0. The bits of such numbers are in the
-    /// same order, and comparing those shortens the wait of a branch that was predicted wrongly.
+    /// Whether `self < other`, for numbers that are 0 or above and not −0.
+    ///
+    /// The bits of such numbers, read as integers, have the same order as the numbers. Comparing
+    /// integers is faster: a mispredicted branch is resolved sooner.
     fn precedes(self, other: Self) -> bool;
-    /// The bits of the number.
+    /// The bits of the number, as `to_bits` gives them.
     fn bits(self) -> u64;
-    /// Neither NaN nor infinite.
+    /// Whether the number is neither NaN nor infinite.
     fn is_finite(self) -> bool;
 
-    /// The larger of two numbers, neither of them NaN.
+    /// The larger of two numbers. `other` where they are equal or one of them is NaN.
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
-    /// The smaller of two numbers, neither of them NaN.
+    /// The smaller of two numbers. `other` where they are equal or one of them is NaN.
     #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
+    fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
-    /// `self` limited to `[low, high]`.
+    /// `self` limited to `[low, high]`. Does not panic: NaN gives `low`, and so `high` wins where
+    /// `low` lies above it.
     #[inline(always)]
-    fn limited(self, low: Self, high: Self) -> Self {
-        self.larger(low).smaller(high)
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
     }
 }
 
@@ -92,8 +100,8 @@ macro_rules! real {
 
             #[inline(always)]
             fn nearest_index(self) -> (Self, usize) {
-                // Added to 1.5 · 2^(mantissa bits), the fraction is rounded off and the whole number
-                // stands in the low bits: no conversion instruction, no range check.
+                // The sum with 1.5 · 2^(mantissa bits) has no fraction bits: the addition rounds,
+                // and the low bits are the whole number. No conversion instruction, no range check.
                 const ROUND: $t = $round;
                 const LOW_BITS: u32 = (1 << 22) - 1;
                 let shifted = self + ROUND;

@@ -1,45 +1,54 @@
-//! What a model remembers of its input: the dominant turning points, in memory that the caller provides.
+//! The state of a model: the dominant turning points of its input, in memory of the caller.
 
-use crate::branch::{Place, START, Turn};
+use crate::branch::{Position, START, Turn};
 use crate::error::Error;
 use crate::everett::{Grid, Split, Triangle};
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::plane::Plane;
 use crate::relay;
 use crate::scalar::Real;
 
-/// Memory that a state needs, `4K + 8` turning points: the `2K` corners `(M, m)` that a staircase
-/// can have, two for each grid cell it can cross; the peak of the branch being travelled and the
-/// free place after it; and six that every history starts from.
+/// Number of turning points that a state needs memory for: `4K + 8` for `K` levels.
+///
+/// - `4K` for the `2K` corners `(M, m)` that a staircase can have: two for each of the `K` grid
+///   cells it crosses.
+/// - 2 for the peak of the present branch and the next turning point.
+/// - 6 that every history starts with.
 #[must_use]
 pub const fn turn_capacity(levels: usize) -> usize {
     4 * levels + 8
 }
 
-/// Positions that a run works out before it travels them. None depends on another, so one instruction
-/// does several; and where noise turns the input, which cannot be predicted, the turn shows at once.
+/// How many positions a run computes before it moves through them.
+///
+/// The positions do not depend on each other, so the compiler can compute several with one
+/// instruction. And a turn of a noisy input, which the processor cannot predict, is resolved
+/// sooner.
 const AHEAD: usize = 64;
 
-/// The state of a model: turning points `M_1 > M_2 > …`, `m_1 < m_2 < …` and the branch being travelled.
+/// The state of a model: the turning points `M_1 > M_2 > …`, `m_1 < m_2 < …` and the present
+/// branch.
 ///
-/// `S` is the memory: `&mut [Turn<T>]`, an array or a vector with at least [`turn_capacity`] elements.
+/// `S` is the memory: `&mut [Turn<T>]`, an array or a vector with at least [`turn_capacity`]
+/// elements.
 ///
-/// Turning points nested inside one grid cell can be arbitrarily many, but they act on the rest
-/// only through that cell's `γ`. The outermost are kept as they are; all others are replaced,
-/// exactly, by the one maximum that leaves the same `γ`, and the last minimum.
+/// The number of turning points inside one grid cell has no bound. But they affect the output only
+/// through that cell's `γ`. So the state keeps the outermost corner of the cell and replaces all
+/// others, exactly, by one: the maximum that gives the same `γ`, and the last minimum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State<T, S> {
     turns: S,
     levels: usize,
     operator: Operator,
-    /// Of the model whose outputs the turning points hold.
+    /// Stamp of the model whose outputs the turning points have.
     stamp: u64,
     /// Last input, in its own unit, before clipping.
     input: T,
-    place: Place<T>,
+    position: Position<T>,
 }
 
-impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
+impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
     pub(crate) fn new(
         plane: &Plane<T>,
         operator: Operator,
@@ -66,54 +75,58 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
             operator,
             stamp,
             input: plane.bottom(),
-            place: Place::start(plane.levels()),
+            position: Position::start(plane.levels()),
         })
     }
 
-    /// The last input, in its own unit, as it was given.
+    /// The last input, in its unit, as it was given. The bottom of the plane before the first one.
     #[must_use]
     pub fn input(&self) -> T {
         self.input
     }
 
-    /// The last input as a normalised position in `[0, K]`; for relays the whole number of the level last passed.
+    /// The last input as a normalised position in `[0, K]`. For relays it is the index of the level
+    /// last passed, a whole number.
     #[must_use]
     pub fn position(&self) -> T {
-        self.place.x
+        self.position.x
     }
 
-    /// Whether the branch being travelled is a rising one.
+    /// Whether the present branch is a rising one.
     #[must_use]
     pub fn is_rising(&self) -> bool {
-        self.place.is_rising()
+        self.position.is_rising()
     }
 
-    /// How many corners `(M, m)` are held now, at most `2K`.
+    /// The number of corners `(M, m)` in the state, at most `2K`.
     #[must_use]
     pub fn corners(&self) -> usize {
-        (self.place.top - START) / 2
+        (self.position.top - START) / 2
     }
 
-    /// The turning points `M_1, m_1, M_2, m_2, …` as normalised positions, the present position last.
+    /// The turning points `M_1, m_1, M_2, m_2, …` as normalised positions, the present position
+    /// last.
     ///
-    /// With [`State::input`] they are the whole state: [`crate::Model::restore`] rebuilds it from them, bit for bit.
+    /// Together with [`State::input`] they are the whole state: [`crate::Model::restore`] rebuilds
+    /// it from them, bit for bit.
     pub fn turning_points(&self) -> impl Iterator<Item = T> + '_ {
         let turns = &self.turns()[2..];
-        turns.iter().map(|turn| turn.x).chain([self.place.x])
+        turns.iter().map(|turn| turn.x).chain([self.position.x])
     }
 
-    /// How many turning points lie before the branch being travelled. While it stays the same from one
-    /// sample to the next, so does what [`State::memory_terms`] gives.
+    /// The number of turning points before the present branch.
+    ///
+    /// While it stays the same from one sample to the next, [`State::memory_terms`] stays the same.
     #[must_use]
     pub fn held(&self) -> usize {
-        self.place.top - START
+        self.position.top - START
     }
 
-    /// The terms of `H` over the Everett table: calls `term(index, factor)` so that
-    /// `Σ factor · C[index]` is the output `Σ μ γ`. An index may come more than once.
+    /// The output as a linear combination of entries of the Everett table.
     ///
-    /// This is a row of the sparse matrix that identification works with. It is
-    /// [`State::memory_terms`] and [`State::branch_terms`] together.
+    /// Calls `term(index, factor)` so that `Σ factor · C[index] = Σ μ γ`. An index may come more
+    /// than once. The terms are those of [`State::memory_terms`] and of [`State::branch_terms`].
+    /// They are a row of the sparse matrix of identification.
     pub fn everett_terms(&self, mut term: impl FnMut(usize, T)) {
         self.memory_terms(&mut term);
         for (index, factor) in self.branch_terms() {
@@ -121,7 +134,8 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         }
     }
 
-    /// The terms of the turning points before the branch being travelled: the same all along it.
+    /// The terms of the turning points before the present branch, as in [`State::everett_terms`].
+    /// They do not change along the branch.
     pub fn memory_terms(&self, mut term: impl FnMut(usize, T)) {
         let mut last = T::ZERO;
         for turn in &self.turns()[2..] {
@@ -132,14 +146,14 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         }
     }
 
-    /// The terms of the branch being travelled.
+    /// The terms of the present branch, as in [`State::everett_terms`].
     #[must_use]
     #[inline]
     pub fn branch_terms(&self) -> [(usize, T); 3] {
-        self.terms_between(self.turns.as_ref()[self.place.top].x, self.place.x)
+        self.terms_between(self.turns.as_ref()[self.position.top].x, self.position.x)
     }
 
-    /// Up to a maximum adds its triangle, down to a minimum takes one away.
+    /// The terms of a way between two extremes: positive on the way up, negative on the way down.
     #[inline]
     fn terms_between(&self, from: T, to: T) -> [(usize, T); 3] {
         let (sign, max, min) = if to > from {
@@ -164,55 +178,58 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
         self.operator
     }
 
-    pub(crate) fn place(&self) -> Place<T> {
-        self.place
+    pub(crate) fn branch_position(&self) -> Position<T> {
+        self.position
     }
 
-    /// All turning points from the start on, and the endless height before it: maxima at even places.
+    /// All turning points from the start on, after the sentinel before it. Maxima have even
+    /// indices.
     pub(crate) fn turns(&self) -> &[Turn<T>] {
-        &self.turns.as_ref()[START - 1..=self.place.top]
+        &self.turns.as_ref()[START - 1..=self.position.top]
     }
 
     pub(crate) fn stamp(&self) -> u64 {
         self.stamp
     }
 
-    /// All operators off, at the bottom of the plane of the model of this stamp.
+    /// Switches all operators off, for the model of this plane and stamp.
     pub(crate) fn reset_off(&mut self, plane: &Plane<T>, stamp: u64) {
         self.stamp = stamp;
         self.input = plane.bottom();
-        self.place = Place::start(plane.levels());
+        self.position = Position::start(plane.levels());
     }
 
-    /// The outputs of another table at every turning point, and at the present position.
+    /// Computes the outputs of another table at every turning point and at the present position.
     pub(crate) fn rebase(&mut self, table: &[T], stamp: u64) {
         self.stamp = stamp;
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        self.place.rebase(turns, Grid { table, levels });
+        self.position.rebase(turns, Grid { table, levels });
     }
 
-    /// Moves to a normalised position, as restored: `input` is what it stands for.
+    /// Moves to the normalised position `x`, which stands for `input`.
     #[inline(always)]
     pub(crate) fn travel(&mut self, table: &[T], x: T, input: T) {
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        self.place.travel(turns, Grid { table, levels }, &mut [x]);
+        self.position
+            .travel(turns, Grid { table, levels }, &mut [x]);
         self.input = input;
     }
 
-    /// Moves to `input`, known to be finite, and gives `Σ μ γ` there.
+    /// Moves to `input`, which has to be finite, and returns `Σ μ γ` there.
     #[inline(always)]
     pub(crate) fn step(&mut self, plane: &Plane<T>, table: &[T], input: T) -> T {
         let x = match self.operator {
             Operator::Mkp | Operator::Kp => plane.normalise(input),
-            Operator::Relay => relay::position(plane, (self.input, self.place.x), input),
+            Operator::Relay => relay::position(plane, (self.input, self.position.x), input),
         };
         self.travel(table, x, input);
-        self.place.y
+        self.position.y
     }
 
-    /// Moves to each of `inputs`, all known to be finite, and writes `outward(Σ μ γ)` to `outputs`, as many.
+    /// Moves to each of `inputs`, which have to be finite, and writes `outward(Σ μ γ)` to
+    /// `outputs`. Both slices have the same length.
     #[inline(always)]
     pub(crate) fn run(
         &mut self,
@@ -228,7 +245,7 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
                 self.run_by(table, inputs, outputs, position, outward);
             }
             Operator::Relay => {
-                let mut last = (self.input, self.place.x);
+                let mut last = (self.input, self.position.x);
                 let position = |input| {
                     last = (input, relay::position(plane, last, input));
                     last.1
@@ -252,16 +269,16 @@ impl<T: Real, S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>> State<T, S> {
     ) {
         let levels = self.levels;
         let turns = self.turns.as_mut();
-        let mut place = self.place;
+        let mut here = self.position;
         for (inputs, outputs) in inputs.chunks(AHEAD).zip(outputs.chunks_mut(AHEAD)) {
             for (x, &input) in outputs.iter_mut().zip(inputs) {
                 *x = position(input);
             }
-            place.travel(turns, Grid { table, levels }, outputs);
+            here.travel(turns, Grid { table, levels }, outputs);
             for y in outputs {
                 *y = outward(*y);
             }
         }
-        self.place = place;
+        self.position = here;
     }
 }

@@ -44,7 +44,8 @@ fn the_fast_paths_stay_exact_while_weights_change() {
         let mut learner = Learner::new(plane, operator, &offline, options(method));
         let mut states = vec![0.0; plane.operators()];
         let mut definition = Definition::new(plane, operator, &plant, &mut states).unwrap();
-        // For the method on increments: the weights that each row of the table in the making was given.
+        // For the method on increments: the weights that each row of the table in the making was
+        // given.
         let mut making = offline.clone();
         let mut acting = offline.clone();
         let (mut row, mut due) = (1, 0);

@@ -58,7 +58,8 @@ fn a_thousand_random_models_and_sequences() {
         let inputs = inputs(&mut rng, &plane, count);
         let operator = OPERATORS[rng.random_range(0..3)];
         let worst = worst(plane, operator, &weights, &inputs);
-        // Rounding of sums of up to 20 100 terms stays below 1e-13; an error of the method does not.
+        // Rounding of sums of up to 20 100 terms stays below 1e-13; an error of the method does
+        // not.
         assert!(
             worst <= 1e-12,
             "seed {seed}, K = {k}, {operator:?}: {worst:e}"

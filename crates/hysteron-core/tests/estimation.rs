@@ -1,4 +1,5 @@
-//! What the estimators find: known plants, known solutions; and what brings them back from wrong readings.
+//! What the estimators find: known plants, known solutions; and what brings them back from wrong
+//! readings.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -8,7 +9,8 @@ use common::{
     weights,
 };
 use hysteron_core::{
-    Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_parts, operator_count,
+    Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_basis, operator_count,
+    operators,
 };
 use rand::{Rng, RngExt};
 
@@ -57,7 +59,7 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
         };
         let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &offline, guards);
         // (Σ φφᵀ/r + P₀⁻¹) (θ − θ₀) = Σ φ (y − φᵀθ₀)/r
-        let places: Vec<_> = (1..=K).flat_map(|j| (1..=j).map(move |i| (i, j))).collect();
+        let places: Vec<_> = operators(K).collect();
         let start = |a: usize, b: usize| match (places.get(a), places.get(b)) {
             _ if a == b => spread * spread,
             (Some(&(i, j)), Some(&(k, l))) if correlation > 0.0 => {
@@ -103,7 +105,8 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
     }
 }
 
-/// Root mean square error, in shares of the output's range, of a learner against a plant while it learns from it.
+/// Root mean square error, in shares of the output's range, of a learner against a plant while it
+/// learns from it.
 fn error(
     learner: &mut Learner,
     plant: &mut common::Owned<f64>,
@@ -176,8 +179,8 @@ fn least_squares_finds_the_weights_themselves() {
     assert!(learner.estimator.offset().abs() < 1e-3);
 }
 
-/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero must not come back as an error of
-/// the estimate, which grew without bound where it did.
+/// Weights at their limit, a plant on another plane and no forgetting: what is cut off below zero
+/// must not come back as an error of the estimate, which grew without bound where it did.
 #[test]
 fn weights_held_at_zero_do_not_pile_up() {
     for forgetting in [0.9999, 1.0] {
@@ -188,8 +191,8 @@ fn weights_held_at_zero_do_not_pile_up() {
             (-200.0 * (at(j).powi(2) + (at(i) + 0.2).powi(2))).exp()
         };
         let weights = |levels: usize, middle: f64| -> Vec<f64> {
-            let rows = (1..=levels).flat_map(|j| (1..=j).map(move |i| (j, i)));
-            let mut weights: Vec<f64> = rows.map(|(j, i)| ridge(levels, middle, j, i)).collect();
+            let ridges = operators(levels).map(|(i, j)| ridge(levels, middle, j, i));
+            let mut weights: Vec<f64> = ridges.collect();
             let total: f64 = weights.iter().sum();
             weights.iter_mut().for_each(|weight| *weight /= total);
             weights
@@ -218,7 +221,7 @@ fn weights_held_at_zero_do_not_pile_up() {
 }
 
 #[test]
-fn shares_of_parts_are_found() {
+fn coefficients_of_a_basis_are_found() {
     const K: usize = 20;
     let n = operator_count(K);
     let least_squares = Method::LeastSquares {
@@ -233,14 +236,14 @@ fn shares_of_parts_are_found() {
     ] {
         for operator in common::OPERATORS {
             let mut rng = rng(14);
-            let parts: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
-            let scale = parts.chunks(n).map(|part| part.iter().sum::<f64>());
-            // Each of a total of 1, as the shares of loads are.
+            let basis: Vec<f64> = (0..3).flat_map(|_| weights(&mut rng, K)).collect();
+            let scale = basis.chunks(n).map(|member| member.iter().sum::<f64>());
+            // Each member has the total 1, as the members for loads have.
             let totals: Vec<f64> = scale.collect();
-            let parts: Vec<f64> = (0..3 * n).map(|k| parts[k] / totals[k / n]).collect();
+            let basis: Vec<f64> = (0..3 * n).map(|k| basis[k] / totals[k / n]).collect();
             let known = [0.5, 2.0, 0.0];
             let plant: Vec<f64> = (0..n)
-                .map(|k| (0..3).map(|part| known[part] * parts[part * n + k]).sum())
+                .map(|k| (0..3).map(|m| known[m] * basis[m * n + k]).sum())
                 .collect();
             let (plant, mut there) = build(unit_plane(K), operator, &plant);
             let start = [1.0, 1.0, 1.0];
@@ -249,9 +252,9 @@ fn shares_of_parts_are_found() {
                 ..options(method)
             };
             let (mut model, mut state) = build(unit_plane(K), operator, &vec![1.0; n]);
-            let memory = vec![0.0; estimator_len_of_parts(K, method, 3)];
+            let memory = vec![0.0; estimator_len_of_basis(K, method, 3)];
             let mut estimator =
-                Estimator::of_parts(guards, &mut model, &parts, &start, 0.0, memory).unwrap();
+                Estimator::of_basis(guards, &mut model, &basis, &start, 0.0, memory).unwrap();
             for input in strokes(&mut rng, &unit_plane(K), 200_000, 40) {
                 let measured = plant.step(&mut there, input).unwrap().output;
                 estimator
@@ -268,7 +271,8 @@ fn shares_of_parts_are_found() {
     }
 }
 
-/// What a burst of wrong readings does to a learner: its error before and after, and how often it was rolled back.
+/// What a burst of wrong readings does to a learner: its error before and after, and how often it
+/// was rolled back.
 fn burst(method: Method<f64>, trial: u32) -> (f64, f64, u32) {
     const K: usize = 20;
     let mut rng = rng(15);

@@ -9,7 +9,7 @@ use common::{
 };
 use hysteron_core::{
     Adaptation, Error, Estimator, Method, Model, Operator, Plane, Real, State, Turn, estimator_len,
-    estimator_len_of_parts, operator_count, table_len, turn_capacity,
+    estimator_len_of_basis, operator_count, table_len, turn_capacity,
 };
 use rand::RngExt;
 
@@ -156,28 +156,28 @@ fn weights_memory_and_offset() {
 
 #[test]
 fn parts_and_shares() {
-    let new = |method, parts: &[f64], shares: &[f64]| {
+    let new = |method, basis: &[f64], coefficients: &[f64]| {
         let (mut model, _) = build(unit_plane(K), Operator::Mkp, &[1.0; N]);
-        let memory = vec![0.0; estimator_len_of_parts(K, method, shares.len())];
+        let memory = vec![0.0; estimator_len_of_basis(K, method, coefficients.len())];
         let options = options(method);
-        Estimator::of_parts(options, &mut model, parts, shares, 0.0, memory).map(|_| ())
+        Estimator::of_basis(options, &mut model, basis, coefficients, 0.0, memory).map(|_| ())
     };
-    let parts = [1.0; 2 * N];
-    assert_eq!(new(GRADIENT, &parts, &[1.0, 0.0]), Ok(()));
+    let basis = [1.0; 2 * N];
+    assert_eq!(new(GRADIENT, &basis, &[1.0, 0.0]), Ok(()));
     let bad = |option| Err(Error::Adaptation { option });
-    for shares in [
+    for coefficients in [
         [-1.0, 1.0],
         [f64::NAN, 1.0],
         [1.0, f64::INFINITY],
         [1e308, 1e308],
     ] {
-        assert_eq!(new(GRADIENT, &parts, &shares), bad("shares"));
+        assert_eq!(new(GRADIENT, &basis, &coefficients), bad("coefficients"));
     }
-    assert_eq!(new(GRADIENT, &[], &[]), bad("shares"));
-    assert_eq!(new(INCREMENTS, &parts, &[1.0, 1.0]), bad("method"));
-    assert_eq!(new(LEAST_SQUARES, &parts, &[1.0, 1.0]), bad("correlation"));
+    assert_eq!(new(GRADIENT, &[], &[]), bad("coefficients"));
+    assert_eq!(new(INCREMENTS, &basis, &[1.0, 1.0]), bad("method"));
+    assert_eq!(new(LEAST_SQUARES, &basis, &[1.0, 1.0]), bad("correlation"));
     assert!(matches!(
-        new(GRADIENT, &parts, &[1.0]),
+        new(GRADIENT, &basis, &[1.0]),
         Err(Error::WeightCount { .. })
     ));
     let negative = [-1.0; 2 * N];
@@ -212,7 +212,8 @@ fn readings_that_are_no_numbers_change_nothing() {
     }
 }
 
-/// Largest error by the end, in ranges, of least squares at ten levels in either precision, and the weights.
+/// Largest error by the end, in ranges, of least squares at ten levels in either precision, and the
+/// weights.
 fn in_precision<T: Real>(number: impl Fn(f64) -> T, back: impl Fn(T) -> f64) -> (f64, Vec<f64>) {
     const K: usize = 10;
     let mut rng = rng(70);

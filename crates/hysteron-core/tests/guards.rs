@@ -1,4 +1,5 @@
-//! The guards of the estimators: what teaches nothing, what is taken back, and that weights stay weights.
+//! The guards of the estimators: what teaches nothing, what is taken back, and that weights stay
+//! weights.
 #![allow(clippy::unwrap_used)]
 
 mod common;

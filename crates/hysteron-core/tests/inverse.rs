@@ -189,7 +189,8 @@ fn out_of_reach_and_equal_targets() {
     }
 }
 
-/// One operator only: the output rests from 80 down to its left ridge and from there up to its right one.
+/// One operator only: the output rests from 80 down to its left ridge and from there up to its
+/// right one.
 fn dead_band() -> (Plane<f64>, Vec<f64>) {
     let mut weights = vec![0.0; operator_count(7)];
     weights[operator_index(2, 6)] = 3.0;
@@ -209,7 +210,8 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     );
     let falling = |y| Target::new(y).heading(Some(Direction::Falling));
     let edge = inverse.step(&mut state, falling(y)).unwrap();
-    // Operator (2, 6): the left ridge rises from α_1 = 20 to α_2 = 30; two thirds up it stands at 2.
+    // Operator (2, 6): the left ridge rises from α_1 = 20 to α_2 = 30; two thirds up it stands at
+    // 2.
     assert!(
         (edge.input - (20.0 + 10.0 * 2.0 / 3.0)).abs() < 1e-9,
         "{edge:?}"
@@ -220,7 +222,8 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     let rising = Target::new(y).heading(Some(Direction::Rising));
     let back = inverse.solve(&state, rising).unwrap();
     assert!((back.input - up.input).abs() < 1e-9, "{back:?}");
-    // A tolerance in output goes that much further; a target beyond it is followed, not anticipated.
+    // A tolerance in output goes that much further; a target beyond it is followed, not
+    // anticipated.
     let loose = |y| falling(y).tolerance(0.3);
     assert!((inverse.solve(&state, loose(y)).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
     let moved = inverse.solve(&state, loose(y + 0.5)).unwrap();
@@ -239,7 +242,8 @@ fn a_tolerance_keeps_noise_from_crossing_the_dead_band() {
             inverse.step(&mut state, held).unwrap()
         };
         let up = to(2.0);
-        // Back by less: the input stays. On by as little: it follows. Back by more, though not by twice: it crosses.
+        // Back by less: the input stays. On by as little: it follows. Back by more, though not by
+        // twice: it crosses.
         assert_eq!(to(1.8).input, up.input);
         assert!(to(2.1).input > up.input);
         let down = to(1.7);
@@ -271,7 +275,7 @@ fn relays_jump_to_or_past_the_target() {
         let (model, mut state) = build(plane, Operator::Relay, &weights);
         let inverse = model.inverse().unwrap();
         let (low, high) = model.output_range();
-        let slack = 1e-12 * (high - low);
+        let rounding = 1e-12 * (high - low);
         for _ in 0..100 {
             let before = state.clone();
             let target = rng.random_range(low..=high);
@@ -279,9 +283,9 @@ fn relays_jump_to_or_past_the_target() {
             let (start, reached) = (model.output(&before), model.output(&state));
             let rising = target > start;
             assert!(if rising {
-                reached >= target - slack
+                reached >= target - rounding
             } else {
-                reached <= target + slack
+                reached <= target + rounding
             });
             // One level less would not have done.
             let mut short = before.clone();
@@ -293,9 +297,9 @@ fn relays_jump_to_or_past_the_target() {
             if (less > before.input()) == rising {
                 let missed = model.step(&mut short, less).unwrap().output;
                 assert!(if rising {
-                    missed < target + slack
+                    missed < target + rounding
                 } else {
-                    missed > target - slack
+                    missed > target - rounding
                 });
             }
         }

@@ -201,12 +201,12 @@ fn the_staircase_separates_what_is_on_from_what_is_off() {
                 let gamma = state.gamma(i, j).unwrap();
                 // Fully on: some vertex lies above and right of the operator's whole cell edge.
                 let (alpha, beta) = (plane.level(i), plane.level(j));
-                let slack = 1e-9 * plane.step();
+                let rounding = 1e-9 * plane.step();
                 let inside = vertices
                     .iter()
-                    .any(|v| v.0 >= alpha - slack && v.1 >= beta - slack);
+                    .any(|v| v.0 >= alpha - rounding && v.1 >= beta - rounding);
                 let outside = vertices.iter().all(|v| {
-                    v.0 <= alpha - plane.step() + slack || v.1 <= beta - plane.step() + slack
+                    v.0 <= alpha - plane.step() + rounding || v.1 <= beta - plane.step() + rounding
                 });
                 assert!(
                     !inside || gamma > 1.0 - 1e-8,

@@ -1,4 +1,5 @@
-//! What the inverse says of a target is true, whatever the state, target, heading, tolerance and operator.
+//! What the inverse says of a target is true, whatever the state, target, heading, tolerance and
+//! operator.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -205,7 +206,8 @@ fn a_target_that_jumps_back_to_where_the_branch_began_is_followed() {
     }
 }
 
-/// A target that turns is met at the far edge of the dead band: one step further and the output moves.
+/// A target that turns is met at the far edge of the dead band: one step further and the output
+/// moves.
 #[test]
 fn a_target_that_turns_is_met_at_the_edge_of_the_dead_band() {
     let mut edges = 0;

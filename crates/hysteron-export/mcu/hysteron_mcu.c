@@ -1,4 +1,4 @@
-/* The forward step, and what a state remembers. */
+/* The forward step, and the turning points of a state. */
 #include "hysteron_mcu_internal.h"
 
 /* Higher than every position. */
@@ -6,13 +6,14 @@
 
 /* ---- The plane ---- */
 
-/* The position of an input: level k stands at k, one step below the lowest at 0. */
+/* The normalised position of an input: k at level k, 0 at one step below the lowest level. */
 static hys_real normalise(const hys_model *model, hys_real input)
 {
-    return limited((input - model->min) * model->per_unit + ONE, ZERO, model->top);
+    return hys_clamp((input - model->min) * model->per_unit + ONE, ZERO, model->top);
 }
 
-/* The highest level at or below an input. The levels themselves decide, not the rounding of the position. */
+/* The highest level at or below an input, 0 for none. The levels decide, because the position is
+ * rounded. */
 static size_t level_at_or_below(const hys_model *model, hys_real input)
 {
     size_t near = whole(normalise(model, input));
@@ -22,7 +23,8 @@ static size_t level_at_or_below(const hys_model *model, hys_real input)
     return near > 0u && level(model, near) > input ? near - 1u : near;
 }
 
-/* A relay knows its levels only: rising, the last level reached; falling, the level below the last one left. */
+/* The position of a relay model. For a rising input it is the last level reached, for a falling one
+ * the level below the last one left. */
 static hys_real relay_position(const hys_state *state, hys_real input)
 {
     const hys_model *model = state->model;
@@ -51,19 +53,21 @@ static void start(hys_state *state)
     state->input = state->model->bottom;
 }
 
-/* Makes one corner of the last one and the one that falls to the present position, where both lie in one grid cell with
- * the corner before them; says whether they do.
+/* Replaces two corners by one, where both lie in one grid cell with the corner before them: the
+ * last one among the turning points and the one from its peak down to the present position. Returns
+ * whether it did.
  *
- * In the cell, the state becomes min(max(state, u'), v') and then min(max(state, u''), v''), with u'' < u' and v' < v''.
- * Since the corner before has left it below v', both together are min(max(state, u), v'') with u = clamp(v', u'', u').
- * Everything outside the cell sees only the corner before and the last minimum. */
+ * In the cell, the first corner maps a state s to min(max(s, u'), v') and the second to
+ * min(max(s, u''), v''), with u'' < u' and v' < v''. The corner before them has left s below v'. So
+ * both together equal min(max(s, u), v'') with u = clamp(v', u'', u'): one corner. The operators
+ * outside the cell depend only on the corner before and on the last minimum. */
 static int merged(hys_state *state)
 {
     const hys_model *model = state->model;
     hys_turn *recent = state->turns + (state->top - LOOK); /* two corners, maximum and minimum each, and the peak */
     split peak, min, outer, inner, at_max;
     hys_real held, max;
-    /* With fewer than two corners before, one of them is an endless height, which is not close. */
+    /* With fewer than two corners before, this reads a sentinel, whose position is infinite. */
     if (!(recent[0].x - recent[4].x < ONE && state->x - recent[1].x < ONE)) {
         return 0;
     }
@@ -76,9 +80,9 @@ static int merged(hys_state *state)
         return 0;
     }
     held = number(peak.cell) + (recent[3].x - number(min.cell));
-    max = limited(held, recent[4].x, recent[2].x);
+    max = hys_clamp(held, recent[4].x, recent[2].x);
     at_max = split_of(model, max);
-    /* From the corner before on, so that ten thousand of these leave no more rounding than one. */
+    /* Computed from the corner before, so that rounding errors do not add up over many merges. */
     recent[2].x = max;
     recent[2].y = recent[1].y + everett(model, at_max, outer);
     recent[3].x = state->x;
@@ -86,8 +90,9 @@ static int merged(hys_state *state)
     return 1;
 }
 
-/* Changes to the next branch on the way to `x`. Where the input turned, the present position becomes a turning point.
- * Where the branch ended, the extreme there is wiped out with the opposite one after it. */
+/* Changes to the next branch on the way to `x`. Where the input turned, the present position
+ * becomes a turning point. Where the branch ended, the turning points that it began and ended at
+ * are wiped out. */
 static void leave(hys_state *state, int rising, hys_real x)
 {
     const hys_turn *turns = state->turns;
@@ -97,7 +102,8 @@ static void leave(hys_state *state, int rising, hys_real x)
             state->top -= 2u;
         } while (state->top >= START && (rising ? x >= turns[state->top - 1u].x : x <= turns[state->top - 1u].x));
         if (state->top < START) {
-            /* Below everything: all operators are off, as at the start, and the next way is up. */
+            /* The bottom of the plane: all operators are off, as at the start. From here the input
+             * can only rise. */
             state->top = START;
             state->x = ZERO;
         }
@@ -115,8 +121,9 @@ static void leave(hys_state *state, int rising, hys_real x)
     state->end = state->turns[state->top - 1u].x;
 }
 
-/* Moves to a position in [0, K]. At most 2K + 3 iterations, those of `leave` included: the input turns, at most 2K corners are wiped out,
- * and it turns once more at the bottom of the plane. */
+/* Moves to a position in [0, K]. At most 2K + 3 iterations, including those of `leave`: the input
+ * turns, at most 2K corners are wiped out, and the input turns once more at the bottom of the
+ * plane. */
 static void travel(hys_state *state, hys_real x)
 {
     const hys_model *model = state->model;
@@ -272,7 +279,7 @@ int hys_restore(hys_state *state, const hys_real *points, size_t count, hys_real
     }
     high = state->model->top;
     for (n = 0u; n < count; n++) { /* as many iterations as points */
-        /* Written so that NaN fails. */
+        /* Written so that NaN fails the comparison. */
         if (!(low <= points[n] && points[n] <= high)) {
             return HYS_TURNING_POINTS;
         }
@@ -284,7 +291,7 @@ int hys_restore(hys_state *state, const hys_real *points, size_t count, hys_real
     }
     start(state);
     for (n = 0u; n < count; n++) { /* as many iterations as points */
-        travel(state, larger(points[n], ZERO)); /* never -0 */
+        travel(state, hys_max(points[n], ZERO)); /* never -0 */
     }
     state->input = input;
     return HYS_OK;

@@ -1,25 +1,31 @@
-/* Hysteresis models of actuators (MKP, KP, Preisach relay) and their exact inverse, for microcontrollers.
+/* Hysteresis models of actuators (MKP, KP, Preisach relay) and their exact inverse, for
+ * microcontrollers.
  *
- * C99, freestanding: no heap, no library, no recursion, no global that changes. A model is constant and may lie in flash. A
- * state is one struct and one array of the caller; each actuator needs its own, and several threads need a state each.
+ * C99, freestanding: no heap, no library, no recursion, no global variables. A model is constant
+ * and may lie in flash. A state is one struct and one array of the caller. Each actuator needs a
+ * state of its own. Several threads need a state each.
  *
- * Same digits as the library on a host. That asks of the compiler what C99's Annex F asks:
- *   - no fused multiply-add. The source forbids it by pragma. GCC obeys under every flag, Clang under every one but
- *     -ffp-contract=fast, which nothing in the source can tell; elsewhere use the flag that does what
- *     -ffp-contract=off does there,
- *   - no -ffast-math or what else reorders sums,
- *   - results rounded to their type (FLT_EVAL_METHOD 0; on 32-bit x86: -msse2 -mfpmath=sse),
- *   - rounding to nearest, and subnormal numbers kept (both are so after the reset of a Cortex-M).
- * Where the compiler tells of another choice, compilation stops.
+ * The results have the same bits as those of the library on a host. The compiler has to follow
+ * Annex F of C99 for this:
+ *   - No fused multiply-add. The source forbids it by pragma. GCC obeys the pragma with all flags,
+ *     Clang with all but -ffp-contract=fast, which the source cannot detect. For other compilers
+ *     use the flag that corresponds to -ffp-contract=off.
+ *   - No -ffast-math, and no other option that reorders sums.
+ *   - Results are rounded to their type (FLT_EVAL_METHOD 0; on 32-bit x86: -msse2 -mfpmath=sse).
+ *   - Rounding to nearest, and subnormal numbers are kept. Both hold after the reset of a Cortex-M.
+ * Compilation stops where the compiler reports another choice.
  *
- * Worst case of one call, K levels:
- *   hys_step           passes at most 2K turning points, in a loop of at most 2K + 3 iterations
- *   hys_inverse_step   two bisections of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then one hys_step
- *   hys_reset_on       one hys_step;  hys_start, hys_reset_off: none of these loops
+ * Worst case of one call with K levels:
+ *   hys_step               passes at most 2K corners, in a loop of at most 2K + 3 iterations
+ *   hys_inverse_step       two bisections, of at most log2(2K + 1) + 1 and log2(K) + 1 halvings, then
+ *                          one hys_step
+ *   hys_reset_on           one hys_step
+ *   hys_start, hys_reset_off   none of these loops
  *   hys_save, hys_rebase   one pass over at most 4K + 3 points
- *   hys_restore        one hys_step for each point
+ *   hys_restore            one hys_step for each point
  *
- * Every function returns HYS_OK or why it refused; then state and results are as they were. */
+ * Every function returns HYS_OK or an error code. After an error, state and results stay as they
+ * are. */
 #ifndef HYSTERON_MCU_H
 #define HYSTERON_MCU_H
 
@@ -28,14 +34,14 @@
 #include <stdint.h>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
-#error "hysteron_mcu: compile without -ffast-math: NaN has to be told and sums have to keep their order"
+#error "hysteron_mcu: compile without -ffast-math: NaN has to be detected and sums have to keep their order"
 #endif
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 1
 #error "hysteron_mcu: results must be rounded to their type (FLT_EVAL_METHOD 0); on 32-bit x86: -msse2 -mfpmath=sse"
 #endif
 
-/* Models that were exported for another layout do not compile. */
-#define HYS_LAYOUT 1
+/* Layout of hys_model. Models that were exported for another layout do not compile. */
+#define HYS_LAYOUT 2
 
 #ifdef __cplusplus
 extern "C" {
@@ -53,22 +59,26 @@ enum {
     HYS_TURNING_POINTS = 8,     /* points to restore do not nest */
     HYS_STATE_MISMATCH = 9,     /* the state was never started */
     HYS_ADAPTATION = 11,        /* an option of the adaptation is out of its range */
-    HYS_NULL = 100,             /* a null pointer */
-    HYS_VALUE = 103             /* not one of the values allowed */
+    HYS_NULL = 100,             /* a pointer is null */
+    HYS_VALUE = 103             /* a value is not one of those allowed */
 };
 
-/* What an inverse step says of a target. HYS_PASSED: it lies inside a jump of a relay model, and the output lies beyond it. */
+/* Status of an inverse step. HYS_PASSED: the target lies inside a jump of a relay model, and the
+ * output lies beyond it. */
 enum { HYS_LOW = -1, HYS_REACHED = 0, HYS_HIGH = 1, HYS_PASSED = 2 };
 
-/* Where a target goes next; any but HYS_HOLD crosses the dead band at once. */
+/* Where a target goes next. With HYS_RISING and HYS_FALLING the input crosses a dead band at once.
+ */
 enum { HYS_FALLING = -1, HYS_HOLD = 0, HYS_RISING = 1 };
 
-/* A turning point: the normalised position 0 <= x <= K, and the sum of weights times states there. */
+/* A turning point: the normalised position 0 <= x <= K, and the sum of weights times operator
+ * states there. */
 typedef struct {
     hys_real x, y;
 } hys_turn;
 
-/* A model: written by `hysteron export c`, and not to be changed. */
+/* A model. Written by `hysteron export c`; do not change it. Levels are in the input's unit, sums
+ * and offset in the output's unit. */
 typedef struct {
     const hys_real *table;  /* Everett table C[p][q], 0 <= q <= p <= K, row by row */
     size_t levels;          /* K */
@@ -77,58 +87,70 @@ typedef struct {
     hys_real bottom;        /* one step below the lowest level */
     hys_real step;          /* distance between levels */
     hys_real per_unit;      /* 1/step, rounded up */
-    hys_real nudge;         /* the least move that is one */
+    hys_real nudge;         /* least change of the input that a relay sees */
     hys_real total;         /* sum of all weights */
-    hys_real slack;         /* outputs closer than this are equal */
-    hys_real offset;        /* output with a sum of zero */
+    hys_real rounding;         /* outputs closer than this are taken as equal */
+    hys_real offset;        /* output where the sum is zero */
     unsigned char kind;     /* operators: 0 MKP, 1 KP, 2 relay */
     unsigned char falls;    /* 1 where the output falls as the operators switch on */
     unsigned char inverse;  /* 1 where no weight is below zero */
 } hys_model;
 
-/* What a model remembers of its input. To be read by these functions alone; a copy shares the turning points. */
+/* The state of a model. Only these functions may use its members. A copy has the same array of
+ * turning points, so it is no independent state. */
 typedef struct {
     const hys_model *model;
     hys_turn *turns;
-    size_t top;             /* turning point at which the branch being travelled began; odd: a minimum */
-    size_t began_cell;      /* that turning point's grid cell and the part of it, */
-    hys_real began_part;
-    hys_real began_y;       /* and the sum there */
+    size_t top;             /* turning point at which the present branch began; odd: a minimum */
+    size_t began_cell;      /* grid cell of that turning point */
+    hys_real began_part;    /* fraction of that cell */
+    hys_real began_y;       /* sum there */
     hys_real end;           /* position of the extreme that ends the branch */
     hys_real x, y;          /* present position, and the sum there */
     hys_real input;         /* last input, as given */
 } hys_state;
 
-/* Starts a state with every operator off. `turns` has `count` elements, at least 4K + 8 (NAME_TURNS of the model), and is
- * the state's from now on. HYS_NULL, HYS_MEMORY_TOO_SMALL. */
+/* Starts a state with every operator off. `turns` has `count` elements, at least 4K + 8 (NAME_TURNS
+ * of the model). The state uses this array from now on. Errors: HYS_NULL, HYS_MEMORY_TOO_SMALL. */
 int hys_start(const hys_model *model, hys_state *state, hys_turn *turns, size_t count);
 
-/* Every operator off, the input one step below the lowest level. */
+/* Switches every operator off. The input is then one step below the lowest level. */
 int hys_reset_off(hys_state *state);
 
-/* Every operator on, the input at the highest level. */
+/* Switches every operator on. The input is then the highest level. */
 int hys_reset_on(hys_state *state);
 
-/* Moves to `input` and writes the output. Inputs beyond the plane act as its ends. HYS_INPUT_NOT_FINITE. */
+/* Moves to `input` and writes the output. Inputs beyond the plane act as its ends. Error:
+ * HYS_INPUT_NOT_FINITE. */
 int hys_step(hys_state *state, hys_real input, hys_real *output);
 
-/* Finds the input that gives `target`, moves there and writes it. `heading` says where the target goes next: HYS_HOLD (the
- * input stands still with the target), HYS_RISING or HYS_FALLING. A target that goes back by up to `tolerance`, in the
- * output's unit, stands still too; below zero it is zero. `*status` is HYS_REACHED where the output is the target, up to
- * the tolerance; HYS_LOW or HYS_HIGH for a target that lies below or above every output: the input is then that end of
- * the plane; HYS_PASSED for a target that the output jumps past. HYS_VALUE, HYS_NEGATIVE_WEIGHTS,
- * HYS_INPUT_NOT_FINITE. */
-int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real tolerance, hys_real *input, int *status);
+/* Finds the input that gives `target`, moves there and writes it.
+ *
+ * `heading` is HYS_HOLD to hold the target: the input stands still while the target does. To
+ * anticipate the target it is the direction in which the target goes next, HYS_RISING or
+ * HYS_FALLING. A target that goes back by up to `tolerance`, in the output's unit, is held. A
+ * tolerance below zero counts as zero.
+ *
+ * `*status` becomes HYS_REACHED if the output is the target, up to the tolerance. It becomes
+ * HYS_LOW or HYS_HIGH for a target below or above every output; the input is then that end of the
+ * plane. It becomes HYS_PASSED for a target that the output jumps past.
+ *
+ * Errors: HYS_VALUE, HYS_NEGATIVE_WEIGHTS, HYS_INPUT_NOT_FINITE. */
+int hys_inverse_step(hys_state *state, hys_real target, int heading, hys_real tolerance,
+                     hys_real *input, int *status);
 
-/* Writes what hys_restore needs: the turning points as positions in [0, K] and the last input. `*count` is how many
- * points there are, at most 4K + 3, also where `capacity` is too small for them: HYS_MEMORY_TOO_SMALL. */
+/* Writes what hys_restore needs: the turning points as positions in [0, K], and the last input.
+ * `*count` becomes the number of points, at most 4K + 3, also if `capacity` is too small for them:
+ * HYS_MEMORY_TOO_SMALL. */
 int hys_save(const hys_state *state, hys_real *points, size_t capacity, size_t *count, hys_real *input);
 
-/* Works out the sums of a state anew after the weights of its model changed; the operators stay as they are. Only models
- * that learn (hysteron_mcu_adapt.h) do so. One pass over at most 4K + 3 points. */
+/* Computes the sums of a state again after the weights of its model changed. The operators stay as
+ * they are. Only models that learn need it (hysteron_mcu_adapt.h). One pass over at most 4K + 3
+ * points. */
 int hys_rebase(hys_state *state);
 
-/* Puts a started state of the same model back to what was saved, bit for bit. HYS_TURNING_POINTS, HYS_INPUT_NOT_FINITE. */
+/* Restores, bit for bit, what hys_save wrote, in a started state of the same model. Errors:
+ * HYS_TURNING_POINTS, HYS_INPUT_NOT_FINITE. */
 int hys_restore(hys_state *state, const hys_real *points, size_t count, hys_real input);
 
 #ifdef __cplusplus

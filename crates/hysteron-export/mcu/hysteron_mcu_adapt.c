@@ -3,13 +3,13 @@
 
 #define EPSILON ((hys_real)(sizeof(hys_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON))
 
-/* Of the gate: surprises that the mean remembers, the scale at the start and the least one, in
- * shares of the range. */
+/* Of the gate: length of the running mean in samples, and the numbers by which the range is divided
+ * for the scale at the start and for the smallest scale. */
 #define MEMORY 64u
 #define AT_START 50u
 #define LEAST 1000u
 
-/* Running sums of a long sum: those of the library, whose digits depend on it. */
+/* Number of running sums of a long sum. The rounding of the library depends on it. */
 #define LANES 8u
 
 static size_t operators(const hys_adaptive *self)
@@ -17,8 +17,8 @@ static size_t operators(const hys_adaptive *self)
     return self->model.levels * (self->model.levels + 1u) / 2u;
 }
 
-/* Place of operator (i, j), 1 <= i <= j, among the weights. */
-static size_t place(size_t i, size_t j)
+/* Index of operator (i, j), 1 <= i <= j, among the weights. */
+static size_t operator_index(size_t i, size_t j)
 {
     return j * (j - 1u) / 2u + (i - 1u);
 }
@@ -33,45 +33,46 @@ static void copy(hys_real *to, const hys_real *from, size_t count)
 
 /* ---- The operators' states ---- */
 
-/* The ridge of level k: 0 below it, 1 from one step further up on. */
+/* The ridge of level k: 0 up to one step below the level, 1 from the level on, linear between. */
 static hys_real ridge(hys_real x, size_t k)
 {
-    return limited(x - number(k - 1u), ZERO, ONE);
+    return hys_clamp(x - number(k - 1u), ZERO, ONE);
 }
 
-/* The row or column whose ridge a position lies on. */
+/* The row or column on whose ridge a position lies. */
 static size_t touched(const hys_model *model, hys_real x)
 {
     size_t cell = whole(x);
     return (cell < model->levels ? cell : model->levels - 1u) + 1u;
 }
 
-/* Rising, only rows are touched, falling, only columns: at most one pass over the operators. */
+/* Moves the operators' states. A rising input changes only rows, a falling one only columns: at
+ * most one pass over the operators. */
 static void follow(hys_adaptive *self, hys_real from, hys_real to)
 {
     const hys_model *model = &self->model;
-    size_t first = touched(model, smaller(from, to)), last = touched(model, larger(from, to));
+    size_t first = touched(model, hys_min(from, to)), last = touched(model, hys_max(from, to));
     size_t i, j;
     if (to > from) {
         for (j = first; j <= last; j++) { /* at most K iterations */
             hys_real on = ridge(to, j);
             for (i = 1u; i <= j; i++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + place(i, j);
-                *gamma = larger(*gamma, on);
+                hys_real *gamma = self->gamma + operator_index(i, j);
+                *gamma = hys_max(*gamma, on);
             }
         }
     } else if (to < from) {
         for (i = first; i <= last; i++) { /* at most K iterations */
             hys_real off = ridge(to, i);
             for (j = i; j <= model->levels; j++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + place(i, j);
-                *gamma = smaller(*gamma, off);
+                hys_real *gamma = self->gamma + operator_index(i, j);
+                *gamma = hys_min(*gamma, off);
             }
         }
     }
 }
 
-/* Whether the state is where the operators stand. */
+/* Whether the operators' states belong to the present position and branch of the state. */
 static int is_aligned(const hys_adaptive *self)
 {
     const hys_state *here = &self->state;
@@ -90,7 +91,7 @@ static void see(hys_adaptive *self)
     self->aligned = 1u;
 }
 
-/* Works the operators' states out from the turning points. */
+/* Computes the operators' states from the turning points. */
 static void align(hys_adaptive *self)
 {
     const hys_state *state = &self->state;
@@ -102,8 +103,8 @@ static void align(hys_adaptive *self)
         hys_real x = n <= state->top ? state->turns[n].x : state->x;
         for (j = 1u; j <= self->model.levels; j++) { /* K iterations */
             for (i = 1u; i <= j; i++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + place(i, j);
-                *gamma = larger(ridge(x, j), smaller(*gamma, ridge(x, i)));
+                hys_real *gamma = self->gamma + operator_index(i, j);
+                *gamma = hys_max(ridge(x, j), hys_min(*gamma, ridge(x, i)));
             }
         }
     }
@@ -112,7 +113,8 @@ static void align(hys_adaptive *self)
 
 /* ---- Weights and table ---- */
 
-/* What parameter n moves the output by: what its operator puts out, or the offset's share. */
+/* The derivative of the output with respect to parameter n: the output of its operator, or the
+ * offset's share. */
 static hys_real regressor(const hys_adaptive *self, size_t n, size_t count)
 {
     hys_real gamma;
@@ -123,7 +125,7 @@ static hys_real regressor(const hys_adaptive *self, size_t n, size_t count)
     return self->model.kind == MKP ? gamma : gamma + gamma - ONE;
 }
 
-/* The sum of parameters times regressor; without parameters, of the regressor's squares. */
+/* The sum of parameters times regressor. For NULL, the sum of the squares of the regressor. */
 static hys_real dot(const hys_adaptive *self, const hys_real *parameters)
 {
     hys_real sums[LANES], sum = ZERO;
@@ -151,7 +153,7 @@ static hys_real offset_of(const hys_adaptive *self)
     return self->offset + self->options.offset_share * self->theta[operators(self)];
 }
 
-/* Writes the table and what depends on it from the weights. */
+/* Writes the table, and what depends on it, from the weights. */
 static void rewrite(hys_adaptive *self)
 {
     hys_model *model = &self->model;
@@ -159,7 +161,7 @@ static void rewrite(hys_adaptive *self)
     size_t p, q;
     row[0] = ZERO;
     for (p = 1u; p <= model->levels; p++) { /* K iterations */
-        const hys_real *above = row, *weights = self->theta + place(1u, p);
+        const hys_real *above = row, *weights = self->theta + operator_index(1u, p);
         hys_real sum = ZERO;
         row += p;
         row[p] = ZERO;
@@ -169,7 +171,7 @@ static void rewrite(hys_adaptive *self)
         }
     }
     model->total = row[0];
-    model->slack = number(4u) * EPSILON * model->total;
+    model->rounding = number(4u) * EPSILON * model->total;
     model->offset = model->falls ? -offset_of(self) : offset_of(self);
 }
 
@@ -204,7 +206,7 @@ static void restart(hys_gate *gate)
 static void rescale(hys_gate *gate, hys_real scale)
 {
     if (is_finite(scale)) {
-        gate->scale = larger(scale, gate->range / number(LEAST));
+        gate->scale = hys_max(scale, gate->range / number(LEAST));
     }
 }
 
@@ -217,16 +219,16 @@ static void believe(hys_gate *gate, hys_real scale)
 
 static hys_real size_of(hys_real x)
 {
-    return larger(x, -x);
+    return hys_max(x, -x);
 }
 
-/* Whether two surprises are of one jump: they differ by at most half of the larger one. */
+/* Whether two surprises may come from one jump: they differ by at most half of the larger one. */
 static int agree(hys_real a, hys_real b)
 {
-    return size_of(a - b) <= ONE / number(2u) * larger(size_of(a), size_of(b));
+    return size_of(a - b) <= ONE / number(2u) * hys_max(size_of(a), size_of(b));
 }
 
-/* Whether a reading is believed whose prediction has this error. */
+/* Whether a reading whose prediction has this error is accepted. */
 static int believes(hys_gate *gate, hys_real error, const hys_adapt_options *options)
 {
     hys_real surprise = error - gate->left, size = size_of(surprise);
@@ -251,7 +253,7 @@ static int believes(hys_gate *gate, hys_real error, const hys_adapt_options *opt
     return 0;
 }
 
-/* What a reading that was believed has left of its error. */
+/* Keeps the error that is left after an accepted reading. */
 static void settle(hys_gate *gate, hys_real left)
 {
     gate->left = is_finite(left) ? left : ZERO;
@@ -259,8 +261,9 @@ static void settle(hys_gate *gate, hys_real left)
 
 /* ---- Learning ---- */
 
-/* Adds a sample to the trial. At its end the candidate becomes good where it predicted no worse; says whether the present
- * weights did far worse, with more than four times the mean square, and were taken back. */
+/* Adds a sample to the trial. At its end the candidate becomes the good one if it predicted no
+ * worse. Returns whether the good weights replaced the present ones, because these had more than
+ * four times the mean square error. */
 static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real good, hys_real measured)
 {
     hys_real rounding = number(256u) * EPSILON * measured;
@@ -278,11 +281,11 @@ static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real 
     good = self->good_squares;
     rounding = self->rounding_squares;
     clear_trial(self);
-    /* Sums that overflow say nothing: an outlier of that size is in all of them. */
+    /* Sums that overflow give no answer: the outlier is in all of them. */
     if (candidate <= good && is_finite(candidate)) {
         copy(self->good, self->candidate, count);
     }
-    if (now > number(4u) * (smaller(candidate, good) + rounding)) {
+    if (now > number(4u) * (hys_min(candidate, good) + rounding)) {
         copy(self->theta, self->good, count);
         copy(self->candidate, self->good, count);
         return 1;
@@ -291,7 +294,8 @@ static int judge(hys_adaptive *self, hys_real now, hys_real candidate, hys_real 
     return 0;
 }
 
-/* Moves the parameters along the regressor by a share of the error; weights stay at zero or above. */
+/* Moves the parameters along the regressor by a fraction of the error. Weights stay at zero or
+ * above. */
 static void update(hys_adaptive *self, hys_real error)
 {
     size_t n, count = operators(self);
@@ -303,7 +307,7 @@ static void update(hys_adaptive *self, hys_real error)
     for (n = 0u; n <= count; n++) { /* N + 1 iterations */
         hys_real theta = self->theta[n], offline = n < count ? self->offline[n] : ZERO;
         theta = theta + step * regressor(self, n, count) + leakage * (offline - theta);
-        self->theta[n] = n < count ? larger(theta, ZERO) : theta;
+        self->theta[n] = n < count ? hys_max(theta, ZERO) : theta;
     }
 }
 
@@ -319,7 +323,7 @@ static int learn(hys_adaptive *self, hys_real measured, hys_real error)
     if (judge(self, error, candidate, good, measured)) {
         return HYS_ROLLED_BACK;
     }
-    counted = error - limited(error, -zone, zone);
+    counted = error - hys_clamp(error, -zone, zone);
     if (counted == ZERO) {
         return HYS_WAITING;
     }
@@ -327,18 +331,20 @@ static int learn(hys_adaptive *self, hys_real measured, hys_real error)
     return HYS_LEARNED;
 }
 
-/* Whether the input moved since it was learned from: without that, a sample is the same equation again. */
+/* Whether the input moved since the last sample learned from. If not, the sample would be the same
+ * equation again. */
 static int moves(hys_adaptive *self)
 {
     hys_real way = self->state.x - self->learned;
-    int moved = larger(way, -way) > self->options.movement;
+    int moved = hys_max(way, -way) > self->options.movement;
     if (moved) {
         self->learned = self->state.x;
     }
     return moved;
 }
 
-/* The model but for its weights; member by member, because a copy of the whole may be a call. */
+/* Copies the model without its weights. Member by member, because a copy of the whole struct may
+ * become a call of memcpy. */
 static void inherit(hys_adaptive *self, const hys_model *from)
 {
     hys_model *model = &self->model;
@@ -408,7 +414,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
         return HYS_INPUT_NOT_FINITE;
     }
     for (n = 0u; n < all; n++) { /* N iterations */
-        size += larger(weights[n], -weights[n]);
+        size += hys_max(weights[n], -weights[n]);
         if (!is_finite(size + size)) {
             return HYS_WEIGHT_NOT_FINITE;
         }

@@ -1,18 +1,18 @@
-/* What the parts of the algorithm share; not for applications. */
+/* Declarations that the source files share. Not for applications. */
 #ifndef HYSTERON_MCU_INTERNAL_H
 #define HYSTERON_MCU_INTERNAL_H
 
 #include "hysteron_mcu.h"
 
-/* No product may be fused with a sum. GCC does not know the standard's pragma; it also likes to make calls of loops that
- * copy, for which a target without a C library has nothing. */
+/* No product may be fused with a sum. GCC does not know the pragma of the standard. It may also
+ * replace loops that copy by calls of memcpy, which a target without a C library does not have. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("fp-contract=off", "no-tree-loop-distribute-patterns")
 #else
 #pragma STDC FP_CONTRACT OFF
 #endif
 
-/* float also needs sums of float: FLT_EVAL_METHOD 1 would make them double. */
+/* float also needs sums in float. FLT_EVAL_METHOD 1 would compute them in double. */
 #ifdef FLT_EVAL_METHOD
 typedef char hys_float_is_float[FLT_EVAL_METHOD == 0 || sizeof(hys_real) == sizeof(double) ? 1 : -1];
 #endif
@@ -20,8 +20,10 @@ typedef char hys_float_is_float[FLT_EVAL_METHOD == 0 || sizeof(hys_real) == size
 #define ZERO ((hys_real)0)
 #define ONE ((hys_real)1)
 
-/* Place of the start of every history among the turning points: below the plane, after endless heights. There are enough
- * of these for a look at two corners back to need no case of its own. A minimum, as all turning points at odd places. */
+/* Index of the first turning point of every history: the input at the bottom of the plane. It is a
+ * minimum, as are all turning points with an odd index. The elements before it are sentinels with
+ * infinite positions. There are enough of them that merging can look two corners back without a
+ * special case. */
 #define LOOK 4u
 #define START (LOOK + 1u)
 
@@ -32,22 +34,24 @@ static inline int is_finite(hys_real x)
     return x - x == ZERO;
 }
 
-static inline hys_real larger(hys_real a, hys_real b)
+/* Prefixed, because many platforms define max and min as macros. The second number where they are
+ * equal or one is NaN. */
+static inline hys_real hys_max(hys_real a, hys_real b)
 {
     return a > b ? a : b;
 }
 
-static inline hys_real smaller(hys_real a, hys_real b)
+static inline hys_real hys_min(hys_real a, hys_real b)
 {
     return a < b ? a : b;
 }
 
-static inline hys_real limited(hys_real x, hys_real low, hys_real high)
+static inline hys_real hys_clamp(hys_real x, hys_real low, hys_real high)
 {
-    return smaller(larger(x, low), high);
+    return hys_min(hys_max(x, low), high);
 }
 
-/* K and positions fit int32_t, whose conversions are one instruction on most targets. */
+/* K and positions fit int32_t. Its conversions are one instruction on most targets. */
 static inline hys_real number(size_t n)
 {
     return (hys_real)(int32_t)n;
@@ -58,7 +62,7 @@ static inline size_t whole(hys_real x)
     return (size_t)(int32_t)x;
 }
 
-/* The input at a position. */
+/* The input at a normalised position. */
 static inline hys_real denormalise(const hys_model *model, hys_real x)
 {
     return x >= model->top ? model->max : model->min + (x - ONE) * model->step;
@@ -69,14 +73,15 @@ static inline hys_real level(const hys_model *model, size_t k)
     return denormalise(model, number(k));
 }
 
-/* A position as its grid cell and the part of it, 0 <= part <= 1. */
+/* A normalised position as its grid cell and the fraction of that cell, 0 <= part <= 1. */
 typedef struct {
     size_t cell;
     hys_real part;
 } split;
 
-/* On a grid line it is the even one of the two cells, and the last cell at the end of the plane: the Everett function is
- * continuous, but its digits are not those of either. */
+/* A position on a grid line belongs to the even one of its two cells, or to the last cell at the
+ * end of the plane. The Everett function is continuous, but its rounding differs between the cells.
+ * The library takes the same cell. */
 static inline split split_of(const hys_model *model, hys_real x)
 {
     split at;
@@ -89,14 +94,14 @@ static inline split split_of(const hys_model *model, hys_real x)
     return at;
 }
 
-/* Place of C[p][q]. */
+/* Index of C[p][q]. */
 static inline size_t table_index(size_t p, size_t q)
 {
     return p * (p + 1u) / 2u + q;
 }
 
-/* The Everett function: what the output loses when the input falls from a maximum to a minimum, which is not above it. It
- * is linear on the triangle that both lie in. */
+/* The Everett function: by how much the output falls when the input falls from a maximum to a
+ * minimum, min <= max. It is linear on each of the two triangles of a grid cell. */
 static inline hys_real everett(const hys_model *model, split max, split min)
 {
     const hys_real *row = model->table + table_index(max.cell, min.cell);
@@ -111,7 +116,8 @@ static inline hys_real everett(const hys_model *model, split max, split min)
     }
 }
 
-/* The operators' own sum, from that of weights times states in [0, 1]: states of KP and relay run from -1 to 1. */
+/* The sum of the operators' outputs, from that of weights times states in [0, 1]. Outputs of KP and
+ * relay operators are from -1 to 1. */
 static inline hys_real own_sum(const hys_model *model, hys_real sum)
 {
     return model->kind == MKP ? sum : sum + sum - model->total;

@@ -1,10 +1,10 @@
-/* The inverse step; whoever only runs models forward leaves this file out. */
+/* The inverse step. Applications that only run models forward do not need this file. */
 #include "hysteron_mcu_internal.h"
 
 #define HALF ((hys_real)0.5)
 
-/* What an output on the way has to do: come to `value`, where the slack makes `limit` enough, or, `beyond`, exceed it by
- * more than the slack. */
+/* A goal for the output on a way: to reach `value`, or with `beyond` to go beyond it. `limit` is
+ * the value with the rounding error allowed. */
 typedef struct {
     hys_real value, limit;
     int beyond;
@@ -20,12 +20,12 @@ static int met_falling(goal to, hys_real output)
     return to.beyond ? output < to.limit : output <= to.limit;
 }
 
-/* The goal for a way up to `value`, of an output that is measured from where the branch began. */
-static goal upward(hys_real value, int beyond, hys_real slack)
+/* The goal for a way up to `value`. */
+static goal upward(hys_real value, int beyond, hys_real rounding)
 {
     goal to;
     to.value = value;
-    to.limit = beyond ? value + slack : value - slack;
+    to.limit = beyond ? value + rounding : value - rounding;
     to.beyond = beyond;
     return to;
 }
@@ -35,7 +35,8 @@ static int within(hys_real a, hys_real b, hys_real distance)
     return a - b <= distance && b - a <= distance;
 }
 
-/* How far along a linear piece of length `length` a rise of `rise` is reached. */
+/* The distance, from 0 to `length`, at which a linear piece with this `slope` has risen by `rise`.
+ */
 static hys_real along(hys_real rise, hys_real slope, hys_real length)
 {
     if (rise <= ZERO) {
@@ -44,14 +45,15 @@ static hys_real along(hys_real rise, hys_real slope, hys_real length)
     return slope * length > rise ? rise / slope : length;
 }
 
-/* The part of a branch that a goal is met on, once the turning points before it are passed. */
+/* The section of a branch on which a goal is met: the turning point at which the branch began, and
+ * the positions at which the input enters the branch and at which the branch ends. */
 typedef struct {
     hys_turn began;
     hys_real start, end;
 } branch;
 
-/* Of the nested extremes of one kind (0: maxima, 1: minima), the innermost whose output meets the goal; the end of the
- * plane counts as met. */
+/* Finds the branch that ends at the innermost extreme whose output meets the goal. Extremes of one
+ * kind (0: maxima, 1: minima) are nested. The end of the plane counts as met. */
 static branch find(const hys_state *state, size_t kind, goal to)
 {
     const hys_turn *turns = state->turns + (START - 1u);
@@ -80,18 +82,19 @@ static branch find(const hys_state *state, size_t kind, goal to)
     return found;
 }
 
-/* e(p, min) on the grid line p: along column q of the table, v the part of the minimum. */
+/* e(p, min) on the grid line p, from column q of the table, the column of the minimum. */
 static hys_real on_row(const hys_model *model, size_t p, split min)
 {
     const hys_real *row = model->table + table_index(p, min.cell);
     return p > min.cell ? row[0] + min.part * (row[1] - row[0]) : ZERO;
 }
 
-/* The first x from `from` up at which e(x, min) meets the goal. */
+/* The first x from `from` up at which e(x, min) meets the goal; K if there is none. */
 static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goal to)
 {
     split min = split_of(model, min_x);
-    /* Grid lines beyond `from`: first one that meets the goal, the crossing is in the cell before it. */
+    /* The first grid line beyond `from` that meets the goal: the crossing is in the cell before it.
+ */
     size_t low = split_of(model, from).cell + 1u, high = model->levels + 1u, p;
     const hys_real *near, *below;
     hys_real knot = ZERO, slope = ZERO, u;
@@ -111,12 +114,13 @@ static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goa
     near = model->table + table_index(p, min.cell);
     below = near + (p + 1u);
     off_diagonal = p > min.cell;
-    /* The two pieces, u <= v and u >= v, meet where the diagonal of the cell is crossed. */
+    /* The two linear pieces, u <= v and u >= v, meet on the diagonal of the cell. u is the part of
+     * x, v that of min. */
     if (off_diagonal) {
         knot = near[0] + min.part * (below[1] - near[0]);
     }
     if (met_rising(to, knot)) {
-        /* On the diagonal cell this piece is zero and never holds the crossing. */
+        /* In a cell on the plane's diagonal this piece is zero and never has the crossing. */
         if (off_diagonal) {
             slope = below[1] - near[1];
         }
@@ -127,14 +131,15 @@ static hys_real climb(const hys_model *model, hys_real min_x, hys_real from, goa
     return number(p) + u;
 }
 
-/* e(max, q) on the grid line q: between rows p and p + 1 of the table, u the part of the maximum. */
+/* e(max, q) on the grid line q, from rows p and p + 1 of the table, between which the maximum lies.
+ */
 static hys_real on_column(const hys_model *model, split max, size_t q)
 {
     const hys_real *near = model->table + table_index(max.cell, q);
     return near[0] + max.part * (near[max.cell + 1u] - near[0]);
 }
 
-/* The first x from `from` down at which e(max, x) meets the goal. */
+/* The first x from `from` down at which e(max, x) meets the goal; 0 if there is none. */
 static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, goal to)
 {
     split max = split_of(model, max_x);
@@ -143,7 +148,7 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
     const hys_real *near, *below;
     hys_real knot = ZERO, slope = ZERO, v;
     int off_diagonal;
-    /* Columns from `last` down to 0: the first whose grid line meets the goal. */
+    /* The first grid line from `last` down to 0 that meets the goal. */
     while (low < high) { /* at most log2(K) + 1 iterations */
         size_t middle = low + (high - low) / 2u;
         if (met_rising(to, on_column(model, max, last - middle))) {
@@ -163,7 +168,7 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
         knot = near[0] + max.part * (below[1] - near[0]);
     }
     if (met_rising(to, knot)) {
-        /* From v = 1, where the cell is entered, back to the diagonal. */
+        /* From v = 1, where the input enters the cell, back to the diagonal. */
         if (off_diagonal) {
             slope = near[0] - near[1];
         }
@@ -174,7 +179,7 @@ static hys_real descend(const hys_model *model, hys_real max_x, hys_real from, g
     return number(q) + v;
 }
 
-/* Where a way along a branch ends: the input, and the sum there. */
+/* Where a way ends: the input, and the sum there. */
 typedef struct {
     hys_real input, output;
 } landing;
@@ -184,42 +189,45 @@ static hys_real lost(const hys_model *model, hys_real max, hys_real min)
     return everett(model, split_of(model, max), split_of(model, min));
 }
 
-/* The input that takes a relay up to position `up`; the last input, where it is there or above. A relay switches on only
- * where the input rises, so the input moves even if the level is the last input. */
+/* The input that takes a relay model up to position `up`. It is the last input where the position
+ * is there already or above. A relay switches on only where the input rises, so the input moves
+ * even if it is the level already. */
 static hys_real relay_up(const hys_state *state, size_t up)
 {
     const hys_model *model = state->model;
     if (state->x >= number(up)) {
         return state->input;
     }
-    return larger(level(model, up), state->input + model->nudge);
+    return hys_max(level(model, up), state->input + model->nudge);
 }
 
-/* The input that takes a relay down to position `down`, where the level above it switches off. */
+/* The input that takes a relay model down to position `down`, or the last input. The relays of the
+ * level above `down` have to switch off for it. */
 static hys_real relay_down(const hys_state *state, size_t down)
 {
     const hys_model *model = state->model;
     if (state->x <= number(down)) {
         return state->input;
     }
-    return smaller(level(model, down + 1u), state->input - model->nudge);
+    return hys_min(level(model, down + 1u), state->input - model->nudge);
 }
 
-/* The whole number at or above a position. */
+/* The smallest whole number at or above a position in [0, K]. */
 static size_t whole_above(const hys_model *model, hys_real x)
 {
     size_t below = whole(x);
     return number(below) < x && below < model->levels ? below + 1u : below;
 }
 
-/* The first input on the way up at which the sum comes to `value`, or the last one before it goes `beyond` it. */
+/* The first input on the way up at which the sum reaches `value`, or with `beyond` the last input
+ * before the sum exceeds it. */
 static landing rising_to(const hys_state *state, hys_real value, int beyond)
 {
     const hys_model *model = state->model;
-    branch on = find(state, 0u, upward(value, beyond, model->slack));
-    hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->slack));
+    branch on = find(state, 0u, upward(value, beyond, model->rounding));
+    hys_real x = climb(model, on.began.x, on.start, upward(value - on.began.y, beyond, model->rounding));
     landing there;
-    x = limited(x, on.start, on.end);
+    x = hys_clamp(x, on.start, on.end);
     if (model->kind == RELAY) {
         size_t up = beyond ? whole(x) : whole_above(model, x);
         there.input = relay_up(state, up);
@@ -240,12 +248,12 @@ static landing falling_to(const hys_state *state, hys_real value, int beyond)
     hys_real x;
     landing there;
     to.value = value;
-    to.limit = beyond ? value - model->slack : value + model->slack;
+    to.limit = beyond ? value - model->rounding : value + model->rounding;
     to.beyond = beyond;
     on = find(state, 1u, to);
-    /* What the output lost since the branch began rises. */
-    x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->slack));
-    x = limited(x, on.end, on.start);
+    /* What the output lost since the branch began rises on the way down. */
+    x = descend(model, on.began.x, on.start, upward(on.began.y - value, beyond, model->rounding));
+    x = hys_clamp(x, on.end, on.start);
     if (model->kind == RELAY) {
         size_t down = beyond ? whole_above(model, x) : whole(x);
         there.input = relay_down(state, down);
@@ -257,42 +265,44 @@ static landing falling_to(const hys_state *state, hys_real value, int beyond)
     return there;
 }
 
-/* The edge of the dead band towards `up` or down, if `wanted` rests there: it is near the sum at which the branch of that
- * direction began, and the sum has not moved away from there. */
+/* The edge of the dead band, upwards or downwards, if `wanted` rests in that dead band. It does
+ * where it is near the sum at which the branch of that direction began and the sum has not moved
+ * away from it. Returns whether it does. */
 static int edge(const hys_state *state, int up, hys_real wanted, hys_real tolerance, hys_real reach, hys_real *input)
 {
     hys_real rest = is_rising(state) == up ? state->began_y : state->y;
     if (!within(wanted, rest, reach)) {
         return 0;
     }
-    /* No further than `tolerance` beyond the target, nor beyond the sum that it rests at. */
+    /* No more than `tolerance` beyond the target and beyond the sum that it rests at. */
     if (up && state->y - wanted <= reach) {
-        *input = rising_to(state, smaller(wanted, rest) + tolerance, 1).input;
+        *input = rising_to(state, hys_min(wanted, rest) + tolerance, 1).input;
         return 1;
     }
     if (!up && wanted - state->y <= reach) {
-        *input = falling_to(state, larger(wanted, rest) - tolerance, 1).input;
+        *input = falling_to(state, hys_max(wanted, rest) - tolerance, 1).input;
         return 1;
     }
     return 0;
 }
 
-/* The input for a target of the operators' own sum; `heading` and `status` are of that, too. */
+/* The input for a target of the sum of the operators' outputs. `heading` and `status` refer to that
+ * sum, too. */
 static hys_real solve(const hys_state *state, hys_real target, int heading, hys_real tolerance, int *status)
 {
     const hys_model *model = state->model;
     int relay = model->kind == RELAY, back;
     hys_real wanted = target, reach, nearest, input;
     landing there;
-    tolerance = larger(tolerance, ZERO); /* NaN too */
+    tolerance = hys_max(tolerance, ZERO); /* NaN too */
     if (model->kind != MKP) {
         wanted = HALF * target + HALF * model->total;
         tolerance = HALF * tolerance;
     }
-    reach = larger(tolerance, model->slack);
+    reach = hys_max(tolerance, model->rounding);
     if (wanted - model->total > reach) {
         *status = HYS_HIGH;
-        /* For a relay that fell to the highest level, this level no longer switches it on. */
+        /* Relays that fell to the highest level need an input above it to switch on again. */
         return relay ? relay_up(state, model->levels) : model->max;
     }
     if (-wanted > reach) {
@@ -300,18 +310,19 @@ static hys_real solve(const hys_state *state, hys_real target, int heading, hys_
         return model->bottom;
     }
     *status = HYS_REACHED;
-    /* Tolerances count from the target itself, not from the end of the range that is nearest to it. */
-    nearest = limited(wanted, ZERO, model->total);
+    /* Tolerances count from the target itself, not from the nearest end of the range. */
+    nearest = hys_clamp(wanted, ZERO, model->total);
     if (heading != HYS_HOLD && edge(state, heading == HYS_RISING, wanted, tolerance, reach, &input)) {
         return input;
     }
     back = (wanted > state->y) != is_rising(state);
-    if (within(nearest, state->y, model->slack) || (back && within(wanted, state->y, tolerance))) {
-        /* Beyond the plane only a relay can tell the nearest end from where the input stands. */
-        return relay ? state->input : limited(state->input, model->bottom, model->max);
+    if (within(nearest, state->y, model->rounding) || (back && within(wanted, state->y, tolerance))) {
+        /* An input beyond the plane is given as the nearest end, except for relays: on the way back
+         * a relay switches at that end. */
+        return relay ? state->input : hys_clamp(state->input, model->bottom, model->max);
     }
     there = nearest > state->y ? rising_to(state, nearest, 0) : falling_to(state, nearest, 0);
-    if (relay && !within(there.output, wanted, reach + model->slack)) {
+    if (relay && !within(there.output, wanted, reach + model->rounding)) {
         *status = HYS_PASSED;
     }
     return there.input;

@@ -157,7 +157,7 @@ pub fn c<'a>(
     options: &COptions<'_>,
 ) -> Result<CExport> {
     let target = target.into();
-    crate::refusal::check(model)?;
+    model.plain()?;
     let name = name::choose(options.name, options.source)?;
     match options.real {
         CReal::Float => write::<f32>(model, target, options, name),
@@ -172,7 +172,7 @@ fn write<T: Number>(
     name: String,
 ) -> Result<CExport> {
     let constants = Constants::<T>::of(model)?;
-    if options.adaptation && constants.slack.is_none() {
+    if options.adaptation && constants.rounding.is_none() {
         let what = "adaptation keeps weights at zero or above, but there are some below zero";
         let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
         return Err(Error::Export(what.into()).remedied(remedy));
@@ -191,7 +191,7 @@ fn write<T: Number>(
         name,
         real: options.real,
         levels,
-        inverse: constants.slack.is_some(),
+        inverse: constants.rounding.is_some(),
         memory: constants.memory(options.adaptation),
         worst_case: CWorstCase::of(levels),
     };

@@ -89,7 +89,7 @@ pub fn fmu<'a>(
 ) -> Result<Fmu> {
     let target = target.into();
     let path = target.path();
-    crate::refusal::check(model)?;
+    model.plain()?;
     if options.inverse {
         model.inverse()?;
     }
@@ -169,8 +169,8 @@ fn identifier(name: &str) -> Result<&str> {
             "it has {letters} letters, and {LONGEST} are the most"
         ));
     }
-    if crate::refusal::is_device(name) {
-        return refused(crate::refusal::DEVICE);
+    if crate::device::is_device(name) {
+        return refused(crate::device::DEVICE);
     }
     let mut letters = name.chars();
     let first = letters

@@ -3,8 +3,8 @@
 #![forbid(unsafe_code)]
 
 mod c;
+mod device;
 mod fmu;
-mod refusal;
 
 pub use c::{CExport, CMemory, COptions, CReal, CWorstCase, c};
 pub use fmu::{Fmi, Fmu, FmuOptions, fmu};

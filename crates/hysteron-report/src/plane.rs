@@ -6,7 +6,7 @@ use crate::draw::colour::of_share;
 use crate::draw::panel::{Labels, Panel, threshold};
 use crate::draw::style::Stroke;
 use crate::quantity::Labelled;
-use hysteron::Plane;
+use hysteron::{Plane, operators};
 use std::fmt::Write;
 
 /// More cells a side than this cannot be told apart; neighbours are then drawn as one.
@@ -60,8 +60,8 @@ impl Half {
                 count: 0,
             })
             .collect();
-        let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        for ((i, j), &value) in operators.zip(values).filter(|(_, value)| value.is_finite()) {
+        let valued = operators(levels).zip(values);
+        for ((i, j), &value) in valued.filter(|(_, value)| value.is_finite()) {
             let (column, row) = ((i - 1) / block, (j - 1) / block);
             if let Some(cell) = cells.get_mut(row * (row + 1) / 2 + column) {
                 cell.sum += value;

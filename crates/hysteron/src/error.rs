@@ -1,4 +1,4 @@
-//! Everything that can go wrong, with a stable code for each kind.
+//! The errors of this crate, with a stable code for each kind.
 
 use crate::remedy::Remedy;
 use std::path::PathBuf;
@@ -6,12 +6,12 @@ use std::path::PathBuf;
 /// A result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Where a row of a table is.
+/// The position of a row in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// It begins on this line of a text file, counted from 1.
+    /// The row begins on this line of a text file, counted from 1.
     Line(u64),
-    /// It is this row of a file without lines, counted from 1.
+    /// The number of the row, counted from 1, in a file without lines.
     Row(u64),
 }
 
@@ -24,11 +24,12 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// Why a call was refused. Nothing is changed or half-written when an error is returned.
+/// Why a call was refused. When an error is returned, nothing has been changed and no file is
+/// half-written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A refusal of the core: a plane, weights, an input.
+    /// The core refused a plane, weights, an input or an option.
     #[error(transparent)]
     Core(#[from] hysteron_core::Error),
     /// A file cannot be read or written.
@@ -36,15 +37,15 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// What the operating system reported.
         source: std::io::Error,
     },
-    /// A model file says something that cannot be.
+    /// A field of a model file has an invalid value.
     #[error("model file{}: field `{field}`: {problem}", place(.path))]
     ModelFile {
-        /// The file, where there is one.
+        /// The file, if the model was read from one.
         path: Option<PathBuf>,
-        /// The field, as a path into the JSON; `.` for the whole.
+        /// The field, as a path into the JSON; `.` for the whole file.
         field: String,
         /// What is wrong with it, and what is expected.
         problem: String,
@@ -52,11 +53,11 @@ pub enum Error {
     /// A recording cannot be used as it is.
     #[error("recording{}{}: {problem}", place(.path), at(*.row, .column))]
     Recording {
-        /// The file, where there is one.
+        /// The file, if the recording was read from one.
         path: Option<PathBuf>,
-        /// Where the row is, where the fault is in one row.
+        /// The row, if the problem is in a single row.
         row: Option<Place>,
-        /// Name of the column, where the fault is in one column.
+        /// Name of the column, if the problem is in a single column.
         column: Option<String>,
         /// What is wrong, and what to do.
         problem: String,
@@ -64,40 +65,40 @@ pub enum Error {
     /// The options of a fit contradict each other or the data.
     #[error("fit: {0}")]
     Fit(String),
-    /// A step of the preparation cannot be done as told.
+    /// A step of the preparation cannot be done with these options.
     #[error("preparation: {0}")]
     Preparation(String),
-    /// No experiment follows from the options.
+    /// No experiment can be designed from these options.
     #[error("design: {0}")]
     Design(String),
-    /// A thermal body cannot be run or identified.
+    /// A thermal body cannot be simulated or identified.
     #[error("thermal body: {0}")]
     Thermal(String),
-    /// A controller cannot be made as told.
+    /// A controller cannot be made with these settings.
     #[error("controller: {0}")]
     Control(String),
-    /// A scenario says something that cannot be.
+    /// A field of a scenario has an invalid value.
     #[error("scenario{}{}: `{field}`: {problem}", place(.path), at(line.map(Place::Line), &None))]
     Scenario {
-        /// The file, where there is one.
+        /// The file, if the scenario was read from one.
         path: Option<PathBuf>,
-        /// The line of its text, where that is known.
+        /// The line of the file, if it is known.
         line: Option<u64>,
-        /// The field; `.` for the whole.
+        /// The field; `.` for the whole scenario.
         field: String,
         /// What is wrong with it, and what is expected.
         problem: String,
     },
-    /// A model cannot be carried to where it should run.
+    /// A model cannot be exported to the target.
     #[error("export: {0}")]
     Export(String),
-    /// A filter's arguments do not fit the data.
+    /// The arguments of a filter do not fit the data.
     #[error(transparent)]
     Filter(#[from] crate::series::filter::FilterError),
-    /// A plant was asked for something that it cannot do.
+    /// A simulated plant was asked for something that it cannot do.
     #[error(transparent)]
     Plant(Box<dyn std::error::Error + Send + Sync>),
-    /// Another error, and what helps against it; [`Error::parts`] takes them apart.
+    /// Another error, with a remedy for it. [`Error::parts`] separates the two.
     #[error("{error}: {remedy}")]
     Remedied {
         /// What is wrong, and where.
@@ -108,7 +109,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// A number for each kind of error that never changes; those of the core are below 20.
+    /// A number for each kind of error. It never changes. The codes of the core are below 20.
     #[must_use]
     pub fn code(&self) -> i32 {
         match self {
@@ -129,7 +130,7 @@ impl Error {
         }
     }
 
-    /// What is wrong, and what helps where that is known: for a surface that spells options in its own way.
+    /// What is wrong and, if known, the remedy. For surfaces that spell options in their own way.
     #[must_use]
     pub fn parts(&self) -> (&Error, Option<&Remedy>) {
         match self {
@@ -138,7 +139,7 @@ impl Error {
         }
     }
 
-    /// This error with what helps against it.
+    /// This error with a remedy for it.
     #[must_use]
     pub fn remedied(self, remedy: Remedy) -> Self {
         let error = Box::new(self);

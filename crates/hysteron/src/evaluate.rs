@@ -10,66 +10,72 @@ use crate::series::range;
 use crate::series::{NOISE, Turning};
 use hysteron_core::Solution;
 
-/// Around a turning point the output stands still as far as it is within this part of its range. Twice
-/// the noise, for the inverse is back on the branch only when a reversal has got beyond that.
+/// The output stands still while it is within this share of its range from a turning point. The
+/// value is twice the noise: after a reversal, the inverse is back on the branch only when the
+/// output has moved further than the noise.
 const STILL: f64 = 2.0 * NOISE;
 
 /// Forward and inverse tests of a model on one recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
-    /// Modelled output, one value a sample.
+    /// Modelled output, one value per sample.
     pub output_model: Vec<f64>,
     /// Modelled against measured output.
     pub forward: Errors,
-    /// How many inputs lay outside the plane.
+    /// Number of inputs outside the plane.
     pub clipped: usize,
     /// The prediction band; `None` for a model without confidence.
     pub band: Option<BandEvaluation>,
-    /// The inverse test, or why there is none (for example weights below zero).
+    /// The inverse test, or the reason why there is none (for example negative weights).
     pub inverse: std::result::Result<InverseEvaluation, String>,
 }
 
 /// The inverse test with both policies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseEvaluation {
-    /// Whether the measured output moves at each sample (false: dead band).
+    /// Whether the measured output moves at each sample; false in the dead band after a reversal.
     pub moving: Vec<bool>,
-    /// The chapter's policy, equation (14): the input rests while the target rests, or goes back by no more than [`NOISE`].
+    /// Policy of the chapter, equation (14): the input is held while the target is constant or goes
+    /// back by no more than [`NOISE`].
     pub hold: InverseRun,
-    /// The dead band is crossed as soon as the target is known to reverse.
+    /// Policy *anticipate*: the input crosses the dead band as soon as it is known that the target
+    /// reverses.
     pub anticipate: InverseRun,
 }
 
 /// One run of the inverse over the measured output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseRun {
-    /// Modelled input, one value a sample.
+    /// Modelled input, one value per sample.
     pub input_model: Vec<f64>,
-    /// Targets that the model cannot reach.
+    /// Number of targets that the model cannot reach.
     pub out_of_reach: usize,
-    /// Over all samples.
+    /// Errors over all samples.
     pub all: Errors,
-    /// Over the samples where the output moves; `None` where it never does.
+    /// Errors over the samples where the output moves; `None` if it never does.
     pub moving: Option<Errors>,
-    /// Over the samples in the dead band; `None` where there is none.
+    /// Errors over the samples in the dead band; `None` if there are none.
     pub dead_band: Option<Errors>,
 }
 
-/// Runs `model` forward over the measured input, and its inverse over the measured output, from every operator off.
-/// A model that depends on a load follows that of the recording; its inverse is that of a fixed load, [`Model::at_load`].
+/// Runs `model` forward over the measured input, and its inverse over the measured output. Both
+/// start with every operator off. A model that depends on a load uses the load of the recording.
+/// The inverse exists for a fixed load only, see [`Model::at_load`].
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with; [`crate::Error::Thermal`] for one without time
-/// where the model has a thermal body.
+/// [`crate::Error::Recording`] for an invalid recording; [`crate::Error::Thermal`] for a recording
+/// without time if the model has a thermal body.
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
     evaluate_from(model, recording, Start::Off)
 }
 
-/// As [`evaluate`], from another start. With one that is unknown, the forward test takes the start that explains the
-/// recording best; the inverse sets out from all off or all on, whichever is nearer.
+/// As [`evaluate`], from another start. With [`Start::Unknown`], the forward test uses the start
+/// that explains the recording best. The inverse then starts from all off or all on, whichever is
+/// nearer.
 ///
 /// # Errors
-/// As [`evaluate`]; [`crate::Error::Fit`] for a start that is not off with a load.
+/// As [`evaluate`]; [`crate::Error::Fit`] for a start other than off if the model depends on a
+/// load.
 pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
     recording.check()?;
     let seen = model.behind_body(recording)?;
@@ -98,7 +104,9 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
     if model.load.is_some() {
         let Some(load) = &recording.load else {
             return Err(crate::error::Error::Fit(
-                "the model depends on a load: the recording needs it too, or take the model at one load".into(),
+                "the model depends on a load: the recording needs it too, or take the model at one \
+                 load"
+                    .into(),
             ));
         };
         output_model = model.simulate_under_load(&seen.input, load)?;
@@ -109,7 +117,7 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         Err(error) => Err(error.to_string()),
     };
     Ok(Evaluation {
-        // The band sets out with every operator off.
+        // The band is defined only from every operator off.
         band: match start {
             Start::Off => BandEvaluation::of(model, &seen, &output_model)?,
             _ => None,
@@ -156,7 +164,7 @@ fn evaluate_inverse(
     })
 }
 
-/// Whether the output moves at each sample: it does not around a turning point, as far as it stays
+/// Whether the output moves at each sample. It stands still around a turning point, while it is
 /// within `still` of it.
 fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
     let mut turning = Turning::new(noise);
@@ -169,7 +177,7 @@ fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
     if turns.is_empty() {
         moving.fill(false);
     }
-    // From each turning point as far as its neighbours at most: they look on from there.
+    // Look at most as far as the neighbouring turning points. The samples beyond belong to those.
     let last = output.len() - 1;
     let ends: Vec<usize> = [0].into_iter().chain(turns).chain([last]).collect();
     for (n, &turn) in ends.iter().enumerate().skip(1) {
@@ -183,7 +191,7 @@ fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
     moving
 }
 
-/// Over all samples, of which a recording has at least one.
+/// Errors over all samples. A recording has at least one sample.
 fn compare(measured: &[f64], modelled: &[f64]) -> Errors {
     Errors::between(measured, modelled, |_| true).unwrap_or(Errors {
         rmse: 0.0,

@@ -1,13 +1,22 @@
-//! hysteron: from a recording of input and output to a calibrated hysteresis model and its exact inverse.
+//! hysteron: from a recording of input and output to a calibrated hysteresis model and its exact
+//! inverse.
 //!
 //! The model is the MKP (modified Krasnosel'skii-Pokrovskii) model, a weighted sum of elementary
-//! hysteresis operators; KP and the classical Preisach relay stand beside it. Identify one with
-//! [`fit`] ([`prepare()`] it before where it is noisy), simulate with [`Model::simulate`] or step by step with [`Model::step`], compensate with
-//! [`Model::inverse`], judge with [`evaluate`]. Where the plant changes, [`adapt()`] lets a model learn from a recording
-//! and [`Adaptive`] sample by sample; [`control`] puts models and inverses into loops, [`plant`] simulates devices to try them on,
-//! and [`track`](mod@track) compares controllers. *The chapter*, whose equations the docs number, is named in
-//! `hysteron-core`. The real-time core below, `hysteron-core`, runs without
-//! allocation.
+//! hysteresis operators. KP and classical Preisach relay operators can be used in its place.
+//!
+//! The usual steps:
+//! - Clean a noisy recording with [`prepare()`].
+//! - Identify a model with [`Fit`].
+//! - Simulate a whole input with [`Model::simulate`], or one sample at a time with [`Model::step`].
+//! - Compensate the hysteresis with [`Model::inverse`].
+//! - Measure the errors with [`evaluate`].
+//! - Where the plant changes, let the model learn: from a recording with [`adapt()`], or sample by
+//!   sample with [`Adaptive`].
+//! - Build control loops from models and inverses with [`control`].
+//!
+//! Simulated devices and comparisons of controllers are in the crate `hysteron-sim`. The real-time
+//! core is `hysteron-core`, which runs without allocation. Its documentation names *the chapter*,
+//! whose equation numbers the docs of both crates use.
 #![forbid(unsafe_code)]
 
 mod adapt;
@@ -28,7 +37,7 @@ mod remedy;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftParts, Learner, OutcomeCounts, adapt,
+    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, Learner, OutcomeCounts, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{
@@ -43,7 +52,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Region, Solution, Status, Target, operator_index,
+    Output, Region, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, advice,

@@ -1,8 +1,9 @@
-//! The same work for several numbers: on all threads with the feature `parallel`, else one by one.
+//! A map over numbers that uses all threads with the feature `parallel`, and one thread without it.
 
 use crate::error::Result;
 
-/// `work` of each number from 0 to `count`, in order; the first error ends it.
+/// The results of `work` for each number from 0 to `count − 1`, in order. The first error ends the
+/// work.
 #[cfg(feature = "parallel")]
 pub(crate) fn map<T: Send>(
     count: usize,
@@ -12,7 +13,8 @@ pub(crate) fn map<T: Send>(
     (0..count).into_par_iter().map(work).collect()
 }
 
-/// `work` of each number from 0 to `count`, in order; the first error ends it.
+/// The results of `work` for each number from 0 to `count − 1`, in order. The first error ends the
+/// work.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn map<T>(count: usize, work: impl Fn(usize) -> Result<T>) -> Result<Vec<T>> {
     (0..count).map(work).collect()

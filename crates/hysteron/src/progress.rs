@@ -1,8 +1,8 @@
-//! What long work tells of its progress.
+//! Progress reports of long calls, and the way to cancel them.
 
 use crate::error::Result;
 
-/// Told, now and then, what is being done and how far it is; may end the work.
+/// A callback for the progress of long work. It may cancel the work by returning an error.
 ///
 /// ```
 /// use hysteron::{Fit, Progress, Recording};
@@ -21,20 +21,20 @@ pub struct Progress<'a>(Option<Told<'a>>);
 type Told<'a> = &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync);
 
 impl<'a> Progress<'a> {
-    /// Nobody is told.
+    /// No callback.
     pub const NONE: Progress<'static> = Progress(None);
 
-    /// Calls `told` with what is being done and the share of it that is done, from 0 to 1, or NaN
-    /// where that is not known. It is called from any thread that works. An error that it returns
-    /// ends the work.
+    /// Calls `told` now and then, with the name of the current step and the share of it that is
+    /// done. The share is from 0 to 1, or NaN if it is not known. Any worker thread may call
+    /// `told`. If it returns an error, the work ends with this error.
     pub fn new(told: &'a (dyn Fn(&'static str, f64) -> Result<()> + Sync)) -> Self {
         Self(Some(told))
     }
 
-    /// Tells of the progress.
+    /// Reports progress.
     ///
     /// # Errors
-    /// What the one who is told returns.
+    /// The error that the callback returns.
     pub fn tell(&self, what: &'static str, share: f64) -> Result<()> {
         self.0.map_or(Ok(()), |told| told(what, share))
     }
@@ -47,5 +47,5 @@ impl std::fmt::Debug for Progress<'_> {
     }
 }
 
-/// How many samples a loop takes between two words of its progress: a few milliseconds.
+/// Samples that a loop processes between two reports: a few milliseconds of work.
 pub(crate) const SAMPLES_BETWEEN: usize = 1024;

@@ -1,10 +1,10 @@
-//! What helps against an error, apart from what is wrong: each surface spells the options in its
-//! own way.
+//! The remedy for an error, kept apart from the error itself. The names of options stay symbols in
+//! it, so that each surface can spell them in its own way.
 
 use std::borrow::Cow;
 use std::fmt;
 
-/// What helps, in words, with the options among them as such.
+/// What to do about an error: a text with the options in it.
 ///
 /// ```
 /// use hysteron::{Remedy, Setting};
@@ -19,21 +19,21 @@ pub struct Remedy {
     settings: Vec<Setting>,
 }
 
-/// An option, and the value that it should have.
+/// An option and the value that it should have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setting {
-    /// As the command has it: `load-degree`.
+    /// Name of the option as on the command line, without dashes in front: `load-degree`.
     pub name: &'static str,
-    /// The value.
+    /// The value that it should have.
     pub value: SettingValue,
 }
 
-/// What an option should be set to.
+/// The value that an option should have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SettingValue {
-    /// Whatever the user finds right.
+    /// Any value: the user chooses it.
     Any,
-    /// On, of an option that is on or off.
+    /// On, for an option that is either on or off.
     On,
     /// A word.
     Word(&'static str),
@@ -42,7 +42,7 @@ pub enum SettingValue {
 }
 
 impl Remedy {
-    /// Words with `{}` where the options stand.
+    /// A remedy from a text with `{}` in place of each option.
     #[must_use]
     pub fn new<const N: usize>(
         words: impl Into<Cow<'static, str>>,
@@ -52,7 +52,7 @@ impl Remedy {
         Self { words, settings }
     }
 
-    /// The words, with each option as a surface spells it.
+    /// The text, with each option spelt by `spelling`.
     pub fn spelt(&self, spelling: impl Fn(&Setting) -> String) -> String {
         let mut words = self.words.split("{}");
         let first = words.next().unwrap_or_default().to_owned();
@@ -64,7 +64,7 @@ impl Remedy {
 }
 
 impl Setting {
-    /// An option whose value is the user's.
+    /// An option whose value the user chooses.
     #[must_use]
     pub const fn any(name: &'static str) -> Self {
         let value = SettingValue::Any;
@@ -78,14 +78,14 @@ impl Setting {
         Self { name, value }
     }
 
-    /// An option with a word for its value.
+    /// An option with a word as its value.
     #[must_use]
     pub const fn word(name: &'static str, word: &'static str) -> Self {
         let value = SettingValue::Word(word);
         Self { name, value }
     }
 
-    /// An option with a number for its value.
+    /// An option with a number as its value.
     #[must_use]
     pub const fn number(name: &'static str, number: usize) -> Self {
         let value = SettingValue::Number(number);
@@ -93,7 +93,7 @@ impl Setting {
     }
 }
 
-/// Without a surface, an option is known by its name.
+/// The text for users of no particular surface: options are shown by name.
 impl fmt::Display for Remedy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let spelling = |setting: &Setting| {
@@ -107,7 +107,7 @@ impl fmt::Display for Remedy {
     }
 }
 
-/// Nothing for a value that has no text.
+/// Empty for a value that has no text of its own.
 impl fmt::Display for SettingValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -5,7 +5,7 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, DriftParts, FirstOrder, Fit, FitOptions, Learner, Model,
+    AdaptOptions, Adaptive, Columns, DriftBasis, FirstOrder, Fit, FitOptions, Learner, Model,
     Operator, Plane, Progress, Recording, Repair, Sign, Start, adapt,
 };
 
@@ -75,10 +75,10 @@ fn every_learner_follows_a_plant_with_another_stroke() {
 
 #[test]
 fn drift_follows_a_shift_that_it_has_no_part_for() {
-    // Two levels and a third more stroke; the parts are shifted by 1, 3 and 5.
+    // Two levels and a third more stroke; the basis is shifted by 1, 3 and 5.
     let (model, recording) = (wire(1.0, 0), recorded(&wire(1.3, 2), Start::Off));
     let adapted = adapt(&model, &recording, &by(Learner::Drift), Progress::NONE).unwrap();
-    // A sum of shifted parts is wider than a shift: about a quarter of the error stays.
+    // A sum of shifted weights is wider than a shift: about a quarter of the error stays.
     let last = adapted.thirds[2];
     assert!(last.adapting.rmse < 0.25 * last.fixed.rmse, "{last:?}");
     assert!(
@@ -88,7 +88,7 @@ fn drift_follows_a_shift_that_it_has_no_part_for() {
     );
 }
 
-/// Where no operator leaves the plane, a part is the model at an input so many levels away.
+/// Where no operator leaves the plane, a member of the basis is the model at an input so many levels away.
 #[test]
 fn a_shifted_part_is_a_shifted_model() {
     let mut weights = wire(1.0, 0).weights().to_vec();
@@ -103,13 +103,13 @@ fn a_shifted_part_is_a_shifted_model() {
     let of =
         |weights: Vec<f64>| Model::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive).unwrap();
     let model = of(weights);
-    let found = DriftParts::of(&model, None).unwrap();
+    let found = DriftBasis::of(&model, None).unwrap();
     let step = 60.0 / 11.0;
     let here: Vec<f64> = input().iter().map(|t| t.clamp(28.0, 60.0)).collect();
     for (n, shift) in [(1, -1.0), (2, 0.0), (3, 1.0), (4, 3.0)] {
         let there: Vec<f64> = here.iter().map(|t| t + shift * step).collect();
         let expected = model.simulate(&here).unwrap();
-        for (a, b) in of(found.parts[n].clone())
+        for (a, b) in of(found.basis[n].clone())
             .simulate(&there)
             .unwrap()
             .iter()
@@ -170,7 +170,7 @@ fn a_load_is_found_from_the_output_alone() {
     assert!(adapted.model.load.is_none());
     let refused = adapt(&model, &target, &by(Learner::LeastSquares), Progress::NONE).unwrap_err();
     assert!(
-        refused.to_string().contains("depends on a load"),
+        refused.to_string().contains("depends on the load"),
         "{refused}"
     );
     let far = AdaptOptions {

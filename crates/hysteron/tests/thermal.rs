@@ -5,7 +5,8 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign, evaluate,
+    Columns, FirstOrder, Fit, FitOptions, Model, Operator, Plane, Recording, Repair, Sign,
+    evaluate, operators,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -34,9 +35,8 @@ const BODY: FirstOrder = FirstOrder {
 /// Weights by the distance from the diagonal: a band of hysteresis.
 fn truth() -> Model {
     let plane = Plane::new(0.1, 1.0, 10).unwrap();
-    let rows = (1..=10_i32).flat_map(|j| (1..=j).map(move |i| (i, j)));
-    let weight = |(i, j): (i32, i32)| if j - i == 3 { 1.0 } else { 0.02 };
-    let weights = rows.map(weight).collect();
+    let weight = |(i, j): (usize, usize)| if j - i == 3 { 1.0 } else { 0.02 };
+    let weights = operators(10).map(weight).collect();
     let mut model = Model::new(Operator::Mkp, plane, weights, -2.0, Sign::Positive).unwrap();
     model.thermal = Some(BODY);
     model
@@ -47,6 +47,7 @@ fn recorded(samples: usize) -> (Recording, Vec<f64>) {
     let (time, input) = drive();
     let (time, input) = (time[..samples].to_vec(), input[..samples].to_vec());
     let clean = truth()
+        .operators()
         .simulate(&BODY.respond(&time, &input).unwrap())
         .unwrap();
     let range = clean.iter().copied().fold(f64::MIN, f64::max) - clean[0]; // it starts lowest
@@ -215,6 +216,7 @@ fn a_body_has_no_inverse_and_needs_time() {
     assert!(evaluation.inverse.unwrap_err().contains("not the drive"));
     // At 1 s the drive has only just come on; at 5 s the body has warmed for 4 s.
     let warmed = model
+        .operators()
         .simulate(&[0.0, 0.0, 1.0 - (-4.0 / 3.0_f64).exp()])
         .unwrap();
     assert_eq!(evaluation.output_model, warmed);
@@ -242,6 +244,7 @@ fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
     let mut model = truth();
     model.thermal = Some(body);
     let output = model
+        .operators()
         .simulate(&body.respond(&time, &input).unwrap())
         .unwrap();
     let mut recording = Recording::new(input, output).unwrap();

@@ -28,7 +28,8 @@ pub(crate) fn handle_of(pointer: *mut c_void) -> u64 {
     pointer.addr() as u64
 }
 
-/// Runs a call on its instance. Messages go out when the instance is free again: a callback may call.
+/// Runs a call on its instance. Messages go out when the instance is free again: a callback may
+/// call.
 pub(crate) fn call(
     instance: *mut c_void,
     name: &str,

@@ -3,7 +3,8 @@
 use super::{Problem, Result};
 use std::path::PathBuf;
 
-/// The folder that a `file:` URI names; what has no scheme is taken as a path, as some tools give it.
+/// The folder that a `file:` URI names; what has no scheme is taken as a path, as some tools give
+/// it.
 pub(crate) fn of_uri(uri: &str) -> Result<PathBuf> {
     let path = path_of_uri(uri, cfg!(windows))
         .map_err(|problem| Problem(format!("fmuResourceLocation `{uri}`: {problem}")))?;
@@ -21,7 +22,8 @@ pub(crate) fn of_uri(uri: &str) -> Result<PathBuf> {
     }
 }
 
-/// RFC 8089: `file:/path`, `file:///path`, `file://localhost/path`; on Windows also drive letters and hosts.
+/// RFC 8089: `file:/path`, `file:///path`, `file://localhost/path`; on Windows also drive letters
+/// and hosts.
 fn path_of_uri(uri: &str, windows: bool) -> std::result::Result<Vec<u8>, &'static str> {
     let is_file = uri
         .get(..5)

@@ -27,8 +27,8 @@ pub(crate) struct Logger {
     on: AtomicBool,
 }
 
-// SAFETY: `environment` is only ever handed back to the callback of the same caller, which the standards ask to be callable
-// from the thread that calls the function.
+// SAFETY: `environment` is only ever handed back to the callback of the same caller, which the
+// standards ask to be callable from the thread that calls the function.
 unsafe impl Send for Logger {}
 // SAFETY: as above.
 unsafe impl Sync for Logger {}
@@ -59,7 +59,8 @@ impl Logger {
                 // `%` begins a conversion and `#` a value reference there.
                 let text = c_text(&text.replace('%', "%%").replace('#', "##"));
                 let name = self.instance.as_ptr();
-                // SAFETY: the caller's own function, with texts that live during the call and a format without conversions.
+                // SAFETY: the caller's own function, with texts that live during the call and a
+                // format without conversions.
                 unsafe { logger(self.environment, name, status, category, text.as_ptr()) }
             }
             Callback::Fmi3(logger) => {

@@ -1,7 +1,9 @@
-//! The binary of an FMU: the functions of FMI 2.0 and 3.0 for co-simulation, one library for every model.
+//! The binary of an FMU: the functions of FMI 2.0 and 3.0 for co-simulation, one library for every
+//! model.
 //!
-//! The model comes from `resources/model.txt` of the FMU. What the standards give to the caller as a pointer, an instance or
-//! a saved state, is a handle here: one that was freed or never given is refused. No panic leaves a function.
+//! The model comes from `resources/model.txt` of the FMU. What the standards give to the caller as
+//! a pointer, an instance or a saved state, is a handle here: one that was freed or never given is
+//! refused. No panic leaves a function.
 //!
 //! FMI 2.0.4 and 3.0.1, Modelica Association, <https://fmi-standard.org>.
 

@@ -12,7 +12,8 @@
 //! …
 //! end 217 b1946ac92492d234
 //! ```
-//! The last line counts those before it and holds their FNV-1a checksum. Numbers are the shortest that read back as the same.
+//! The last line counts those before it and holds their FNV-1a checksum. Numbers are the shortest
+//! that read back as the same.
 
 use super::block::{Block, Kind};
 use super::{Problem, Result, checksum};

@@ -90,8 +90,8 @@ const PHASES: [Phase; 4] = [
 ];
 
 impl Run {
-    /// Words of 8 bytes, little-endian: mark, model, 11 that [`Run::of_bytes`] reads in the same order, number of turning
-    /// points, these, checksum.
+    /// Words of 8 bytes, little-endian: mark, model, 11 that [`Run::of_bytes`] reads in the same
+    /// order, number of turning points, these, checksum.
     fn bytes(&self, block: &Block) -> Vec<u8> {
         let points = self.state.turning_points();
         let points: Vec<u64> = points.map(f64::to_bits).collect();
@@ -154,7 +154,8 @@ impl Run {
                 "the serialised state belongs to another model",
             ));
         }
-        // Beyond this line only a program that forges checksums can be wrong, and it must do no harm either.
+        // Beyond this line only a program that forges checksums can be wrong, and it must do no
+        // harm either.
         let one = |word: &u64| {
             i32::try_from(*word as i64)
                 .ok()

@@ -5,7 +5,8 @@ use crate::{expected, feed};
 use hysteron_export::Fmi;
 use std::ptr::null_mut;
 
-/// In the middle of a run, save, run astray, and come back: nothing has changed, in this instance or in another.
+/// In the middle of a run, save, run astray, and come back: nothing has changed, in this instance
+/// or in another.
 #[test]
 fn saving_changes_nothing() {
     for name in [

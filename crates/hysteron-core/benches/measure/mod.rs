@@ -1,7 +1,8 @@
 //! What the benchmarks share: ratios within one run.
 //!
 //! Machines are shared and noisy, so nothing here is a time to quote: both sides of a ratio run in
-//! turn, several times, and the median of the ratios is printed with its smallest and largest value.
+//! turn, several times, and the median of the ratios is printed with its smallest and largest
+//! value.
 #![allow(clippy::unwrap_used, dead_code)]
 
 use crate::common::rng;

@@ -1,14 +1,15 @@
-//! The estimator: a method, its guards, and the model that it keeps up to date.
+//! The estimator: it joins a method, its guards and the model whose weights it adapts.
 
 use super::gate::Gate;
 use super::increments::Increment;
 use super::memory::{Layout, Slices};
 use super::trial::Trial;
 use super::{Adaptation, Learning, Method, Outcome, operators, parameters};
-use crate::branch::Place;
+use crate::branch::Position;
 use crate::branch::Turn;
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
 use crate::scalar::Real;
@@ -16,14 +17,21 @@ use crate::state::State;
 
 /// Adapts the weights of a [`Model`], and an offset beside it, from sample to sample.
 ///
-/// `M` is its memory: `&mut [T]`, an array or a vector with at least [`crate::estimator_len`] numbers.
+/// `M` is its memory: `&mut [T]`, an array or a vector with at least [`crate::estimator_len`] or
+/// [`crate::estimator_len_of_basis`] elements.
 ///
 /// ```
 /// use hysteron_core::{
-///     Adaptation, Estimator, Method, Model, Operator, Plane, Turn, estimator_len, table_len, turn_capacity,
+///     Adaptation, Estimator, Method, Model, Operator, Plane, Turn, estimator_len, table_len,
+///     turn_capacity,
 /// };
 /// const K: usize = 3;
-/// let method = Method::LeastSquares { forgetting: 0.98, noise: 0.01, spread: 1.0, correlation: 0.0 };
+/// let method = Method::LeastSquares {
+///     forgetting: 0.98,
+///     noise: 0.01,
+///     spread: 1.0,
+///     correlation: 0.0,
+/// };
 /// let options = Adaptation { method, ..Adaptation::default() };
 /// let plane = Plane::new(20.0, 80.0, K)?;
 /// let mut model = Model::new(plane, Operator::Mkp, &[1.0; 6], [0.0; table_len(K)])?;
@@ -50,33 +58,40 @@ pub struct Estimator<T, M> {
     pub(super) levels: usize,
     pub(super) layout: Layout,
     pub(super) memory: M,
-    /// The off-line one; how it differs now, in units of its share, is the last parameter.
+    /// The off-line offset. The last parameter is the deviation from it, in units of
+    /// `offset_share`.
     pub(super) offset: T,
-    /// `c` of the gradient.
+    /// `c` of [`Method::Gradient`].
     pub(super) floor: T,
-    /// Where the operators' states stand; none where they have to be taken from a state first.
-    pub(super) place: Option<Place<T>>,
-    /// The position last learned from.
+    /// The position that the operators' states belong to. `None` where they have to be computed
+    /// from a state first.
+    pub(super) aligned: Option<Position<T>>,
+    /// The normalised position of the last sample learned from.
     pub(super) learned: T,
+    /// The increment under way, for [`Method::Increments`].
     pub(super) increment: Option<Increment<T>>,
-    /// Rows of the table that do not have the present weights yet, where it is renewed row by row.
+    /// How many rows still have to be written until the table has the present weights, where it is
+    /// renewed row by row.
     pub(super) rows_due: usize,
     pub(super) trial: Trial<T>,
-    /// That of the offset alone, where it is learned apart.
+    /// The trial of the offset alone, for [`Method::Increments`].
     pub(super) level: Trial<T>,
     pub(super) gate: Gate<T>,
     pub(super) frozen: bool,
 }
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// Moves `state` to `input`, tells the output that `model` expects there, and learns from the one `measured`.
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
+    /// Moves `state` to `input`, predicts the output there, and learns from the output `measured`.
     ///
-    /// `model` is the one that the estimator was made with; others leave its weights alone. The outputs include the offset. A
-    /// state of the model with earlier weights is [rebased](Model::rebase). Cost: [`Method`].
+    /// `model` has to be the model that the estimator was made with, and nobody else may change its
+    /// weights. A state of the model with earlier weights is [rebased](Model::rebase). Outputs
+    /// include the offset. [`Method`] has the cost of a step.
     ///
     /// # Errors
-    /// [`Error::InputNotFinite`] with index 0 for the input and 1 for the output, [`Error::StateMismatch`], and
-    /// [`Error::MemoryTooSmall`] for the table of another model than its own; nothing is changed then.
+    /// [`Error::InputNotFinite`] with index 0 for the input and 1 for the measured output,
+    /// [`Error::StateMismatch`] for a model or state of another size or operator, and
+    /// [`Error::MemoryTooSmall`] for another model whose table is too small. Nothing is changed
+    /// then.
     pub fn step<C, S>(
         &mut self,
         model: &mut Model<T, C>,
@@ -85,8 +100,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         measured: T,
     ) -> Result<Learning<T>, Error>
     where
-        C: AsRef<[T]> + AsMut<[T]>,
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        C: Memory<T>,
+        S: Memory<Turn<T>>,
     {
         if !input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
@@ -97,7 +112,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         if model.plane().levels() != self.levels || model.operator() != self.operator {
             return Err(Error::StateMismatch);
         }
-        // It may be another model than the one that the estimator was made with.
+        // The caller may have passed another model, without memory for a second table.
         if matches!(self.options.method, Method::Increments { .. }) {
             model.check_renewable()?;
         }
@@ -128,13 +143,14 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         })
     }
 
-    /// The parameters: `N` weights, row by row, or the shares of the parts.
+    /// The parameters: `N` weights, row by row, or the coefficients of the basis. The offset is not
+    /// among them.
     #[must_use]
     pub fn parameters(&self) -> &[T] {
         &self.memory.as_ref()[..self.layout.parameters - 1]
     }
 
-    /// Output with `H = 0`.
+    /// The present offset: the output with `H = 0`.
     #[must_use]
     pub fn offset(&self) -> T {
         self.offset + self.options.offset_share * self.memory.as_ref()[self.layout.parameters - 1]
@@ -146,7 +162,9 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         &self.options
     }
 
-    /// While frozen, the model predicts and nothing is learned. What increments taught before still comes to the table.
+    /// Stops learning, or resumes it. A frozen estimator still predicts.
+    ///
+    /// With [`Method::Increments`], the table still takes up what was learned before.
     pub fn freeze(&mut self, frozen: bool) {
         self.frozen = frozen;
         self.increment = None;
@@ -158,37 +176,43 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         self.frozen
     }
 
-    /// Takes the present weights as the last good ones.
+    /// Takes the present parameters as the last good ones and starts a new trial.
     pub fn keep(&mut self) {
         let all = 0..self.layout.parameters;
         self.slices().contest(all).keep();
         (self.trial, self.level) = (Trial::default(), Trial::default());
     }
 
-    /// Goes back to the last good weights.
-    pub fn roll_back<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
+    /// Returns to the last good parameters and writes them to `model`.
+    pub fn roll_back<C: Memory<T>>(&mut self, model: &mut Model<T, C>) {
         self.take_back();
         self.gate.restart();
         self.rewrite(model);
     }
 
-    /// Makes the next step work out the operators' states anew. It does so by itself where it finds the state on another
-    /// branch or at another position than it left it: only a state that others brought back to the very same, by another way,
-    /// needs this.
+    /// Makes the next step compute the operators' states from the turning points.
+    ///
+    /// A step does so by itself where the state has another position or branch than after the last
+    /// step. A call is needed only where others moved the state and brought it back to the same
+    /// position and branch.
     pub fn realign(&mut self) {
-        self.place = None;
+        self.aligned = None;
     }
 
     pub(super) fn slices(&mut self) -> Slices<'_, T> {
         self.layout.cut(self.memory.as_mut())
     }
 
-    /// Takes the operators' states from `state`, unless it is where it was left.
+    /// Computes the operators' states from `state`, unless the state did not move since the last
+    /// step.
     fn align<S>(&mut self, state: &State<T, S>)
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
-        if self.place.is_some_and(|place| place.is_at(&state.place())) {
+        if self
+            .aligned
+            .is_some_and(|position| position.is_at(&state.branch_position()))
+        {
             return;
         }
         let levels = self.levels;
@@ -200,21 +224,24 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         self.increment = None;
     }
 
+    /// Moves the operators' states from position `from` to that of `state`.
     fn follow<S>(&mut self, from: T, state: &State<T, S>)
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let levels = self.levels;
         let slices = self.slices();
         if !slices.gamma.is_empty() {
             operators::follow(slices.gamma, levels, from, state.position());
         }
-        self.place = Some(state.place());
+        self.aligned = Some(state.branch_position());
     }
 
-    /// Lets the model's table follow the parameters, and takes them back where it would not be one of numbers; says what
-    /// came of the sample, and whether the model changed.
-    fn renew<C: AsRef<[T]> + AsMut<[T]>>(
+    /// Updates the model's table from the parameters. Returns the outcome of the sample, and
+    /// whether the model changed.
+    ///
+    /// Where the table would not be finite, the last good parameters return.
+    fn renew<C: Memory<T>>(
         &mut self,
         model: &mut Model<T, C>,
         outcome: Outcome,
@@ -223,7 +250,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         let sound = match outcome {
             Outcome::RolledBack => false,
             Outcome::Learned if by_rows => {
-                // What is left of the pass under way, at most, and a whole one.
+                // At most the rest of the pass under way, and one whole pass.
                 self.rows_due = 2 * self.levels;
                 true
             }
@@ -257,7 +284,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         }
     }
 
-    pub(super) fn rewrite<C: AsRef<[T]> + AsMut<[T]>>(&mut self, model: &mut Model<T, C>) {
+    /// Writes the model's whole table from the parameters.
+    pub(super) fn rewrite<C: Memory<T>>(&mut self, model: &mut Model<T, C>) {
         let levels = self.levels;
         parameters::rewrite(&self.slices(), levels, model);
         self.rows_due = 0;

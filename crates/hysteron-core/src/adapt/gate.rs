@@ -1,51 +1,53 @@
-//! Readings that are not learned from, because they differ too much from what was expected.
+//! The gate: it keeps the estimator from learning from outliers.
 //!
-//! What counts is the *surprise*: the error of a prediction less the error that the last reading
-//! believed left behind. What a model says wrongly again and again, on a branch that it knows
-//! badly, is no surprise, however large.
+//! The gate judges the *surprise* of a reading: its prediction error less the error that remained
+//! after the last accepted reading. An error that the model makes again and again, on a branch that
+//! it knows badly, is no surprise, however large it is.
 //!
-//! The scale is a running mean of the sizes of those surprises that were believed, so that no wrong
-//! reading is in it. Two ways lead back for a plant that is not what it was. Readings refused in a
-//! row that agree with each other are a jump, and believed. Those that do not agree are noise that
-//! has grown, and the scale follows it step by step.
+//! The scale of surprises is a running mean of the sizes of accepted ones, so outliers do not
+//! affect it. A plant may really change. Refused readings in a row that agree with each other are
+//! taken as a jump of the plant and accepted. Refused readings that do not agree are taken as more
+//! noise, and the scale grows step by step.
 
 use super::Adaptation;
 use crate::model::Model;
 use crate::scalar::Real;
 
-/// Surprises that the mean remembers. A branch takes some hundred samples, and its scale is not
-/// that of the next one.
+/// Length of the running mean, in samples. It is shorter than a branch of some hundred samples,
+/// because the next branch may have another scale.
 const MEMORY: usize = 64;
-/// The scale at the start, in shares of the model's range: usual errors of a fitted model. Worse
-/// ones wait for the way back.
+/// The scale at the start is the model's range divided by this: the usual error of a fitted model.
+/// A model with larger errors first has its readings refused, until the scale has grown.
 const AT_START: usize = 50;
-/// The least scale, in shares of the model's range. Where there is no noise, the scale would vanish
-/// and rounding be refused; readings within a gate of this scale do no harm.
+/// The smallest scale is the model's range divided by this. Without noise, the scale would vanish
+/// and rounding errors would be refused. Outliers within a gate of this scale do no harm.
 const LEAST: usize = 1000;
 
-/// What has been seen of the errors.
+/// What the gate knows of the errors. All values are in the output's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gate<T> {
+    /// Range of the model's output.
     range: T,
+    /// Usual size of a surprise.
     scale: T,
-    /// The error that was left after the last reading believed.
+    /// The error that remained after the last accepted reading.
     left: T,
-    /// The surprise of the last reading refused.
+    /// The surprise of the last refused reading.
     last: T,
-    /// Readings refused in a row, since the scale last changed for them.
+    /// Number of readings refused in a row since the scale last changed.
     refused: u32,
-    /// The last of them that agree.
+    /// Number of the last of these that agree with each other.
     agreeing: u32,
 }
 
 impl<T: Real> Gate<T> {
-    /// Nothing has been seen of the model's errors.
+    /// A gate for `model`, before the first error.
     pub(super) fn over<C: AsRef<[T]>>(model: &Model<T, C>) -> Self {
         let (off, on) = model.output_range();
         Self::new(on - off)
     }
 
-    /// Nothing has been seen, and the model's output has this range.
+    /// A gate for a model whose output has this range, before the first error.
     pub(super) fn new(range: T) -> Self {
         Self {
             range,
@@ -57,19 +59,19 @@ impl<T: Real> Gate<T> {
         }
     }
 
-    /// Forgets all errors: those of other weights.
+    /// Forgets all errors, because they were those of other weights.
     pub(super) fn restart(&mut self) {
         *self = Self::new(self.range);
     }
 
-    /// Whether a reading is believed whose prediction has this `error`.
+    /// Whether a reading whose prediction has this `error` is accepted.
     pub(super) fn believes(&mut self, error: T, options: &Adaptation<T>) -> bool {
         if options.gate == T::ZERO {
             return true;
         }
         let surprise = error - self.left;
-        let size = surprise.larger(-surprise);
-        // Without a range there is nothing to measure by before the first surprise.
+        let size = surprise.max(-surprise);
+        // A model without range gives no scale. The first surprise does.
         if size <= options.gate * self.scale || self.scale == T::ZERO {
             self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
             return true;
@@ -89,7 +91,7 @@ impl<T: Real> Gate<T> {
         false
     }
 
-    /// What a reading that was believed has left of its error.
+    /// Keeps the error that `left` after learning from an accepted reading.
     pub(super) fn settle(&mut self, left: T) {
         self.left = if left.is_finite() { left } else { T::ZERO };
     }
@@ -101,13 +103,13 @@ impl<T: Real> Gate<T> {
 
     fn rescale(&mut self, scale: T) {
         if scale.is_finite() {
-            self.scale = scale.larger(self.range / T::from_index(LEAST));
+            self.scale = scale.max(self.range / T::from_index(LEAST));
         }
     }
 }
 
-/// Whether two surprises are of one jump: they differ by at most half of the larger one.
+/// Whether two surprises may come from one jump: they differ by at most half of the larger one.
 fn agree<T: Real>(a: T, b: T) -> bool {
-    let size = |x: T| x.larger(-x);
-    size(a - b) <= T::HALF * size(a).larger(size(b))
+    let size = |x: T| x.max(-x);
+    size(a - b) <= T::HALF * size(a).max(size(b))
 }

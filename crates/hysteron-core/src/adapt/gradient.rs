@@ -4,8 +4,8 @@ use super::memory::Slices;
 use super::vector::dot;
 use crate::scalar::Real;
 
-/// Moves the parameters along the regressor by the share `gain` of the error, and by `leakage` to the off-line ones;
-/// `floor` is `c`.
+/// One update: `θ ← θ + g φ e/(c + φᵀφ) + l (θ₀ − θ)`, with gain `g`, leakage `l`, off-line
+/// parameters `θ₀` and `floor` `c`. The offset's share `κ` is the last element of `φ`.
 pub(super) fn update<T: Real>(
     slices: &mut Slices<'_, T>,
     error: T,
@@ -22,11 +22,11 @@ pub(super) fn update<T: Real>(
     }
 }
 
-/// Projection onto weights that are not negative; the offset, the last parameter, is free.
+/// Sets negative weights to zero. The last parameter, the offset, may be negative.
 pub(super) fn project<T: Real>(theta: &mut [T]) {
     if let Some((_offset, weights)) = theta.split_last_mut() {
         for weight in weights {
-            *weight = weight.larger(T::ZERO);
+            *weight = weight.max(T::ZERO);
         }
     }
 }

@@ -1,5 +1,7 @@
-//! The gradient on increments: what the output gained while the input crossed some levels is owed to the operators in
-//! these rows and columns alone (time-difference scheme, Tan & Baras 2005).
+//! The gradient on increments (time-difference scheme, Tan & Baras 2005).
+//!
+//! While the input crosses some levels, only the operators in these rows and columns change. So the
+//! change of the output concerns their weights alone.
 
 use super::memory::Slices;
 use super::operators::{touched, within};
@@ -10,22 +12,25 @@ use crate::scalar::Real;
 /// An increment under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Increment<T> {
-    /// The output as measured where it began.
+    /// The measured output at its start.
     measured: T,
-    /// The position there.
+    /// The normalised position at its start.
     position: T,
-    /// Lowest and highest position since: all rows and columns in which operators can have moved.
+    /// Lowest and highest position since. Operators in all rows and columns between may have moved.
     range: (T, T),
 }
 
-/// A finished increment, against the present and other weights.
+/// A finished increment, and its errors with the present and with other weights.
 pub(super) struct Finished<T> {
     pub(super) errors: Errors<T>,
+    /// `φᵀφ` of the changes of the operators' outputs.
     norm: T,
+    /// First and last row and column crossed.
     rows: (usize, usize),
 }
 
 impl<T: Real> Increment<T> {
+    /// An increment that starts here.
     pub(super) fn start(measured: T, position: T) -> Self {
         Self {
             measured,
@@ -34,16 +39,19 @@ impl<T: Real> Increment<T> {
         }
     }
 
-    /// Goes on to `position`; says whether that is `span` levels from where it began. Then the diagonal operators,
-    /// which have no memory, have moved by as much, so that the increment says something for sure.
+    /// Goes on to `position`. Returns whether that is at least `span` levels from its start.
+    ///
+    /// The operators on the diagonal have no memory. Over such a distance they surely changed, so
+    /// the increment has information.
     pub(super) fn extend(&mut self, position: T, span: T) -> bool {
         let (low, high) = self.range;
-        self.range = (low.smaller(position), high.larger(position));
+        self.range = (low.min(position), high.max(position));
         let travelled = position - self.position;
-        travelled.larger(-travelled) >= span
+        travelled.max(-travelled) >= span
     }
 
-    /// What the weights say of the increment that ends with `measured`. `O(K)` for each level travelled.
+    /// Finishes the increment with the output `measured` and computes its errors. `O(K)` for each
+    /// level crossed.
     pub(super) fn finish(
         &self,
         slices: &Slices<'_, T>,
@@ -72,8 +80,8 @@ impl<T: Real> Increment<T> {
 }
 
 impl<T: Real> Finished<T> {
-    /// Moves the weights of the rows and columns travelled by the share `gain` of `error`, and by `leakage` to the
-    /// off-line ones.
+    /// Moves the weights of the rows and columns crossed, as [`gradient::update`](super::gradient)
+    /// moves all.
     pub(super) fn update(
         &self,
         slices: &mut Slices<'_, T>,
@@ -88,12 +96,12 @@ impl<T: Real> Finished<T> {
             let theta = slices.theta[n];
             let moved = theta + step * phi + leakage * (slices.offline[n] - theta);
             if moved.is_finite() {
-                slices.theta[n] = moved.larger(T::ZERO);
+                slices.theta[n] = moved.max(T::ZERO);
             }
         });
     }
 
-    /// The next increment begins where this one ends.
+    /// Keeps the operators' states as the start of the next increment.
     pub(super) fn close(&self, slices: &mut Slices<'_, T>, levels: usize) {
         within(self.rows.0, self.rows.1, levels, |n| {
             slices.anchor[n] = slices.gamma[n];
@@ -101,7 +109,7 @@ impl<T: Real> Finished<T> {
     }
 }
 
-/// What the operators' outputs have changed by since the increment began.
+/// The change of the operators' outputs since the increment began.
 struct Change<'a, T> {
     gamma: &'a [T],
     anchor: &'a [T],

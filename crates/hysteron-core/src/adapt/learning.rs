@@ -1,4 +1,4 @@
-//! What a sample teaches, and what comes of it.
+//! How an estimator learns from a sample, and the outcome.
 
 use super::estimator::Estimator;
 use super::increments::Increment;
@@ -7,44 +7,45 @@ use super::trial::{Errors, Trial};
 use super::vector::dot;
 use super::{Method, gradient, parameters};
 use crate::branch::Turn;
+use crate::memory::Memory;
 use crate::plane::Clipped;
 use crate::plane::operator_count;
 use crate::scalar::Real;
 use crate::state::State;
 
-/// What a sample taught.
+/// The result of a step of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Learning<T> {
-    /// Output that was expected before anything was learned from the sample.
+    /// The predicted output, before the estimator learned from the sample. In the output's unit.
     pub output: T,
-    /// Measured less expected.
+    /// The measured output less the predicted one.
     pub error: T,
-    /// What was done with it.
+    /// What the estimator did with the sample.
     pub outcome: Outcome,
-    /// Whether the input lay outside the plane, and at which end.
+    /// The end of the plane that the input lay beyond; `None` within the active range.
     pub clipped: Option<Clipped>,
 }
 
 /// What an estimator did with a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// The weights moved.
+    /// The parameters moved.
     Learned,
-    /// The error was within the dead zone, or an increment is not finished.
+    /// The error lies within the dead zone, or an increment is not finished.
     Waiting,
-    /// The input did not move: no excitation.
+    /// The input did not move: there is no excitation.
     AtRest,
     /// The estimator is frozen.
     Frozen,
-    /// The weights did far worse than the last good ones, or were no numbers any more: these are back.
+    /// The last good parameters are back, because the present ones predicted far worse or
+    /// overflowed.
     RolledBack,
-    /// The reading differs too much from what was expected to be learned from, and has not done so
-    /// for long: [`Adaptation::gate`](super::Adaptation::gate).
+    /// The reading is taken as an outlier: [`Adaptation::gate`](super::Adaptation::gate).
     Rejected,
 }
 
 impl Outcome {
-    /// All of them.
+    /// All outcomes.
     pub const ALL: [Self; 6] = [
         Self::Learned,
         Self::Waiting,
@@ -54,7 +55,8 @@ impl Outcome {
         Self::Rejected,
     ];
 
-    /// Its name in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`.
+    /// The name of the outcome in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`,
+    /// `rejected`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -67,15 +69,15 @@ impl Outcome {
         }
     }
 
-    /// Whether the reading passed the gate.
+    /// Whether the gate accepted the reading.
     pub(super) fn is_of_believed(self) -> bool {
         matches!(self, Self::Learned | Self::Waiting | Self::RolledBack)
     }
 }
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// Learns from a reading, if there is anything to learn and it is to be believed. `above` is
-    /// what was measured above `H`.
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
+    /// Learns from a reading, if the input moved and the gate accepts the reading. `above` is the
+    /// measured output less `H`; `error` is that less the offset.
     pub(super) fn judge<S>(
         &mut self,
         state: &State<T, S>,
@@ -83,7 +85,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         (above, error): (T, T),
     ) -> Outcome
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let position = state.position();
         let moved = self.moves(position);
@@ -95,8 +97,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             return Outcome::AtRest;
         }
         if !self.gate.believes(error, &self.options) {
-            // An increment that begins before a jump and ends after it would take the jump for a
-            // slope.
+            // An increment from before a jump to after it would take the jump for a slope.
             self.increment = None;
             return Outcome::Rejected;
         }
@@ -115,9 +116,10 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         }
     }
 
+    /// Learns from a sample with a method whose regressor is that of the whole output.
     fn learn<S>(&mut self, state: &State<T, S>, measured: T, error: T) -> Outcome
     where
-        S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+        S: Memory<Turn<T>>,
     {
         let (options, floor) = (self.options, self.floor);
         let mut slices = self.layout.cut(self.memory.as_mut());
@@ -162,29 +164,30 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         Outcome::Learned
     }
 
-    /// Whether the input moved since it was learned from: without that, a sample is the same
-    /// equation again.
+    /// Whether the input moved since the last sample learned from. If not, the sample would be the
+    /// same equation again.
     fn moves(&mut self, position: T) -> bool {
         let way = position - self.learned;
-        let moved = way.larger(-way) > self.options.movement;
+        let moved = way.max(-way) > self.options.movement;
         if moved {
             self.learned = position;
         }
         moved
     }
 
-    /// Whether an increment ends at a position, or one can begin there.
+    /// Whether an increment ends at `position`, or the first one begins there.
     fn increment_ends(&mut self, position: T) -> bool {
         let Method::Increments { span, .. } = self.options.method else {
             return false;
         };
-        let least = span.larger(self.options.movement);
+        let least = span.max(self.options.movement);
         match &mut self.increment {
             Some(increment) => increment.extend(position, least),
             None => true,
         }
     }
 
+    /// Learns the weights from a finished increment, and starts the next one.
     fn learn_slope(&mut self, position: T, measured: T, gain: T) -> Outcome {
         let (operator, levels, options) = (self.operator, self.levels, self.options);
         let start = Increment::start(measured, position);
@@ -214,8 +217,8 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         outcome
     }
 
-    /// The offset follows the error of the level, as in the gradient with every operator on: increments say nothing of
-    /// it. Says whether it was taken back.
+    /// Learns the offset from the error of the output, as the gradient does with every operator on.
+    /// Increments have no information about it. Returns whether a trial took the offset back.
     fn learn_level(&mut self, measured: T, above: T, gain: T) -> bool {
         let (options, fixed) = (self.options, self.offset);
         let share = options.offset_share;
@@ -240,6 +243,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         false
     }
 
+    /// Returns to the last good parameters. The model's table is not written.
     pub(super) fn take_back(&mut self) {
         let mut slices = self.layout.cut(self.memory.as_mut());
         slices.contest(0..self.layout.parameters).roll_back();

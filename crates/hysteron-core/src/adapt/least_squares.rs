@@ -1,18 +1,20 @@
-//! Recursive least squares with regularised linear forgetting (Kulhavý & Kraus 1996; stabilised forgetting: Kulhavý & Zarrop 1993).
+//! Recursive least squares with regularised linear forgetting (Kulhavý & Kraus 1996; stabilised
+//! forgetting: Kulhavý & Zarrop 1993).
 //!
-//! A sample takes from the covariance what it tells, `P ← P − (Pφ)(Pφ)ᵀ/(r + φᵀPφ)`. Forgetting then leads it back to the
-//! one at the start, `P ← λP + (1 − λ)P₀`: `P` never exceeds `P₀`, stays positive because both are, and rounding
-//! is forgotten as well. Parameters that are not excited become as uncertain as they were off-line, and no more.
+//! Each sample reduces the covariance, `P ← P − (Pφ)(Pφ)ᵀ/(r + φᵀPφ)`. Forgetting then leads it
+//! back towards the covariance at the start, `P ← λP + (1 − λ)P₀`. So `P` never exceeds `P₀` and
+//! stays positive definite, and rounding errors are forgotten too. The uncertainty of parameters
+//! without excitation grows back to that of the off-line ones, and no further.
 
 use super::memory::Slices;
 use super::vector::{dot, dot_and_add};
 use crate::plane::operator_index;
 use crate::scalar::Real;
 
-/// One negative weight for each of so many parameters is led back in a sample.
+/// A sample leads at most one negative weight back to zero for each of so many parameters.
 const PARAMETERS_PER_STEP: usize = 4;
 
-/// Forgetting factor and variance of a reading.
+/// Forgetting factor `λ`, and variance `r` of a reading's error.
 #[derive(Clone, Copy)]
 pub(super) struct Law<T> {
     pub(super) forgetting: T,
@@ -20,7 +22,8 @@ pub(super) struct Law<T> {
 }
 
 impl<T: Real> Law<T> {
-    /// One sample: the estimate and the covariance move. `error` is that of the estimate.
+    /// Updates the estimate and the covariance with a sample. `error` is the prediction error of
+    /// the estimate.
     pub(super) fn update(self, slices: &mut Slices<'_, T>, error: T, leakage: T) {
         let Slices {
             estimate,
@@ -34,7 +37,7 @@ impl<T: Real> Law<T> {
         multiply(covariance, phi, gain);
         let mut spread = dot(phi, gain);
         if spread < T::ZERO || !spread.is_finite() {
-            // After very many samples rounding can take from the covariance its being positive.
+            // After very many samples, rounding can make the covariance indefinite. Restart it.
             covariance.copy_from_slice(start);
             multiply(covariance, phi, gain);
             spread = dot(phi, gain);
@@ -50,7 +53,7 @@ impl<T: Real> Law<T> {
         self.learn_and_forget(covariance, start, gain, total);
     }
 
-    /// `P ← λ(P − ggᵀ/total) + (1 − λ)P₀`, in one pass.
+    /// `P ← λ(P − ggᵀ/total) + (1 − λ)P₀` in one pass, with `g = Pφ` and `total = r + φᵀPφ`.
     fn learn_and_forget(self, covariance: &mut [T], start: &[T], gain: &[T], total: T) {
         let forgetting = self.forgetting;
         let back = T::ONE - forgetting;
@@ -67,11 +70,15 @@ impl<T: Real> Law<T> {
     }
 }
 
-/// Leads negative weights back to zero along the covariance: `θ ← θ − P_k θ_k/P_kk` is the nearest point with `θ_k = 0` in the
-/// metric of `P⁻¹`, in which parameters that go together move together, and no further from any parameters that
-/// are not negative (Goodwin & Sin 1984, section 3.7; Simon 2010). `O(n)` for each, a bounded number of them.
+/// Leads negative weights back to zero along the covariance, `θ ← θ − P_k θ_k/P_kk`.
 ///
-/// What is left below zero is cut off for the model, not for the estimate: cutting has no such property, and would pile up.
+/// This is the nearest point with `θ_k = 0` in the metric of `P⁻¹`: correlated parameters move
+/// together. It brings the estimate no further away from any set of parameters that are not
+/// negative (Goodwin & Sin 1984, section 3.7; Simon 2010). `O(n)` for each weight, for a bounded
+/// number of weights in a sample.
+///
+/// Weights that remain negative are set to zero in the model's parameters, but not in the estimate.
+/// Setting them to zero there would not have that property, and its errors would add up.
 pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
     let Slices {
         theta,
@@ -104,7 +111,7 @@ pub(super) fn project<T: Real>(slices: &mut Slices<'_, T>) {
     super::gradient::project(theta);
 }
 
-/// The estimate sets out from the parameters in force: after these were put there from elsewhere.
+/// Restarts estimate and covariance from the present parameters, after these were replaced.
 pub(super) fn restart<T: Real>(slices: &mut Slices<'_, T>) {
     if slices.estimate.is_empty() {
         return;
@@ -113,7 +120,7 @@ pub(super) fn restart<T: Real>(slices: &mut Slices<'_, T>) {
     slices.estimate.copy_from_slice(slices.theta);
 }
 
-/// Place of `(a, b)` in the lower triangle of a symmetric matrix, row by row.
+/// Index of element `(a, b)` in the lower triangle of a symmetric matrix, row by row.
 pub(super) fn packed(a: usize, b: usize) -> usize {
     operator_index(a.min(b) + 1, a.max(b) + 1)
 }
@@ -145,19 +152,19 @@ mod tests {
     };
     const LAYOUT: Layout = Layout::all(LEVELS, METHOD);
 
-    /// Whether a symmetric matrix is positive definite (Cholesky).
+    /// Whether a symmetric matrix is positive definite, by its Cholesky factors.
     fn is_positive(at: impl Fn(usize, usize) -> f64) -> bool {
         let mut lower = [[0.0; N]; N];
         for a in 0..N {
             for b in 0..=a {
                 let known: f64 = (0..b).map(|k| lower[a][k] * lower[b][k]).sum();
                 let rest = at(a, b) - known;
-                // Written so that NaN fails it.
+                // NaN is not positive either.
                 if a == b && (rest <= 0.0 || rest.is_nan()) {
                     return false;
                 }
                 lower[a][b] = if a == b {
-                    // A root by Newton's method: the core has none.
+                    // A square root by Newton's method, because `no_std` has none.
                     (0..60).fold(rest.max(1.0), |root, _| (root + rest / root) / 2.0)
                 } else {
                     rest / lower[b][b]
@@ -179,7 +186,7 @@ mod tests {
             (seed >> 40) as f64 / (1 << 24) as f64
         };
         for n in 0..20_000 {
-            // All directions, one alone, and none but the offset.
+            // All directions at random, then one at a time, then the offset alone.
             let kind = n / 1000 % 3;
             for (k, phi) in slices.phi.iter_mut().enumerate() {
                 *phi = match kind {
@@ -196,9 +203,9 @@ mod tests {
             if n % 97 == 0 {
                 let (now, start) = (&*slices.covariance, &*slices.start);
                 assert!(is_positive(|a, b| now[packed(a, b)]), "after {n}");
-                // By no more than rounding.
-                let slack = |a, b| if a == b { 1e-9 } else { 0.0 };
-                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + slack(a, b);
+                // P₀ − P is positive up to rounding.
+                let rounding = |a, b| if a == b { 1e-9 } else { 0.0 };
+                let below = |a, b| start[packed(a, b)] - now[packed(a, b)] + rounding(a, b);
                 assert!(is_positive(below), "after {n}");
             }
         }

@@ -1,4 +1,4 @@
-//! What an estimator keeps, in one block of memory that the caller provides.
+//! The arrays of an estimator, in one block of memory of the caller.
 
 use core::ops::Range;
 
@@ -7,26 +7,28 @@ use crate::adapt::Method;
 use crate::everett::table_len;
 use crate::plane::operator_count;
 
-/// Numbers that an [`crate::Estimator`] over all weights needs.
+/// Number of elements of memory for an [`crate::Estimator`] of all weights
+/// ([`Estimator::new`](crate::Estimator::new)).
 #[must_use]
 pub const fn estimator_len<T: Copy>(levels: usize, method: Method<T>) -> usize {
     Layout::all(levels, method).len()
 }
 
-/// Numbers that an [`crate::Estimator`] over `parts` needs.
+/// Number of elements of memory for an [`crate::Estimator`] of the coefficients of a basis
+/// ([`Estimator::of_basis`](crate::Estimator::of_basis)) with `count` members.
 #[must_use]
-pub const fn estimator_len_of_parts<T: Copy>(
+pub const fn estimator_len_of_basis<T: Copy>(
     levels: usize,
     method: Method<T>,
-    parts: usize,
+    count: usize,
 ) -> usize {
-    Layout::parts(levels, method, parts).len()
+    Layout::basis(levels, method, count).len()
 }
 
-/// How many numbers of each kind there are.
+/// The lengths of the arrays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Layout {
-    /// Parameters, with the offset as the last one.
+    /// Number of parameters. The offset is the last one.
     pub(super) parameters: usize,
     gamma: usize,
     anchor: usize,
@@ -34,21 +36,21 @@ pub(super) struct Layout {
     tables: usize,
 }
 
-/// The same memory, cut up.
+/// The arrays.
 pub(super) struct Slices<'a, T> {
-    /// The parameters as they are.
+    /// The present parameters.
     pub(super) theta: &'a mut [T],
-    /// The off-line ones.
+    /// The off-line parameters.
     pub(super) offline: &'a mut [T],
-    /// The last good ones.
+    /// The last good parameters.
     pub(super) good: &'a mut [T],
-    /// Those on trial to become the good ones.
+    /// The parameters on trial to become the good ones.
     pub(super) candidate: &'a mut [T],
     /// The regressor: the derivative of the output with respect to each parameter.
     pub(super) phi: &'a mut [T],
-    /// The operators' states; empty with parts.
+    /// The operators' states; empty with a basis.
     pub(super) gamma: &'a mut [T],
-    /// The operators' states where an increment began; empty for other methods.
+    /// The operators' states at the start of the increment; empty for other methods.
     pub(super) anchor: &'a mut [T],
     /// The lower triangle of the covariance; empty for other methods.
     pub(super) covariance: &'a mut [T],
@@ -56,13 +58,15 @@ pub(super) struct Slices<'a, T> {
     pub(super) start: &'a mut [T],
     /// Covariance times regressor; empty for other methods.
     pub(super) gain: &'a mut [T],
-    /// The parameters of least squares before the last negative ones are cut off; empty for other methods.
+    /// The parameters of least squares, before the remaining negative ones are set to zero; empty
+    /// for other methods.
     pub(super) estimate: &'a mut [T],
-    /// The tables of the parts, one after the other.
+    /// The Everett tables of the members of the basis, one after the other; empty without a basis.
     pub(super) tables: &'a mut [T],
 }
 
 impl Layout {
+    /// For an estimator of all weights.
     pub(super) const fn all<T: Copy>(levels: usize, method: Method<T>) -> Self {
         let n = operator_count(levels);
         let anchor = match method {
@@ -78,13 +82,14 @@ impl Layout {
         }
     }
 
-    pub(super) const fn parts<T: Copy>(levels: usize, method: Method<T>, parts: usize) -> Self {
+    /// For an estimator of the coefficients of a basis with `count` members.
+    pub(super) const fn basis<T: Copy>(levels: usize, method: Method<T>, count: usize) -> Self {
         Self {
-            parameters: parts + 1,
+            parameters: count + 1,
             gamma: 0,
             anchor: 0,
-            covariance: Self::covariance(parts + 1, method),
-            tables: parts * table_len(levels),
+            covariance: Self::covariance(count + 1, method),
+            tables: count * table_len(levels),
         }
     }
 
@@ -103,6 +108,7 @@ impl Layout {
         }
     }
 
+    /// Length of all arrays together.
     pub(super) const fn len(self) -> usize {
         5 * self.parameters
             + self.gamma
@@ -112,7 +118,7 @@ impl Layout {
             + self.tables
     }
 
-    /// Cuts up `memory`, which holds at least as many numbers.
+    /// Divides `memory`, which has at least [`Layout::len`] elements, into the arrays.
     pub(super) fn cut<T>(self, memory: &mut [T]) -> Slices<'_, T> {
         let mut rest = memory;
         let mut next = |count: usize| {
@@ -138,7 +144,7 @@ impl Layout {
 }
 
 impl<T> Slices<'_, T> {
-    /// The parameters `which` that a trial is about.
+    /// The parameters `which`, for a trial.
     pub(super) fn contest(&mut self, which: Range<usize>) -> Contest<'_, T> {
         Contest {
             now: &mut self.theta[which.clone()],

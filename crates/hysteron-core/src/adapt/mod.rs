@@ -1,8 +1,8 @@
 //! On-line adaptation: weights that follow the plant while the model runs.
 //!
-//! The output is linear in the weights, `H = φᵀμ` with `φ` the operators' outputs, so that an estimator of linear
-//! parameters applies. Whatever the method, weights stay at zero or above after every sample, so that the
-//! inverse exists at every instant.
+//! The output is linear in the weights: `H = φᵀμ`, with the operators' outputs `φ`. So estimators
+//! of linear parameters apply. With every method the weights are zero or above after every sample,
+//! so the inverse exists at every instant.
 
 mod estimator;
 mod gate;
@@ -20,6 +20,6 @@ mod vector;
 
 pub use estimator::Estimator;
 pub use learning::{Learning, Outcome};
-pub use memory::{estimator_len, estimator_len_of_parts};
+pub use memory::{estimator_len, estimator_len_of_basis};
 pub(crate) use options::range_of;
 pub use options::{Adaptation, Method};

@@ -1,27 +1,32 @@
-//! The states of all operators, kept up to date from sample to sample: what an estimator regresses on.
+//! The states of all operators, updated with every sample. They are the regressor of an estimator
+//! of all weights.
 
 use crate::branch::Turn;
+use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::operator::{mkp, ridge};
 use crate::plane::operator_index;
 use crate::scalar::Real;
 use crate::state::State;
 
-/// The rows or columns `first..=last` whose ridges a move from `x` to `to` touches: one more than the cells crossed.
+/// The first and the last row or column whose ridge a move from `x` to `to` touches. They are as
+/// many as the grid lines crossed, and one more.
 pub(super) fn touched<T: Real>(x: T, to: T, levels: usize) -> (usize, usize) {
     let cell = |x: T| x.floor_index().min(levels - 1) + 1;
-    (cell(x.smaller(to)), cell(x.larger(to)))
+    (cell(x.min(to)), cell(x.max(to)))
 }
 
-/// Moves the states `gamma` from the normalised position `x` to `to`, equation (5): rising, only rows are
-/// touched, falling, only columns. `O(K)` for each level crossed.
+/// Moves the states `gamma` from the normalised position `x` to `to`, equation (5). `O(K)` for each
+/// level crossed.
+///
+/// A rising input changes only rows, a falling one only columns.
 pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
     let (first, last) = touched(x, to, levels);
     if to > x {
         for j in first..=last {
             let on = ridge(to, j);
             for gamma in &mut gamma[operator_index(1, j)..][..j] {
-                *gamma = gamma.larger(on);
+                *gamma = gamma.max(on);
             }
         }
     } else if to < x {
@@ -29,17 +34,18 @@ pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
             let off = ridge(to, i);
             for j in i..=levels {
                 let gamma = &mut gamma[operator_index(i, j)];
-                *gamma = gamma.smaller(off);
+                *gamma = gamma.min(off);
             }
         }
     }
 }
 
-/// The states of all operators from the turning points of `state`. `O(K²)` for each of these.
+/// Computes the states of all operators from the turning points of `state`. `O(K²)` for each
+/// turning point.
 pub(super) fn align<T, S>(gamma: &mut [T], levels: usize, state: &State<T, S>)
 where
     T: Real,
-    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    S: Memory<Turn<T>>,
 {
     gamma.fill(T::ZERO);
     for x in state.turning_points() {
@@ -52,15 +58,15 @@ where
     }
 }
 
-/// What the operators put out: the regressor of all weights.
+/// Writes the operators' outputs to `phi`: the regressor of all weights.
 pub(super) fn outputs<T: Real>(operator: Operator, gamma: &[T], phi: &mut [T]) {
     for (phi, &gamma) in phi.iter_mut().zip(gamma) {
         *phi = operator.output(gamma);
     }
 }
 
-/// Calls `visit(index)` once for each operator in the rows and columns `first..=last`: all that a move over these
-/// levels can have changed.
+/// Calls `visit(index)` once for each operator in the rows and columns `first..=last`. A move over
+/// these levels changes no other operators.
 pub(super) fn within(first: usize, last: usize, levels: usize, mut visit: impl FnMut(usize)) {
     for j in first..=last {
         for i in 1..=j {

@@ -1,19 +1,24 @@
-//! How an estimator learns: the method and the guards around it.
+//! The options of an estimator: the method and its guards.
 
 use crate::error::Error;
 use crate::scalar::Real;
 
-/// How the weights follow the error `e` of the prediction; `φ` is what the operators put out, `κ` the offset's share.
+/// How the weights follow the prediction error `e`. In the formulas `φ` are the operators' outputs
+/// and `κ` is `offset_share`.
 ///
-/// What a sample costs at most is given with each method; one that nothing is learned from costs `O(K)` for each level that the
-/// input crossed, since it moves the operators. Two things come on top, now and then: where a state was moved by
-/// others in between, the next sample works out the operators anew, `O(K²)` for each turning point; and at the end of a
-/// trial one sample copies the parameters, or takes them back and writes the table, `O(K²)`.
+/// Each method gives the highest cost of a sample that is learned from. A sample that is not
+/// learned from costs `O(K)` for each level that the input crossed, because the operators' states
+/// move. Two costs come on top from time to time:
 ///
-/// Cost of a sample that is learned from, relative to a step of the plain [`crate::Definition`], as
+/// - Where others moved the state, the next sample computes the operators' states from the turning
+///   points: `O(K²)` for each of them.
+/// - The last sample of a trial copies the parameters, or returns to others and writes the table:
+///   `O(K²)`.
+///
+/// Cost of a sample that is learned from, relative to a step of [`crate::Definition`], as
 /// `cargo bench -p hysteron-core --bench adaptation` prints it on an x86-64 processor:
 ///
-/// | K | gradient | increments | least squares | least squares, 6 shares |
+/// | K | gradient | increments | least squares | least squares, 6 coefficients |
 /// | --- | --- | --- | --- | --- |
 /// | 10 | 2.5 | 0.9 | 18 | 6 |
 /// | 20 | 1.5 | 0.3 | 52 | 2.7 |
@@ -21,39 +26,55 @@ use crate::scalar::Real;
 /// | 100 | 1.3 | 0.06 | | 1.1 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method<T> {
-    /// Normalised gradient, `μ ← μ + g φ e/(c + κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin 1984, section 3.3), with
-    /// `c` a hundredth of what `φᵀφ` is when every operator is on, so that few operators that are hardly on do not take
-    /// the whole blame. `O(K²)`: a few passes over the weights and the table. The first to try: it needs to know nothing of
-    /// the noise, and bears more levels than least squares.
+    /// Normalised gradient, `μ ← μ + g φ e/(c + κ² + φᵀφ)`: the projection algorithm (Goodwin & Sin
+    /// 1984, section 3.3).
+    ///
+    /// `c` is a hundredth of `φᵀφ` with every operator on. It keeps a few operators that are hardly
+    /// on from taking the whole error. `O(K²)`: a few passes over the weights and the table. Try
+    /// this method first: it needs no knowledge of the noise, and it suits more levels than least
+    /// squares.
     Gradient {
-        /// `g`, above 0 and below 2; 1 takes nearly the whole error of the sample away. Usual: 0.1 to 0.5.
+        /// `g`, above 0 and below 2. 1 removes nearly the whole error of the sample. Usual: 0.1 to
+        /// 0.5.
         gain: T,
     },
-    /// Normalised gradient on the increments between two inputs some levels apart: `Δy = Σ μ Δγ` concerns the rows
-    /// and columns that were crossed and nothing else, so that the slope is learned where it is seen and an
-    /// offset of the sensor does not matter (the time-difference scheme of Tan & Baras 2005). `O(K)` for each level
-    /// crossed since the increment began, `O(K²)` for one that crossed the plane in a jump. The table is renewed a row a sample: what was
-    /// learned acts at most `2K` samples later. The model needs memory for two tables. For many levels on a small processor.
+    /// Normalised gradient on the increments between two inputs some levels apart (the
+    /// time-difference scheme of Tan & Baras 2005).
+    ///
+    /// `Δy = Σ μ Δγ` concerns only the rows and columns that the input crossed. So the method
+    /// learns the slope where it is seen, and an offset of the sensor does not matter. `O(K)` for
+    /// each level crossed since the increment began; `O(K²)` where the input crossed the plane in a
+    /// jump.
+    ///
+    /// The table is renewed by one row in each sample, so what was learned acts at most `2K`
+    /// samples later. The model needs memory for two tables. For many levels on a small processor.
     Increments {
-        /// As for [`Method::Gradient`]; the offset follows the error of the level with the same gain.
+        /// As for [`Method::Gradient`]. The offset follows the error of the output with the same
+        /// gain.
         gain: T,
-        /// Levels from the beginning of an increment to its end, from 1/8 to 8. Long increments are less noisy. Usual: 1.
+        /// Levels from the start of an increment to its end, from 1/8 to 8. Long increments are
+        /// less noisy. Usual: 1.
         span: T,
     },
-    /// Recursive least squares with regularised forgetting (Kulhavý & Kraus 1996, after Kulhavý & Zarrop 1993): the covariance
-    /// goes back to the one at the start and never beyond it, so that it stays bounded without excitation. `O(n²)` for `n`
-    /// parameters, the offset among them: `O(K⁴)` for all weights, so for small `K` or for parts. It learns fastest, and with
-    /// a correlation also where the input has not been.
+    /// Recursive least squares with regularised forgetting (Kulhavý & Kraus 1996, after Kulhavý &
+    /// Zarrop 1993).
+    ///
+    /// Forgetting leads the covariance back to that at the start and never beyond it. So it stays
+    /// bounded without excitation. `O(n²)` for `n` parameters including the offset. That is `O(K⁴)`
+    /// for all weights, so use it for small `K` or for a basis. It learns fastest. With a
+    /// correlation it also learns weights where the input has not been.
     LeastSquares {
-        /// `λ`, above 0 and up to 1; 1 forgets nothing. Usual: 0.99 to 0.9999; what it remembers
-        /// depends on `noise` and `spread` too.
+        /// `λ`, above 0 and up to 1. 1 forgets nothing. Usual: 0.99 to 0.9999. How long a sample is
+        /// remembered depends on `noise` and `spread` too.
         forgetting: T,
         /// Standard deviation of the error of a reading, in the output's unit; above 0.
         noise: T,
-        /// Standard deviation by which a parameter may differ from its off-line value, in its unit; above 0.
+        /// Standard deviation of a parameter from its off-line value, in the parameter's unit;
+        /// above 0.
         spread: T,
-        /// Distance on the plane, in levels, over which deviations of weights go together: the covariance at the
-        /// start is `spread²/(1 + d²/correlation²)`. 0: each on its own. Not for parts.
+        /// Distance on the plane, in levels, over which deviations of weights are correlated; from
+        /// 0. The covariance at the start is `spread²/(1 + d²/correlation²)`, `d` levels apart.
+        /// With 0 weights are independent. It has to be 0 for a basis.
         correlation: T,
     },
 }
@@ -63,47 +84,54 @@ pub enum Method<T> {
 /// | Option | Default | Range | For |
 /// | --- | --- | --- | --- |
 /// | `method` | gradient, gain 0.3 | see [`Method`] | how weights follow the error |
-/// | `offset_share` | 1 | from 0 | `κ`: how freely the offset moves, beside one weight |
+/// | `offset_share` | 1 | from 0 | `κ`: how freely the offset moves, relative to one weight |
 /// | `dead_zone` | 0 | from 0 | errors up to this are noise (Peterson & Narendra 1982) |
-/// | `leakage` | 0 | 0 to 1 | share by which weights return to the off-line ones with each update (Ioannou & Kokotović 1984) |
-/// | `movement` | 0.05 | from 0 | levels between two samples that are learned from: less is no excitation |
-/// | `trial` | 256 | from 1 | samples on which weights are judged against the last good ones |
-/// | `gate` | 12 | 0, or from 2 | a reading further off than so many times the usual is not learned from; 0: none is refused |
-/// | `burst` | 8 | from 1 | readings in a row that the gate refuses before it believes them, where they agree |
+/// | `leakage` | 0 | 0 to 1 | return to the off-line weights (Ioannou & Kokotović 1984) |
+/// | `movement` | 0.05 | from 0 | levels between two samples that are learned from |
+/// | `trial` | 256 | from 1 | samples after which weights are compared with the last good ones |
+/// | `gate` | 12 | 0, or from 2 | surprises above so many times the usual one are refused |
+/// | `burst` | 8 | from 1 | so many refused readings in a row that agree are accepted |
 ///
-/// **Gate.** Measured less expected is compared with what the last reading that was believed left
-/// of its error, so that it is the surprise that counts and not what the model says wrongly all the
-/// time. The usual size of a surprise is the running mean over the last 64 or so that were
-/// believed. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples
-/// at rest are not judged, as nothing is learned from them.
+/// **Gate.** The gate compares the prediction error of a reading with the error that remained after
+/// the last accepted reading. The difference is the surprise. An error that the model makes all the
+/// time is no surprise. The usual size of a surprise is a running mean over about 64 accepted
+/// readings. It starts at 1/50 of the model's range and does not fall below 1/1000 of it. Samples
+/// at rest are not judged, because nothing is learned from them.
 ///
-/// Readings refused one after the other agree where two surprises differ by half of the larger one
-/// at most. The one that completes `burst` of them is learned from, and surprises of its size are
-/// usual then. So a wrong reading held for `burst` samples or longer is learned as a jump of the
-/// plant would be: no reading tells the two apart. Where `burst` are refused in a row without
-/// agreeing, as when noise grows, the usual size doubles.
+/// Refused readings in a row agree where their surprises differ by at most half of the larger one.
+/// The reading that completes `burst` of them is learned from, and its surprise becomes the usual
+/// size. So a wrong reading that lasts for `burst` samples or longer is learned like a jump of the
+/// plant: readings cannot tell the two apart. Where `burst` readings in a row are refused and do
+/// not agree, for example because noise grew, the usual size doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
     pub method: Method<T>,
-    /// `κ`; with 0 the offset stays.
+    /// `κ`, from 0: how freely the offset moves, relative to one weight. With 0 it does not move.
     pub offset_share: T,
-    /// Errors up to this size change nothing, larger ones count by what they exceed it; in the output's unit.
+    /// Dead zone, in the output's unit, from 0. Errors up to it change nothing; a larger error
+    /// counts by the amount beyond it.
     pub dead_zone: T,
-    /// Share by which the weights return to the off-line ones with each update.
+    /// The fraction, from 0 to 1, of their deviation by which the weights return to the off-line
+    /// ones with each update.
     pub leakage: T,
-    /// Levels that the input has to lie beyond the last sample learned from. Thus noise of the input within this width teaches nothing
-    /// at rest, and what is learned depends on the way that the input went and not on how often it was sampled.
+    /// How far the input has to be from the last sample learned from, in levels, from 0.
+    ///
+    /// Noise of the input below this teaches nothing at rest. And what is learned depends on the
+    /// way of the input, not on the rate of the samples.
     pub movement: T,
-    /// Samples learned from in a trial. At its end the weights that it began with become the good ones if they predicted no
-    /// worse than these; and the present ones go back to the good ones if their mean square error was more than four times
-    /// as large. Weights from within a burst of wrong readings that is shorter than half a trial do not become good.
+    /// Number of samples learned from in a trial, from 1.
+    ///
+    /// At its end the weights that it began with become the good ones, if they predicted no worse
+    /// than the last good ones. The good weights replace the present ones, if these had more than
+    /// four times the mean square error. Weights from within a burst of wrong readings do not
+    /// become good, if the burst is shorter than half a trial.
     pub trial: u32,
-    /// How many times the usual surprise a reading may differ from what was expected, to be learned
-    /// from. 0 lets every reading pass.
+    /// The largest surprise that is learned from, as a multiple of the usual one: from 2, or 0 to
+    /// accept every reading.
     pub gate: T,
-    /// Readings beyond the gate in a row that are taken for a jump of the plant, where they agree.
-    /// Fewer are a burst of wrong ones, of which nothing is learned.
+    /// So many refused readings in a row that agree are a jump of the plant, from 1. Fewer are a
+    /// burst of wrong readings, and nothing is learned from them.
     pub burst: u32,
 }
 
@@ -126,10 +154,10 @@ impl<T: Real> Default for Adaptation<T> {
 }
 
 impl<T: Real> Adaptation<T> {
-    /// Refuses values out of range.
+    /// Checks the ranges of all options.
     ///
     /// # Errors
-    /// [`Error::Adaptation`] names the option.
+    /// [`Error::Adaptation`] with the name of the first option out of range.
     pub fn check(&self) -> Result<(), Error> {
         let two = T::ONE + T::ONE;
         let from_zero = |value: T| value >= T::ZERO && value.is_finite();
@@ -153,7 +181,7 @@ impl<T: Real> Adaptation<T> {
                 correlation,
             } => {
                 require(forgetting > T::ZERO && forgetting <= T::ONE, "forgetting")?;
-                // The squares count: these must not vanish nor overflow either.
+                // The estimator uses the squares. They must not underflow or overflow either.
                 require(positive(noise * noise) && noise > T::ZERO, "noise")?;
                 require(positive(spread * spread) && spread > T::ZERO, "spread")?;
                 require(from_zero(correlation), "correlation")?;
@@ -169,25 +197,27 @@ impl<T: Real> Adaptation<T> {
         require(self.burst > 0, "burst")
     }
 
-    /// What an error counts beyond the dead zone.
+    /// The amount of an error beyond the dead zone.
     pub(super) fn beyond(&self, error: T) -> T {
-        error - error.limited(-self.dead_zone, self.dead_zone)
+        error - error.clamp(-self.dead_zone, self.dead_zone)
     }
 }
 
-/// The range of an option, in words.
+/// The range of an option, in words, for the message of [`Error::Adaptation`].
 pub(crate) fn range_of(option: &str) -> &'static str {
     match option {
         "gain" => "above 0 and below 2",
         "span" => "from 1/8 to 8",
         "forgetting" => "above 0 and up to 1",
         "noise" | "spread" => "above 0, and its square a number too",
-        "correlation" => "a finite number from 0 on, and 0 where shares are adapted",
+        "correlation" => {
+            "a finite number from 0 on, and 0 where the coefficients of a basis are adapted"
+        }
         "leakage" => "from 0 to 1",
         "trial" | "burst" => "1 or more",
         "gate" => "a finite number from 2 on, or 0 for none",
-        "method" => "gradient or least squares where shares are adapted",
-        "shares" => "finite numbers from 0 on, at least one",
+        "method" => "gradient or least squares where the coefficients of a basis are adapted",
+        "coefficients" => "finite numbers from 0 on, at least one",
         _ => "a finite number from 0 on",
     }
 }

@@ -1,17 +1,20 @@
-//! What the parameters are: all weights, or shares of parts; and what follows from that.
+//! What depends on the kind of parameters: all weights, or the coefficients of a basis.
 
 use super::Method;
 use super::least_squares::packed;
 use super::memory::Slices;
-use super::operators;
+use super::operators::outputs;
 use crate::branch::Turn;
 use crate::everett::{fill_row, table_index, table_len};
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
+use crate::plane::operators;
 use crate::scalar::Real;
 use crate::state::State;
 
-/// Writes the derivative of the output with respect to each parameter, `share` for the offset.
+/// Writes the regressor: the derivative of the output with respect to each parameter. That of the
+/// offset is `share`.
 pub(super) fn regressor<T, S>(
     slices: &mut Slices<'_, T>,
     operator: Operator,
@@ -20,12 +23,12 @@ pub(super) fn regressor<T, S>(
     state: &State<T, S>,
 ) where
     T: Real,
-    S: AsRef<[Turn<T>]> + AsMut<[Turn<T>]>,
+    S: Memory<Turn<T>>,
 {
     let n = slices.phi.len() - 1;
     slices.phi[n] = share;
     if slices.tables.is_empty() {
-        operators::outputs(operator, slices.gamma, &mut slices.phi[..n]);
+        outputs(operator, slices.gamma, &mut slices.phi[..n]);
         return;
     }
     let len = table_len(levels);
@@ -35,7 +38,7 @@ pub(super) fn regressor<T, S>(
             *phi = *phi + factor * table[index];
         }
     });
-    // From Σ μ γ to the sum of the operators' own outputs.
+    // From Σ μ γ to the sum of the operators' outputs.
     for (phi, table) in slices.phi.iter_mut().zip(slices.tables.chunks(len)) {
         *phi = match operator {
             Operator::Mkp => *phi,
@@ -44,7 +47,7 @@ pub(super) fn regressor<T, S>(
     }
 }
 
-/// `φᵀφ` with every operator on, the offset apart.
+/// `φᵀφ` with every operator on, without the offset.
 pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
     if slices.tables.is_empty() {
         return T::from_index(slices.gamma.len());
@@ -55,7 +58,7 @@ pub(super) fn full_norm<T: Real>(slices: &Slices<'_, T>, levels: usize) -> T {
 }
 
 /// Writes the model's whole table from the parameters.
-pub(super) fn rewrite<T: Real, C: AsRef<[T]> + AsMut<[T]>>(
+pub(super) fn rewrite<T: Real, C: Memory<T>>(
     slices: &Slices<'_, T>,
     levels: usize,
     model: &mut Model<T, C>,
@@ -67,16 +70,16 @@ pub(super) fn rewrite<T: Real, C: AsRef<[T]> + AsMut<[T]>>(
     }
     model.rewrite(|p, _, row| {
         row.fill(T::ZERO);
-        for (&share, table) in theta.iter().zip(tables.chunks(table_len(levels))) {
-            let part = &table[table_index(p, 0)..];
-            for (entry, &part) in row.iter_mut().zip(part) {
-                *entry = *entry + share * part;
+        for (&coefficient, table) in theta.iter().zip(tables.chunks(table_len(levels))) {
+            let member = &table[table_index(p, 0)..];
+            for (entry, &member) in row.iter_mut().zip(member) {
+                *entry = *entry + coefficient * member;
             }
         }
     });
 }
 
-/// Writes the covariance at the start; nothing for methods without one.
+/// Writes the covariance at the start, for methods that have one.
 pub(super) fn start_covariance<T: Real>(
     slices: &mut Slices<'_, T>,
     levels: usize,
@@ -96,11 +99,10 @@ pub(super) fn start_covariance<T: Real>(
         slices.start[packed(n, n)] = variance;
     }
     if slices.tables.is_empty() && correlation > T::ZERO {
-        let operators = || (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
         let square = |n: usize| T::from_index(n) * T::from_index(n);
         let mut entries = slices.start.iter_mut();
-        for (a, (i, j)) in operators().enumerate() {
-            for ((k, l), entry) in operators().take(a + 1).zip(entries.by_ref()) {
+        for (a, (i, j)) in operators(levels).enumerate() {
+            for ((k, l), entry) in operators(levels).take(a + 1).zip(entries.by_ref()) {
                 let distance = square(i.abs_diff(k)) + square(j.abs_diff(l));
                 *entry = variance / (T::ONE + distance / (correlation * correlation));
             }

@@ -1,4 +1,4 @@
-//! How an estimator is set up.
+//! How an estimator is made.
 
 use super::estimator::Estimator;
 use super::gate::Gate;
@@ -7,18 +7,24 @@ use super::trial::Trial;
 use super::{Adaptation, Method, least_squares, parameters};
 use crate::error::Error;
 use crate::everett;
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::plane::operator_count;
 use crate::scalar::Real;
 
-impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
-    /// An estimator of all weights and the offset, from the off-line ones, which `model` is given too.
+impl<T: Real, M: Memory<T>> Estimator<T, M> {
+    /// An estimator of all weights and the offset.
+    ///
+    /// It starts from the off-line `weights` (`N = K(K + 1)/2`, row by row) and `offset`, both in
+    /// the output's unit, and writes these weights to `model`. `memory` has at least
+    /// [`estimator_len`](crate::estimator_len) elements.
     ///
     /// # Errors
-    /// [`Error::Adaptation`], [`Error::WeightCount`], [`Error::WeightNotFinite`], [`Error::NegativeWeights`];
-    /// [`Error::InputNotFinite`] for the offset; [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for
-    /// the model's table, which has to be twice as large.
-    pub fn new<C: AsRef<[T]> + AsMut<[T]>>(
+    /// [`Error::Adaptation`] for options out of range, [`Error::WeightCount`],
+    /// [`Error::WeightNotFinite`], [`Error::NegativeWeights`], [`Error::InputNotFinite`] for the
+    /// offset. [`Error::MemoryTooSmall`] for `memory` and, with [`Method::Increments`], for the
+    /// model's memory: that method needs room for two tables.
+    pub fn new<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
         weights: &[T],
@@ -38,58 +44,70 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         Ok(estimator)
     }
 
-    /// An estimator of the shares of `parts`, which stand for the ways in which weights can change (loads, drift), and the offset:
-    /// `μ = Σ_k shares_k parts_k`. `parts` holds `N` weights for each of the shares, one part after the other. A
-    /// step is `O(P K²)` for the table.
+    /// An estimator of the coefficients of a basis, and of the offset: `μ = Σ_k coefficients_k
+    /// basis_k`.
+    ///
+    /// The members of the basis stand for the ways in which the weights can change (load, drift).
+    /// `basis` has `N = K(K + 1)/2` weights for each of the `P` coefficients, one member after the
+    /// other. `memory` has at least [`estimator_len_of_basis`](crate::estimator_len_of_basis)
+    /// elements. A step takes `O(P K²)` for the table.
     ///
     /// # Errors
-    /// As [`Estimator::new`]; [`Error::Adaptation`] for [`Method::Increments`], for a correlation,
-    /// and for shares that are negative or not finite, or overflow with their parts.
-    pub fn of_parts<C: AsRef<[T]> + AsMut<[T]>>(
+    /// As [`Estimator::new`]. [`Error::Adaptation`] also for [`Method::Increments`], for a
+    /// correlation above 0, and for coefficients that are none, negative, not finite, or too large
+    /// for their members.
+    pub fn of_basis<C: Memory<T>>(
         options: Adaptation<T>,
         model: &mut Model<T, C>,
-        parts: &[T],
-        shares: &[T],
+        basis: &[T],
+        coefficients: &[T],
         offset: T,
         memory: M,
     ) -> Result<Self, Error> {
         let levels = model.plane().levels();
-        let (n, count) = (operator_count(levels), shares.len());
-        let fit = |share: &T| *share >= T::ZERO && share.is_finite();
+        let (n, count) = (operator_count(levels), coefficients.len());
+        let fit = |c: &T| *c >= T::ZERO && c.is_finite();
         let unfit = match options.method {
             Method::Increments { .. } => Some("method"),
             Method::LeastSquares { correlation, .. } if correlation != T::ZERO => {
                 Some("correlation")
             }
-            _ if count == 0 || !shares.iter().all(fit) => Some("shares"),
+            _ if count == 0 || !coefficients.iter().all(fit) => Some("coefficients"),
             _ => None,
         };
         if let Some(option) = unfit {
             return Err(Error::Adaptation { option });
         }
-        if parts.len() != n * count {
-            let (expected, found) = (n * count, parts.len());
+        if basis.len() != n * count {
+            let (expected, found) = (n * count, basis.len());
             return Err(Error::WeightCount { expected, found });
         }
-        let layout = Layout::parts(levels, options.method, count);
+        let layout = Layout::basis(levels, options.method, count);
         let mut estimator = Self::empty(options, model, layout, offset, memory)?;
         let len = everett::table_len(levels);
         let tables = estimator.slices().tables;
         let mut size = T::ZERO;
-        for ((part, table), &share) in parts.chunks(n).zip(tables.chunks_mut(len)).zip(shares) {
-            refuse_negative(levels, part)?;
-            everett::fill(levels, part, table);
-            size = size + share * table[everett::table_index(levels, 0)];
+        for ((member, table), &coefficient) in basis
+            .chunks(n)
+            .zip(tables.chunks_mut(len))
+            .zip(coefficients)
+        {
+            refuse_negative(levels, member)?;
+            everett::fill(levels, member, table);
+            size = size + coefficient * table[everett::table_index(levels, 0)];
         }
         if !(size + size).is_finite() {
-            return Err(Error::Adaptation { option: "shares" });
+            return Err(Error::Adaptation {
+                option: "coefficients",
+            });
         }
-        estimator.begin(shares);
+        estimator.begin(coefficients);
         estimator.rewrite(model);
         estimator.gate = Gate::over(model);
         Ok(estimator)
     }
 
+    /// Checks options and memory. The parameters are not written yet.
     fn empty<C: AsRef<[T]>>(
         options: Adaptation<T>,
         model: &Model<T, C>,
@@ -113,7 +131,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
             memory,
             offset,
             floor: T::ZERO,
-            place: None,
+            aligned: None,
             learned: T::ZERO,
             increment: None,
             rows_due: 0,
@@ -124,6 +142,7 @@ impl<T: Real, M: AsRef<[T]> + AsMut<[T]>> Estimator<T, M> {
         })
     }
 
+    /// Writes the off-line parameters, and what follows from them.
     fn begin(&mut self, parameters: &[T]) {
         let (levels, method) = (self.levels, self.options.method);
         let mut slices = self.slices();

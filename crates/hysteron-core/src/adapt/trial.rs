@@ -1,24 +1,25 @@
-//! The last good parameters, and how others come to take their place.
+//! The last good parameters, and the trial by which others replace them.
 //!
-//! At the start of each trial the present parameters become the candidate. Through the trial the candidate and the last
-//! good ones stand still and predict samples that neither has seen. The candidate is good in turn where it predicts them
-//! no worse, so that what was learned in the middle of a burst of wrong readings does not become good as long as the
-//! burst is shorter than half a trial.
+//! At the start of each trial the present parameters become the candidate. During the trial the
+//! candidate and the last good parameters do not change, and both predict samples that neither has
+//! learned from. At the end the candidate becomes the good one if it predicted no worse. So
+//! parameters from within a burst of wrong readings do not become good, as long as the burst is
+//! shorter than half a trial.
 
 use crate::scalar::Real;
 
-/// Sums of squares over the samples of a trial.
+/// Sums of squared errors over the samples of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Trial<T> {
     now: T,
     candidate: T,
     good: T,
-    /// What rounding alone can make of these.
+    /// The sum that rounding errors alone can give.
     rounding: T,
     count: u32,
 }
 
-/// Errors of one sample.
+/// Prediction errors of one sample, with each set of parameters.
 #[derive(Clone, Copy)]
 pub(super) struct Errors<T> {
     pub(super) now: T,
@@ -26,7 +27,7 @@ pub(super) struct Errors<T> {
     pub(super) good: T,
 }
 
-/// Those that stand the trial.
+/// The sets of parameters in a trial.
 pub(super) struct Contest<'a, T> {
     pub(super) now: &'a mut [T],
     pub(super) candidate: &'a mut [T],
@@ -34,8 +35,8 @@ pub(super) struct Contest<'a, T> {
 }
 
 impl<T: Real> Trial<T> {
-    /// Adds a sample; the trial ends after `length` of them. Says whether the present parameters did far worse than the
-    /// good ones, with more than four times their mean square, and were taken back.
+    /// Adds a sample. The trial ends after `length` samples. Returns whether the good parameters
+    /// replaced the present ones, because these had more than four times the mean square error.
     pub(super) fn judge(
         &mut self,
         contest: &mut Contest<'_, T>,
@@ -59,11 +60,11 @@ impl<T: Real> Trial<T> {
             rounding,
             ..
         } = core::mem::take(self);
-        // Sums that overflow say nothing: an outlier of that size is in all of them.
+        // Sums that overflow give no answer: the outlier is in all of them.
         if candidate <= good && candidate.is_finite() {
             contest.good.copy_from_slice(contest.candidate);
         }
-        let worse = now > T::from_index(4) * (candidate.smaller(good) + rounding);
+        let worse = now > T::from_index(4) * (candidate.min(good) + rounding);
         if worse {
             contest.roll_back();
         } else {
@@ -80,7 +81,7 @@ impl<T: Real> Contest<'_, T> {
         self.candidate.copy_from_slice(self.now);
     }
 
-    /// Puts the good parameters in the place of the present ones.
+    /// Replaces the present parameters by the good ones.
     pub(super) fn roll_back(&mut self) {
         self.now.copy_from_slice(self.good);
         self.candidate.copy_from_slice(self.good);

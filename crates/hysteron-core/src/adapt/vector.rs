@@ -1,4 +1,5 @@
-//! Sums over slices, in lanes: one running sum alone would wait for each addition to end before the next.
+//! Sums over slices, with several running sums in parallel. With a single one, each addition would
+//! have to wait for the one before it.
 
 use crate::scalar::Real;
 

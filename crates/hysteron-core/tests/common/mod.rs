@@ -57,7 +57,8 @@ pub fn plane(rng: &mut impl Rng, levels: usize) -> Plane<f64> {
     Plane::new(min, min + rng.random_range(0.1..200.0), levels).unwrap()
 }
 
-/// `count` inputs: walks, grid lines, repeats, out-of-range values, decaying and nested oscillations.
+/// `count` inputs: walks, grid lines, repeats, out-of-range values, decaying and nested
+/// oscillations.
 pub fn inputs(rng: &mut impl Rng, plane: &Plane<f64>, count: usize) -> Vec<f64> {
     let k = plane.levels();
     let span = k as f64;
@@ -198,7 +199,8 @@ impl Learner {
     }
 }
 
-/// A walk of reversals over the whole plane in strokes of `samples` samples: excites every operator in time.
+/// A walk of reversals over the whole plane in strokes of `samples` samples: excites every operator
+/// in time.
 pub fn strokes(rng: &mut impl Rng, plane: &Plane<f64>, count: usize, samples: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(count);
     let mut from = plane.bottom();

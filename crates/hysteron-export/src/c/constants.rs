@@ -51,7 +51,7 @@ pub(super) struct Constants<T> {
     pub(super) offset: T,
     pub(super) falls: bool,
     /// That of the inverse, where there is one.
-    pub(super) slack: Option<T>,
+    pub(super) rounding: Option<T>,
 }
 
 impl<T: Number> Constants<T> {
@@ -72,12 +72,12 @@ impl<T: Number> Constants<T> {
         let table = vec![T::ZERO; table_len(levels)];
         let core = hysteron_core::Model::new(plane, model.operator(), &weights, table)
             .map_err(|_| unfit("the sum of the weights"))?;
-        let slack = core.inverse().ok().map(|inverse| inverse.slack());
+        let rounding = core.inverse().ok().map(|inverse| inverse.rounding());
         // Outputs of KP and relays reach twice as far, and sums of small weights have small
         // rounding.
         let (off, on) = core.output_range();
         let ends = [off + offset, on + offset, off - offset, on - offset];
-        let small = slack.is_some_and(|slack| slack > T::ZERO && slack < T::SMALLEST);
+        let small = rounding.is_some_and(|rounding| rounding > T::ZERO && rounding < T::SMALLEST);
         if small || !ends.into_iter().all(Real::is_finite) {
             return Err(unfit("the range of the output"));
         }
@@ -86,7 +86,7 @@ impl<T: Number> Constants<T> {
             core,
             offset,
             falls: model.sign() == Sign::Negative,
-            slack,
+            rounding,
         })
     }
 

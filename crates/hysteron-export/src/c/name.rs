@@ -66,8 +66,8 @@ fn fault(name: &str) -> Option<&'static str> {
         Some("hys_ and hysteron_mcu are names of the algorithm")
     } else if is_taken(name) || is_of_headers(name) {
         Some("it is a word of C or C++ or a name of its library")
-    } else if crate::refusal::is_device(name) {
-        Some(crate::refusal::DEVICE)
+    } else if crate::device::is_device(name) {
+        Some(crate::device::DEVICE)
     } else {
         None
     }

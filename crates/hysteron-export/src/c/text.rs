@@ -141,7 +141,7 @@ static const hys_real table[] = ",
         ("per_unit", plane.per_unit()),
         ("nudge", plane.nudge()),
         ("total", constants.core.total()),
-        ("slack", constants.slack.unwrap_or(T::ZERO)),
+        ("rounding", constants.rounding.unwrap_or(T::ZERO)),
         ("offset", constants.offset),
     ];
     let _ = write!(
@@ -156,7 +156,7 @@ static const hys_real table[] = ",
         "    .kind = {},\n    .falls = {},\n    .inverse = {}\n}};\n",
         constants.kind(),
         usize::from(constants.falls),
-        usize::from(constants.slack.is_some()),
+        usize::from(constants.rounding.is_some()),
     );
     if export.memory.adaptation.is_some() {
         let rows = (1..=*levels).map(|j| &constants.weights[operator_index(1, j)..][..j]);

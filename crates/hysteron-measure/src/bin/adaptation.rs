@@ -2,7 +2,7 @@
 //! `cargo run --release -p hysteron-measure --bin adaptation -- ../shared/data`
 
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, Direction, DriftParts, Errors, Fit, FitOptions, Learner,
+    AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, Fit, FitOptions, Learner,
     Model, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start, State, Step, Turning,
     adapt, plane_of, prepare,
 };
@@ -211,7 +211,7 @@ fn cycles(folder: &Path) -> Result<()> {
 fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
     let options = adapting(learner).adaptation(model, seen)?;
     let mut adaptive = match learner {
-        Learner::Drift => DriftParts::of(model, None)?.adaptive(options)?,
+        Learner::Drift => DriftBasis::of(model, None)?.adaptive(options)?,
         _ => Adaptive::new(model, options)?,
     };
     adaptive.saturate()?;
@@ -307,7 +307,7 @@ impl Loops {
             ..self.loops[n].clone()
         };
         let model = Fit::from(&self.options).run(&from.map(under))?;
-        let middle = DriftParts::of(&model, None)?.model;
+        let middle = DriftBasis::of(&model, None)?.model;
         let known = match model.at_load(self.stresses[to]) {
             Ok(model) => format!("{:.1}", self.judge(&model, to)?),
             Err(_) => "outside".into(),

@@ -4,7 +4,7 @@
 
 use hysteron::{
     Candidates, Evaluation, Fit, FitOptions, Model, Operator, Plane, Progress, Quantity, Recording,
-    Sign, cross_validate, evaluate,
+    Sign, cross_validate, evaluate, operators,
 };
 
 /// The parts of a report.
@@ -80,8 +80,7 @@ fn bump(x: f64, middle: f64, width: f64) -> f64 {
 
 fn model(levels: usize, density: impl Fn(f64, f64) -> f64) -> Model {
     let plane = Plane::new(20.0, 80.0, levels).unwrap();
-    let thresholds = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-    let mut weights: Vec<f64> = thresholds
+    let mut weights: Vec<f64> = operators(levels)
         .map(|(i, j)| density(plane.level(i), plane.level(j)))
         // Solvers with weights ≥ 0 leave many at zero, some among large ones.
         .enumerate()

@@ -57,9 +57,10 @@ impl<'a> Source<'a> {
     pub(crate) fn states(self, history: &[f64]) -> Vec<f64> {
         // Inputs that are not finite never come this far; were one to, the plane is drawn all off.
         let off = || vec![0.0; self.weights().len()];
-        let (model, mut state) = (self.model, self.model.start());
-        let run = model.run(&mut state, history, &mut vec![0.0; history.len()]);
-        run.and_then(|_| model.operator_states(&state))
+        let operators = self.model.operators();
+        let mut state = operators.start();
+        let run = operators.run(&mut state, history, &mut vec![0.0; history.len()]);
+        run.and_then(|_| operators.operator_states(&state))
             .unwrap_or_else(|_| off())
     }
 

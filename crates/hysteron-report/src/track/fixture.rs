@@ -4,7 +4,7 @@
 
 use super::{NamedTrace, TrackReport, TrackTable};
 use hysteron::control::{LoopStatus, Snapshot, Trace};
-use hysteron::{Plane, Quantity};
+use hysteron::{Plane, Quantity, operators};
 
 /// How a made-up controller does.
 #[derive(Clone, Copy)]
@@ -171,8 +171,7 @@ fn trace(controller: &Controller, samples: usize, plane: &Plane) -> Trace {
 fn snapshot(time: f64, plane: &Plane) -> Snapshot {
     let learned = 1.0 - (-(time - 450.0).max(0.0) / 40.0).exp();
     let bump = |x: f64, middle: f64| (-((x - middle) / 7.0).powi(2)).exp();
-    let operators = (1..=plane.levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
-    let weights = operators.map(|(i, j)| {
+    let weights = operators(plane.levels()).map(|(i, j)| {
         let shifted =
             bump(plane.level(i), 38.0 + 6.0 * learned) * bump(plane.level(j), 57.0 + 6.0 * learned);
         0.3 * (1.0 + 0.2 * learned) * shifted

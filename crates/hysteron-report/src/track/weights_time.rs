@@ -16,6 +16,7 @@ use crate::plane::MINUS;
 use crate::stack::Figures;
 use hysteron::Plane;
 use hysteron::control::Trace;
+use hysteron::operators;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -46,7 +47,7 @@ impl Change {
         let block = plane.levels().div_ceil(ROWS);
         let totals = |weights: &[f64]| {
             let mut rows = vec![0.0; plane.levels().div_ceil(block)];
-            let row_of = (1..=plane.levels()).flat_map(|j| (0..j).map(move |_| (j - 1) / block));
+            let row_of = operators(plane.levels()).map(|(_, j)| (j - 1) / block);
             row_of
                 .zip(weights)
                 .for_each(|(row, weight)| rows[row] += weight);

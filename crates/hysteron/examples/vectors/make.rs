@@ -1,7 +1,7 @@
 //! The files: models, inputs and targets, and what the definition says of them.
 
 use super::plain::{Search, Wanted, forward};
-use hysteron::{Model, Operator, Plane, Result, Sign};
+use hysteron::{Model, Operator, Plane, Result, Sign, operators};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -47,10 +47,9 @@ pub fn all() -> Result<Vec<(String, String)>> {
 /// Weights in 1/64, from 1/8 to 9/8; those with `j − i` below `still` are zero, which makes dead bands.
 fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> Result<Model> {
     let mut random = ChaCha8Rng::seed_from_u64(levels as u64);
-    let weights = (1..=levels).flat_map(|j| (1..=j).map(move |i| j - i));
-    let weights = weights.map(|apart| {
+    let weights = operators(levels).map(|(i, j)| {
         let weight = f64::from(8 + random.next_u32() % 64) / 64.0;
-        if apart < still { 0.0 } else { weight }
+        if j - i < still { 0.0 } else { weight }
     });
     let plane = Plane::new(RANGE.0, RANGE.1, levels)?;
     Model::new(operator, plane, weights.collect(), line.0, line.1)

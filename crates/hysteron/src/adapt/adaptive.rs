@@ -1,21 +1,23 @@
-//! A model that learns while it runs.
+//! A model that learns while it runs, sample by sample.
 
 use crate::error::{Error, Result};
 use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
-    Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_parts, table_len,
+    Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_basis, table_len,
 };
 use hysteron_core::{Solution, Target};
 
-/// A [`Model`] whose weights and offset follow the plant, with the state that it runs in.
+/// A [`Model`] whose weights and offset follow the plant, with its state.
 ///
 /// ```
 /// use hysteron::{Adaptation, Adaptive, Method, Model, Operator, Plane, Sign};
 /// let plane = Plane::new(20.0, 80.0, 5)?;
-/// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
-/// let method = Method::LeastSquares { forgetting: 0.99, noise: 0.01, spread: 1.0, correlation: 3.0 };
+/// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+/// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
+/// let (noise, spread, correlation) = (0.01, 1.0, 3.0);
+/// let method = Method::LeastSquares { forgetting: 0.99, noise, spread, correlation };
 /// let mut adaptive = Adaptive::new(&model(1.0)?, Adaptation { method, ..Adaptation::default() })?;
 /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());
 /// for n in 0..1000 {
@@ -29,54 +31,60 @@ use hysteron_core::{Solution, Target};
 pub struct Adaptive {
     offline: Model,
     core: hysteron_core::Model<f64, Vec<f64>>,
-    /// Where the measured input is.
+    /// State at the measured input.
     state: OperatorState,
-    /// Where the inverse stands: at the inputs that it asked for.
+    /// State of the inverse, at the inputs that it asked for.
     wanted: OperatorState,
     estimator: Estimator<f64, Vec<f64>>,
-    /// What the parameters are shares of; none where they are the weights.
-    parts: Vec<Vec<f64>>,
+    /// The basis that the parameters are coefficients of; empty if the parameters are the weights.
+    basis: Vec<Vec<f64>>,
 }
 
 impl Adaptive {
-    /// Adapts all weights of `model`, and its offset, from all operators off.
+    /// Adapts all weights of `model` and its offset. It starts with all operators off.
     ///
     /// # Errors
     /// As [`Model::plain`]; [`Error::Core`] for options out of range and for negative weights;
-    /// [`Error::Fit`] for a model with so many levels that the method takes more than 4 GiB.
+    /// [`Error::Fit`] for a model with so many levels that the method needs more than 4 GiB.
     pub fn new(model: &Model, options: Adaptation<f64>) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
         let offset = model.sign().factor() * model.offset();
         let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
-        Self::from_parts(model, core, estimator, Vec::new())
+        Self::over(model, core, estimator, Vec::new())
     }
 
-    /// Adapts the shares of `parts` (each `N` weights) and the offset; `shares` are those of the model. Far fewer unknowns than
-    /// weights, where the ways are known in which these can change.
+    /// Adapts the coefficients of `basis` (each member `N` weights) and the offset.
+    /// `coefficients` are those of `model`. If it is known in which ways the weights can
+    /// change, this needs far fewer unknowns than adapting all weights.
     ///
     /// # Errors
     /// As [`Adaptive::new`].
-    pub fn of_parts(
+    pub fn of_basis(
         model: &Model,
-        parts: Vec<Vec<f64>>,
-        shares: &[f64],
+        basis: Vec<Vec<f64>>,
+        coefficients: &[f64],
         options: Adaptation<f64>,
     ) -> Result<Self> {
         let mut core = renewable(model, options.method)?;
         let levels = model.plane().levels();
-        let memory = reserved(estimator_len_of_parts(levels, options.method, shares.len()))?;
+        let memory = reserved(estimator_len_of_basis(
+            levels,
+            options.method,
+            coefficients.len(),
+        ))?;
         let offset = model.sign().factor() * model.offset();
-        let all = parts.concat();
-        let estimator = Estimator::of_parts(options, &mut core, &all, shares, offset, memory)?;
-        Self::from_parts(model, core, estimator, parts)
+        let all = basis.concat();
+        let estimator =
+            Estimator::of_basis(options, &mut core, &all, coefficients, offset, memory)?;
+        Self::over(model, core, estimator, basis)
     }
 
-    fn from_parts(
+    fn over(
         model: &Model,
         core: hysteron_core::Model<f64, Vec<f64>>,
         estimator: Estimator<f64, Vec<f64>>,
-        parts: Vec<Vec<f64>>,
+        basis: Vec<Vec<f64>>,
     ) -> Result<Self> {
         let mut state = model.plain()?.start();
         core.rebase(&mut state)?;
@@ -86,14 +94,14 @@ impl Adaptive {
             wanted: state.clone(),
             state,
             estimator,
-            parts,
+            basis,
         })
     }
 
-    /// Moves to `input`, tells the output expected there, and learns from the one `measured`.
+    /// Moves to `input`, returns the output expected there, and learns from the output `measured`.
     ///
     /// # Errors
-    /// [`Error::Core`] for numbers that are not finite; nothing is changed then.
+    /// [`Error::Core`] for numbers that are not finite; then nothing is changed.
     pub fn step(&mut self, input: f64, measured: f64) -> Result<Learning<f64>> {
         let factor = self.sign().factor();
         let learning =
@@ -106,11 +114,11 @@ impl Adaptive {
         })
     }
 
-    /// [`Adaptive::step`] through samples, as many as the shorter series has.
+    /// Runs [`Adaptive::step`] through samples, as many as the shorter series has.
     ///
     /// # Errors
-    /// [`Error::Core`] for the first number that is not finite; nothing is changed then. What `progress` returns; what was learned until
-    /// then stays.
+    /// [`Error::Core`] for the first number that is not finite; then nothing is changed. The error
+    /// that `progress` returns; what was learned until then is kept.
     pub fn run(
         &mut self,
         input: &[f64],
@@ -131,39 +139,41 @@ impl Adaptive {
         pairs().enumerate().map(step).collect()
     }
 
-    /// Moves to `input` and tells the output expected there, without learning.
+    /// Moves to `input` and returns the output expected there, without learning.
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite; nothing is changed then.
+    /// [`Error::Core`] for an input that is not finite; then nothing is changed.
     pub fn predict(&mut self, input: f64) -> Result<f64> {
         let sum = self.core.step(&mut self.state, input)?.output;
         Ok(self.sign().factor() * (sum + self.estimator.offset()))
     }
 
-    /// The output expected where the input is now.
+    /// The output expected at the current input.
     #[must_use]
     pub fn output(&self) -> f64 {
         self.sign().factor() * (self.core.output(&self.state) + self.estimator.offset())
     }
 
-    /// Finds the input that gives `target`, by the weights as they are now. The inverse moves there from where it stood: it has a
-    /// state of its own, as reference and plant are not in the same place.
+    /// Finds the input that gives `target` with the current weights. The inverse moves there from
+    /// its own state, because the reference and the plant are at different points.
     ///
     /// # Errors
-    /// [`Error::Core`] for a target that is not finite; nothing is changed then.
+    /// [`Error::Core`] for a target that is not finite; then nothing is changed.
     pub fn solve(&mut self, target: Target<f64>) -> Result<Solution<f64>> {
         let offset = self.estimator.offset();
         let core = &self.core;
         invert(core, self.offline.sign(), offset, &mut self.wanted, target)
     }
 
-    /// Lets the inverse set out from where the measured input is. Turning points that were asked for by weights long changed
-    /// stay in its memory until they are wiped out; a loop may call this wherever its target turns.
+    /// Sets the state of the inverse to that of the measured input. Otherwise, turning points that
+    /// the inverse asked for with old weights stay in its memory until they are wiped out. A loop
+    /// may call this wherever its target turns.
     pub fn align(&mut self) {
         self.wanted.clone_from(&self.state);
     }
 
-    /// As [`Adaptive::solve`], from a `state` of the caller's: one of this model, which may have had other weights since.
+    /// As [`Adaptive::solve`], from a `state` of the caller. It must be a state of this model,
+    /// which may have had other weights at that time.
     ///
     /// # Errors
     /// As [`Adaptive::solve`].
@@ -176,29 +186,29 @@ impl Adaptive {
         invert(&self.core, self.sign(), offset, state, target)
     }
 
-    /// The weights as they are now, row by row.
+    /// The current weights, row by row.
     #[must_use]
     pub fn weights(&self) -> Vec<f64> {
         let parameters = self.estimator.parameters();
-        if self.parts.is_empty() {
+        if self.basis.is_empty() {
             return parameters.to_vec();
         }
         let mut weights = vec![0.0; self.offline.weights().len()];
-        for (share, part) in parameters.iter().zip(&self.parts) {
-            for (weight, part) in weights.iter_mut().zip(part) {
-                *weight += share * part;
+        for (coefficient, member) in parameters.iter().zip(&self.basis) {
+            for (weight, member) in weights.iter_mut().zip(member) {
+                *weight += coefficient * member;
             }
         }
         weights
     }
 
-    /// The output with every operator off, as it is now.
+    /// The current output with every operator off.
     #[must_use]
     pub fn offset(&self) -> f64 {
         self.sign().factor() * self.estimator.offset()
     }
 
-    /// The model as it is now, with the names of the off-line one.
+    /// The current model, with the names of the off-line model.
     ///
     /// # Errors
     /// As [`Model::new`].
@@ -210,22 +220,22 @@ impl Adaptive {
         Ok(model)
     }
 
-    /// The off-line model.
+    /// The model before adaptation.
     #[must_use]
     pub fn offline(&self) -> &Model {
         &self.offline
     }
 
-    /// The state that the model is in.
+    /// The current state of the operators.
     #[must_use]
     pub fn state(&self) -> &OperatorState {
         &self.state
     }
 
-    /// Turns every operator off, those of the inverse too; the weights stay.
+    /// Turns every operator off, also in the state of the inverse. The weights are not changed.
     ///
     /// # Errors
-    /// None that a caller can cause.
+    /// None in practice.
     pub fn reset(&mut self) -> Result<()> {
         self.estimator.realign();
         self.core.reset_off(&mut self.state)?;
@@ -233,10 +243,11 @@ impl Adaptive {
         Ok(())
     }
 
-    /// Turns every operator on, as at the top of the plane, those of the inverse too; the weights stay.
+    /// Turns every operator on, as at the top of the plane, also in the state of the inverse. The
+    /// weights are not changed.
     ///
     /// # Errors
-    /// None that a caller can cause.
+    /// None in practice.
     pub fn saturate(&mut self) -> Result<()> {
         self.estimator.realign();
         self.core.reset_on(&mut self.state)?;
@@ -244,20 +255,21 @@ impl Adaptive {
         Ok(())
     }
 
-    /// While frozen, [`Adaptive::step`] predicts and nothing is learned.
+    /// While frozen, [`Adaptive::step`] returns the expected output but does not learn.
     pub fn freeze(&mut self, frozen: bool) {
         self.estimator.freeze(frozen);
     }
 
-    /// Takes the present weights and offset as the last good ones.
+    /// Stores the current weights and offset as the last good ones.
     pub fn keep(&mut self) {
         self.estimator.keep();
     }
 
-    /// Goes back to the last good weights and offset: those last kept, or that stood a trial since ([`Adaptation::trial`]).
+    /// Restores the last good weights and offset: those stored last, or those that have passed a
+    /// trial since ([`Adaptation::trial`]).
     ///
     /// # Errors
-    /// None that a caller can cause.
+    /// None in practice.
     pub fn roll_back(&mut self) -> Result<()> {
         self.estimator.roll_back(&mut self.core);
         Ok(self.core.rebase(&mut self.state)?)
@@ -268,7 +280,7 @@ impl Adaptive {
     }
 }
 
-/// The inverse of a core model and an offset, with the model's sign.
+/// The inverse of a core model with an offset and the sign of the model.
 fn invert(
     core: &hysteron_core::Model<f64, Vec<f64>>,
     sign: Sign,
@@ -282,15 +294,16 @@ fn invert(
     Ok(sign.outward(solution))
 }
 
-/// Bytes that an estimator may take.
+/// Largest memory of an estimator, in bytes.
 const MOST_BYTES: u128 = 4 << 30;
 
-/// An estimator's memory.
+/// The memory of an estimator.
 fn reserved(numbers: usize) -> Result<Vec<f64>> {
     let bytes = 8 * numbers as u128;
     if bytes > MOST_BYTES {
         return Err(Error::Fit(format!(
-            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} GiB allowed: take another method, or a model with fewer levels",
+            "an estimator with this method and so many levels takes {:.1} GiB, more than the {} \
+             GiB allowed: take another method, or a model with fewer levels",
             bytes as f64 / f64::from(1 << 30),
             MOST_BYTES >> 30
         )));
@@ -298,7 +311,7 @@ fn reserved(numbers: usize) -> Result<Vec<f64>> {
     Ok(vec![0.0; numbers])
 }
 
-/// A core model with the memory that the method asks for.
+/// A core model with the memory that the method needs.
 fn renewable(model: &Model, method: Method<f64>) -> Result<hysteron_core::Model<f64, Vec<f64>>> {
     let model = model.plain()?;
     let tables = match method {

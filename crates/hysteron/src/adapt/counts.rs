@@ -1,22 +1,22 @@
-//! How often an estimator did what.
+//! Counts what an estimator did with the samples.
 
 use hysteron_core::{Learning, Outcome};
 use serde::Serialize;
 
-/// How often each [`Outcome`] was.
+/// How often each [`Outcome`] occurred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct OutcomeCounts {
-    /// Samples learned from.
+    /// Samples that the estimator learned from.
     pub learned: usize,
-    /// Errors within the dead zone, or increments that were not finished.
+    /// Samples with an error within the dead zone, or with an increment that was not complete.
     pub waiting: usize,
     /// Samples at which the input did not move.
     pub at_rest: usize,
-    /// Times the weights went back to the last good ones.
+    /// Times that the last good weights were restored.
     pub rolled_back: usize,
-    /// Readings too far off to be learned from.
+    /// Readings rejected because they were too far from the expected output.
     pub rejected: usize,
-    /// Inputs outside the plane, taken as its end; they are among the others too.
+    /// Inputs outside the plane, clipped to its end. They are also counted above.
     pub outside: usize,
 }
 
@@ -28,7 +28,7 @@ impl OutcomeCounts {
             *match learning.outcome {
                 Outcome::Learned => &mut counts.learned,
                 Outcome::Waiting => &mut counts.waiting,
-                // Nothing freezes an estimator here.
+                // Nothing freezes an estimator here, so `Frozen` does not occur.
                 Outcome::AtRest | Outcome::Frozen => &mut counts.at_rest,
                 Outcome::RolledBack => &mut counts.rolled_back,
                 Outcome::Rejected => &mut counts.rejected,

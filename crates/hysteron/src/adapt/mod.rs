@@ -1,14 +1,19 @@
-//! An estimator over a recording: each sample is predicted, then learned from.
+//! Adaptation: lets a model follow a plant that changes.
+//!
+//! This file runs an estimator over a recording: each sample is first compared with the expected
+//! output, then learned from. `options` are its settings. `adaptive` is the model that learns
+//! sample by sample. `parts` is a basis with few coefficients for drift, and `counts` counts what
+//! was done with the samples.
 
 mod adaptive;
+mod basis;
 mod counts;
 mod options;
-mod parts;
 
 pub use adaptive::Adaptive;
+pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
 pub use options::{AdaptOptions, Learner};
-pub use parts::DriftParts;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start};
@@ -19,34 +24,36 @@ use hysteron_core::{Adaptation, Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
 
-/// What came of an adaptation.
+/// The result of an adaptation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adapted {
     /// The model with the last weights that are not on [probation](Adapted::probation). Its
-    /// [`FitSummary`] is that of these weights over the whole recording; the confidence of the
-    /// off-line model does not hold any more and is gone; what was done stands under `adapted`.
+    /// [`FitSummary`] gives the errors of these weights over the whole recording. The confidence of
+    /// the off-line model does not hold for them and is removed. The field `adapted` records how
+    /// they were obtained.
     pub model: Model,
-    /// Samples at the end whose teaching the model has nothing of, because none that could judge it
-    /// comes after them: as many as [`Adaptation::burst`], none without a [`Adaptation::gate`].
+    /// Number of samples at the end that did not change the model, because no later samples can
+    /// confirm them: [`Adaptation::burst`], or 0 without a [`Adaptation::gate`].
     pub probation: usize,
-    /// Output predicted for each sample before it was learned from.
+    /// Output expected at each sample before the estimator learned from it.
     pub output_model: Vec<f64>,
     /// What was done with each sample.
     pub outcomes: Vec<Outcome>,
-    /// How often each outcome was.
+    /// How often each outcome occurred.
     pub counts: OutcomeCounts,
     /// Errors over the whole recording.
     pub whole: Compared,
-    /// Errors over its first, second and last third, by the number of samples; none of fewer than three samples.
+    /// Errors over the first, second and last third of the samples; empty for fewer than three
+    /// samples.
     pub thirds: Vec<Compared>,
-    /// Errors over the last third without the readings refused: what [`Adapted::worse`] goes by.
-    /// None where there are no such samples.
+    /// Errors over the last third without the rejected readings; [`Adapted::worse`] is based on
+    /// them. `None` if there are no such samples.
     pub late: Option<Compared>,
-    /// Whether the model that learned ended worse than the one left alone: whether it erred more on
-    /// the last third, on samples that it had not learned from yet, by more than rounding.
+    /// Whether adaptation made the model worse: on the last third its errors, taken before it
+    /// learned from each sample, are larger than those of the fixed model by more than rounding.
     pub worse: bool,
-    /// Errors of the model's weights over the whole recording, run again from its start: they have
-    /// seen all of it.
+    /// Errors of the final weights over the whole recording, run again from its start. These
+    /// weights have seen all of it.
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
@@ -54,36 +61,38 @@ pub struct Adapted {
     pub options: Adaptation<f64>,
 }
 
-/// Errors of the model that learned, before it learned from the samples compared, beside those of the model left as it was.
+/// Errors of the adapting model, taken before it learned from each sample, beside those of the
+/// fixed model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compared {
-    /// Of the model that learned.
+    /// Errors of the adapting model.
     pub adapting: Errors,
-    /// Of the model left as it was.
+    /// Errors of the model that was not adapted.
     pub fixed: Errors,
 }
 
 impl Compared {
-    /// Whether the model that learned errs more, by more than a part in 10⁹ of the model's range:
-    /// the two work out the same sum in another order.
+    /// Whether the adapting model has larger errors, by more than a part in 10⁹ of the model's
+    /// range. Smaller differences are rounding, because the two sum in different orders.
     fn is_worse(&self, (off, on): (f64, f64)) -> bool {
         self.adapting.rmse > self.fixed.rmse + 1e-9 * (on - off).abs()
     }
 }
 
-/// How far a model has gone from the one that it was.
+/// How far the model has changed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drift {
-    /// Sum of the weights before and after: the stroke from all operators off to all on, of MKP once and of KP and relay twice.
+    /// Sum of the weights before and after. For MKP it is the stroke from all operators off to all
+    /// on; for KP and relay the stroke is twice this sum.
     pub weights: (f64, f64),
     /// Offset before and after.
     pub offset: (f64, f64),
-    /// Sum of the absolute changes of the weights over the sum before; infinite where that is zero.
+    /// Sum of the absolute changes of the weights, over the sum before; infinite if that is zero.
     pub moved: f64,
 }
 
 impl Adapted {
-    /// Measured less predicted, for each sample of the recording adapted to.
+    /// Measured minus expected output, for each sample of the recording.
     #[must_use]
     pub fn errors(&self, recording: &Recording) -> Vec<f64> {
         let pairs = recording.output.iter().zip(&self.output_model);
@@ -91,24 +100,29 @@ impl Adapted {
     }
 }
 
-/// Runs an estimator over a recording, which predicts each sample before it learns from it.
+/// Runs an estimator over a recording. For each sample it returns the expected output before it
+/// learns from the measured one.
 ///
 /// ```
-/// use hysteron::{AdaptOptions, Model, Operator, Plane, Recording, Sign, adapt};
+/// use hysteron::{AdaptOptions, Model, Operator, Plane, Progress, Recording, Sign, adapt};
 /// let plane = Plane::new(20.0, 80.0, 5)?;
-/// let model = |weight: f64| Model::new(Operator::Mkp, plane, vec![weight; 15], 0.0, Sign::Positive);
+/// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+/// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
 /// let input: Vec<f64> = (0..1000).map(|n| 50.0 - 40.0 * (0.05 * f64::from(n)).cos()).collect();
 /// let output = model(1.5)?.simulate(&input)?;
-/// let adapted = adapt(&model(1.0)?, &Recording::new(input, output)?, &AdaptOptions::default(), Progress::NONE)?;
+/// let recording = Recording::new(input, output)?;
+/// let adapted = adapt(&model(1.0)?, &recording, &AdaptOptions::default(), Progress::NONE)?;
 /// let last = adapted.thirds[2];
 /// assert!(last.adapting.rmse < 0.05 * last.fixed.rmse);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Fit`] for a model with a thermal body, for one that
-/// depends on a load with another learner than [`Learner::Drift`], and for options that are of no use; [`Error::Core`] for
-/// options out of range and negative weights.
+/// - [`Error::Recording`] for an invalid recording.
+/// - [`Error::Fit`] for a model with a thermal body, for a model that depends on a load with a
+///   learner other than [`Learner::Drift`], and for options that the learner does not use.
+/// - [`Error::Core`] for options out of range and negative weights.
+/// - The error that `progress` returns.
 pub fn adapt(
     model: &Model,
     recording: &Recording,
@@ -182,13 +196,16 @@ fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
     }
 }
 
-/// Weights whose squares are no numbers leave errors that are none, and without any there is nothing to take shares of.
+/// Refuses weights whose squares overflow, because their errors would not be numbers, and weights
+/// that are all zero, because they have no basis to adapt.
 fn refuse_unusable(model: &Model) -> Result<()> {
     let size: f64 = model.weights().iter().map(|mu| mu * mu).sum();
     match size.is_finite() && size > 0.0 {
         true => Ok(()),
         false => Err(Error::Fit(
-            "the model's weights are all zero, or too large to be squared: there is nothing to adapt".into(),
+            "the model's weights are all zero, or too large to be squared: there is nothing to \
+             adapt"
+                .into(),
         )),
     }
 }
@@ -197,7 +214,7 @@ fn no_samples() -> Error {
     Error::Fit("no samples".into())
 }
 
-/// Whether the operators start on, and the outputs of the model left as it is.
+/// Whether the operators start on, and the outputs of the fixed model.
 fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Vec<f64>)> {
     let from = |on| run_from(model, on, recording);
     let error = |output: &[f64]| {
@@ -227,7 +244,7 @@ fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> 
     Ok(output)
 }
 
-/// What the adapted model's file says of how it was obtained.
+/// The summary for the file of the adapted model.
 fn summary(
     model: &Model,
     offline: &Model,
@@ -269,7 +286,7 @@ fn summary(
     }
 }
 
-/// The options as a JSON object: those of the method, and the guards.
+/// The options as a JSON object: those of the method, and those that guard against bad readings.
 fn described(options: &Adaptation<f64>) -> serde_json::Value {
     let mut object = match options.method {
         Method::Gradient { gain } => json!({ "gain": gain }),
@@ -280,7 +297,12 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
             spread,
             correlation,
         } => {
-            json!({"forgetting": forgetting, "noise": noise, "spread": spread, "correlation": correlation})
+            json!({
+                "forgetting": forgetting,
+                "noise": noise,
+                "spread": spread,
+                "correlation": correlation,
+            })
         }
     };
     object["offset_share"] = json!(options.offset_share);

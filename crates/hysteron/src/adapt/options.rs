@@ -1,7 +1,7 @@
-//! How a model is adapted to a recording, and what follows from both where nothing is said.
+//! Options of an adaptation, with defaults that follow from the model and the recording.
 
 use crate::adapt::adaptive::Adaptive;
-use crate::adapt::parts::DriftParts;
+use crate::adapt::basis::DriftBasis;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::prepare::noise;
@@ -14,21 +14,21 @@ use serde::Serialize;
 const GAIN: f64 = 0.3;
 /// Levels between two updates from increments.
 const SPAN: f64 = 1.0;
-/// Forgetting factor of least squares, for weights and for shares.
+/// Forgetting factor of least squares, for weights and for coefficients.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading, in parts of the output's range, for weights and for shares. So few parts err more, and alike from sample to
-/// sample.
+/// Error of a reading as a share of the output's range, for weights and for coefficients. It is larger
+/// for coefficients, because a few coefficients fit less well and their errors are correlated between samples.
 const MISFIT: [f64; 2] = [0.02, 0.05];
-/// Share of the offset in the regressor of the gradient methods, in parts of that of all weights.
+/// Share of the offset in the regressor of the gradient methods, relative to all weights together.
 const OFFSET: f64 = 0.2;
-/// Levels over which deviations of weights go together.
+/// Correlation length of the weights' deviations, in levels.
 const CORRELATION: f64 = 1.0;
-/// By how much the output with every operator on may differ, in parts of its range.
+/// Standard deviation of the output with every operator on, as a share of its range.
 const DEVIATION: f64 = 0.3;
-/// By how much a share of a part may differ.
+/// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
 
-/// Which parameters follow the error, and how.
+/// Which parameters are adapted, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Learner {
@@ -38,66 +38,74 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The shares of [`crate::DriftParts`] by recursive least squares: with the defaults the one that errs least on measured recordings.
+    /// The coefficients of [`crate::DriftBasis`] by recursive least squares. With the defaults it
+    /// has the smallest errors on measured recordings.
     #[default]
     Drift,
 }
 
-/// What [`crate::adapt`] may choose; where a field is `None`, it follows from model and recording. `Y` is the range of the
-/// recording's output or that of the model, whichever is larger; single readings far from all
-/// others are not of the recording's.
+/// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
+/// recording. `Y` is the range of the recording's output or that of the model, whichever is larger.
+/// Single readings far from all others do not count for that range.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `learner` | drift | see [`Learner`] | what follows the error, and how |
-/// | `start` | off | off, on, unknown | where the operators stand before the first sample; unknown: off or on, with which the model as it is errs less |
-/// | `load` | middle of its range | the model's | load that the shares start at, for [`Learner::Drift`] of a model that depends on one |
-/// | `gain` | 0.3 | above 0, below 2 | gradient methods: share of a sample's error that is taken away |
-/// | `span` | 1 | 1/8 to 8 | increments: levels between two updates |
-/// | `forgetting` | weights: 0.999; shares: 0.9999 | above 0, up to 1 | least squares: what a sample counts after the next |
-/// | `noise` | the output's [`noise`], and at least 2 % of `Y` for weights, 5 % for shares | above 0 | least squares: standard deviation of a reading's error, that of the model included; in the output's unit |
-/// | `spread` | weights: such that their sum may deviate by 0.3 `Y`; shares: 0.5 | above 0 | least squares: standard deviation by which a parameter may differ from its off-line value |
-/// | `correlation` | 1 | from 0 on | least squares of weights: levels over which deviations go together |
-/// | `dead_zone` | twice the output's [`noise`] | from 0 on | errors up to this are noise; in the output's unit |
-/// | `leakage` | 0 | 0 to 1 | share by which the weights return to the off-line ones with each update |
-/// | `offset_share` | gradient methods: `0.2 √N`; least squares: such that the offset may deviate by 0.3 `Y` | from 0 on | how freely the offset moves, beside one weight or share |
-/// | `movement` | 0.05 | from 0 on | levels that the input has to move before a sample is learned from |
-/// | `trial` | 256 | from 1 on | samples after which the weights are judged against the last good ones |
-/// | `gate` | 12 | 0, or from 2 on | a reading that surprises so many times more than usual is not learned from; 0: all are learned from |
-/// | `burst` | 8 | from 1 on | readings in a row beyond the gate that are learned from, where they agree; samples at the end on probation |
+/// | `learner` | drift | see [`Learner`] | parameters and method |
+/// | `start` | off | off, on, unknown | state before the first sample |
+/// | `load` | middle of its range | the model's range | load of the first coefficients (drift) |
+/// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
+/// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
+/// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
+/// | `noise` | see the field | above 0 | error of a reading (least squares) |
+/// | `spread` | see the field | above 0 | deviation of a parameter (least squares) |
+/// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
+/// | `dead_zone` | twice the output's [`noise`] | 0 or more | errors that are noise |
+/// | `leakage` | 0 | 0 to 1 | return to the off-line weights |
+/// | `offset_share` | see the field | 0 or more | how freely the offset moves |
+/// | `movement` | 0.05 | 0 or more | levels between samples learned from |
+/// | `trial` | 256 | 1 or more | samples of a trial |
+/// | `gate` | 12 | 0, or 2 or more | rejects wrong readings |
+/// | `burst` | 8 | 1 or more | accepts a real jump |
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptOptions {
-    /// What follows the error, and how.
+    /// Which parameters are adapted, and by which method.
     pub learner: Learner,
-    /// Where the operators stand before the first sample.
+    /// State of the operators before the first sample. Unknown: off or on, whichever gives the
+    /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the shares start at.
+    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a load.
     pub load: Option<f64>,
-    /// Gain of the gradient methods.
+    /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
     /// Levels between two updates from increments.
     pub span: Option<f64>,
-    /// Forgetting factor of least squares.
+    /// Forgetting factor of least squares: weight of a sample relative to the next one.
     pub forgetting: Option<f64>,
-    /// Standard deviation of a reading's error.
+    /// Least squares: standard deviation of a reading's error, including the error of the model, in
+    /// the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for weights and
+    /// 5 % for shares.
     pub noise: Option<f64>,
-    /// Standard deviation by which a parameter may differ from its off-line value.
+    /// Least squares: standard deviation by which a parameter may differ from its off-line value.
+    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for shares: 0.5.
     pub spread: Option<f64>,
-    /// Levels over which deviations of weights go together.
+    /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
-    /// Errors up to this are noise.
+    /// Errors up to this are noise, in the output's unit.
     pub dead_zone: Option<f64>,
-    /// Share by which the weights return to the off-line ones with each update.
+    /// Share of the way back to the off-line weights with each update.
     pub leakage: Option<f64>,
-    /// How freely the offset moves.
+    /// How freely the offset moves, relative to one weight or share. Default of the gradient
+    /// methods: `0.2 √N`. Default of least squares: the offset may deviate by 0.3 `Y`.
     pub offset_share: Option<f64>,
     /// Levels that the input has to move before a sample is learned from.
     pub movement: Option<f64>,
-    /// Samples after which the weights are judged.
+    /// Number of samples after which the weights are compared with the last good ones.
     pub trial: Option<u32>,
-    /// How many times the usual surprise a reading may be off; see [`Adaptation`].
+    /// A reading is rejected if it is more than this many times as surprising as usual; 0 to accept
+    /// all readings. See [`Adaptation`].
     pub gate: Option<f64>,
-    /// Readings in a row beyond the gate that are a jump.
+    /// Number of readings in a row beyond the gate that are taken as a real jump if they agree.
+    /// Also the number of samples on probation at the end.
     pub burst: Option<u32>,
 }
 
@@ -105,15 +113,15 @@ impl AdaptOptions {
     /// The estimator's options for `model` on `recording`.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a field that is given and that the learner does not use. What is out of range is refused
-    /// when an estimator is made.
+    /// [`Error::Fit`] for a field that is set but that the learner does not use. Values out of
+    /// range are refused when an estimator is made.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The estimator's options for `model` before anything was measured: `Y` is the model's range, and the output is taken to
-    /// have no noise.
+    /// The estimator's options for `model` before any measurement. `Y` is the model's range, and
+    /// the output is assumed to have no noise.
     ///
     /// # Errors
     /// As [`AdaptOptions::adaptation`].
@@ -121,7 +129,8 @@ impl AdaptOptions {
         self.resolved(model, 0.0, 0.0)
     }
 
-    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown start is off.
+    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
+    /// start is taken as off.
     ///
     /// ```
     /// use hysteron::{AdaptOptions, Model, Operator, Plane, Sign};
@@ -134,7 +143,7 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_parts`].
+    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
         let mut adaptive = self.estimator(model, self.before(model)?)?;
         if self.start == Start::On {
@@ -143,10 +152,10 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
-    /// An estimator of weights or shares, as the learner asks for.
+    /// An estimator of the weights or of the coefficients, depending on the learner.
     pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
         match self.learner {
-            Learner::Drift => DriftParts::of(model, self.load)?.adaptive(adaptation),
+            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
             _ => Adaptive::new(model, adaptation),
         }
     }
@@ -156,11 +165,11 @@ impl AdaptOptions {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
-        let shares = usize::from(self.learner == Learner::Drift);
-        // An error of zero would be certainty.
-        let misfit = rough.max(MISFIT[shares] * span).max(f64::EPSILON);
+        let drift = usize::from(self.learner == Learner::Drift);
+        // An error of zero would mean certainty and stop all learning.
+        let misfit = rough.max(MISFIT[drift] * span).max(f64::EPSILON);
         let least_squares = |spread: f64, correlation| Method::LeastSquares {
-            forgetting: self.forgetting.unwrap_or(FORGETTING[shares]),
+            forgetting: self.forgetting.unwrap_or(FORGETTING[drift]),
             noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(spread.max(f64::EPSILON)),
             correlation,
@@ -175,7 +184,7 @@ impl AdaptOptions {
             Learner::LeastSquares => {
                 let correlation = self.correlation.unwrap_or(CORRELATION);
                 let spread =
-                    DEVIATION * span / together(model.plane().levels(), correlation).sqrt();
+                    DEVIATION * span / variance_of_sum(model.plane().levels(), correlation).sqrt();
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
@@ -225,8 +234,8 @@ impl AdaptOptions {
     }
 }
 
-/// The range of the values without those that lie further outside of the middle nine tenths than
-/// these are wide: wrong readings.
+/// The range of the values without wrong readings. The middle nine tenths of the values span a
+/// width; a value is wrong if it is more than this width outside.
 fn usual_range(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -239,10 +248,11 @@ fn usual_range(values: &[f64]) -> f64 {
     high - low
 }
 
-/// The variance of the sum of all weights, for a variance of one of each and the estimator's correlation between them.
-fn together(levels: usize, correlation: f64) -> f64 {
-    // Pairs of operators that are `along` and `across` apart: as many as places for one of them from which the other is
-    // on the triangle too.
+/// The variance of the sum of all weights, for a variance of one of each weight and the estimator's
+/// correlation between them.
+fn variance_of_sum(levels: usize, correlation: f64) -> f64 {
+    // The number of pairs of operators that are `along` and `across` apart: the number of positions
+    // of the first one for which the second is inside the triangle.
     let levels = levels as isize;
     let mut sum = 0.0;
     for along in -levels..=levels {
@@ -268,21 +278,20 @@ fn together(levels: usize, correlation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::together;
+    use hysteron_core::operators;
 
     #[test]
     fn the_variance_of_the_sum_is_that_of_all_pairs() {
-        let levels = 6_i32;
-        let places: Vec<(i32, i32)> = (1..=levels)
-            .flat_map(|j| (1..=j).map(move |i| (i, j)))
-            .collect();
+        let all: Vec<_> = operators(6).collect();
         let mut sum = 0.0;
-        for (i, j) in &places {
-            for (k, l) in &places {
-                sum += 1.0 / (1.0 + f64::from((i - k).pow(2) + (j - l).pow(2)) / 4.0);
+        for (i, j) in &all {
+            for (k, l) in &all {
+                let squared = i.abs_diff(*k).pow(2) + j.abs_diff(*l).pow(2);
+                sum += 1.0 / (1.0 + squared as f64 / 4.0);
             }
         }
-        // A few hundred terms in another order.
-        assert!((together(6, 2.0) / sum - 1.0).abs() < 1e-12);
-        assert_eq!(together(6, 0.0), 21.0);
+        // A few hundred terms, summed in another order.
+        assert!((variance_of_sum(6, 2.0) / sum - 1.0).abs() < 1e-12);
+        assert_eq!(variance_of_sum(6, 0.0), 21.0);
     }
 }

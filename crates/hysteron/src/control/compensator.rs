@@ -1,10 +1,14 @@
-//! The model in a loop: what it expects at the input that it is told of, and the input that it wants.
+//! A hysteresis model inside a control loop. It predicts the output at the measured input, and its
+//! inverse gives the input for a target.
 //!
-//! These are two states of one model. The first follows the input as measured, for prediction and learning. The second
-//! follows the inputs that the inverse asked for, as in the chapter's compensator: were the inverse to
-//! set out from the measured input, each overshoot of the loop behind it would send it back across the dead band.
-//! But a turning point that was asked for by weights long changed stays in that memory until it is wiped out. So with weights that
-//! learn the inverse sets out again from the measured input wherever the target turns, when it has to cross the dead band anyway.
+//! These are two states of one model. The first state follows the measured input; it is used to
+//! predict the output and to learn. The second state follows the inputs that the inverse has asked
+//! for, as in the chapter's compensator. If the inverse started from the measured input instead,
+//! each overshoot of the loop behind it would make it cross the dead band again.
+//!
+//! But weights that learn cause a problem: a turning point asked for with old weights stays in the
+//! memory of the inverse until it is wiped out. So with a learning model, the inverse restarts from
+//! the measured input wherever the target turns. There it has to cross the dead band anyway.
 
 use crate::adapt::Adaptive;
 use crate::error::Result;
@@ -12,24 +16,24 @@ use crate::model::{Model, OperatorState, Operators, Sign};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
-/// Weights that learn move the output that they expect a little to and fro. While the target itself has not turned, the
-/// inverse goes back across the dead band only for a difference of this many tolerances.
+/// Learning moves the expected output slightly up and down. While the target itself has not turned,
+/// the inverse crosses the dead band only if the difference exceeds this many tolerances.
 const NOT_TURNED: f64 = 8.0;
 
-/// Samples after a jump of the input from which nothing is learned.
+/// Number of samples after a jump of the input during which the model does not learn.
 const JUMP: u32 = 10;
 
-/// A hysteresis model and its inverse in the loop, fixed or adapting.
+/// A hysteresis model and its inverse in the loop, fixed or adaptive.
 #[derive(Debug, Clone)]
 pub struct Compensator {
     kind: Kind,
-    /// Where the inverse stands; none before the first sample.
+    /// State of the inverse; `None` before the first sample.
     wanted: Option<OperatorState>,
     /// The branch that the target is on.
     target: Option<Turning>,
-    /// The last input followed.
+    /// The last input that the model followed.
     input: Option<f64>,
-    /// Samples for which learning rests.
+    /// Number of samples until learning continues.
     resting: u32,
 }
 
@@ -43,10 +47,10 @@ enum Kind {
 }
 
 impl Compensator {
-    /// A model that stays as it is, from every operator off.
+    /// A model that does not change. It starts with every operator off.
     ///
     /// # Errors
-    /// As [`Model::inverse`], for a model that has none.
+    /// As [`Model::inverse`], for a model that has no inverse.
     pub fn fixed(model: &Model) -> Result<Self> {
         let operators = model.plain()?;
         operators.inverse()?;
@@ -56,7 +60,7 @@ impl Compensator {
         }))
     }
 
-    /// A model that learns.
+    /// A model that learns while it runs.
     #[must_use]
     pub fn adaptive(adaptive: Adaptive) -> Self {
         Self::new(Kind::Adaptive(Box::new(adaptive)))
@@ -72,8 +76,8 @@ impl Compensator {
         }
     }
 
-    /// Moves to the input and gives the output expected there and what was done with the one
-    /// measured, if it was shown to a model that learns.
+    /// Moves the model to `input`. Returns the output expected there and, for a model that learns
+    /// from the measured output, what was done with that measurement.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
@@ -101,8 +105,9 @@ impl Compensator {
         }
     }
 
-    /// The input that gives `target`, on the way from the last one asked for. Where the target goes next is for
-    /// *anticipate*; a target that goes back by up to the `tolerance` is not followed.
+    /// Finds the input that gives `target`, starting from the last input asked for. The heading of
+    /// the target is used by *anticipate*. Reversals of the target up to `tolerance` are not
+    /// followed.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite.
@@ -139,13 +144,13 @@ impl Compensator {
         }
     }
 
-    /// Lets the inverse set out from where the input was last seen. After a time without seeing it, the input may have been
-    /// anywhere, and what was asked for in the meantime was not done.
+    /// Restarts the inverse from the last measured input. While the input is not measured, it may
+    /// go anywhere, and the inputs asked for in that time may not have been reached.
     pub(super) fn set_out_again(&mut self) {
         self.wanted = None;
     }
 
-    /// The model that learns.
+    /// The adaptive model, if this compensator has one.
     #[must_use]
     pub fn adapting(&self) -> Option<&Adaptive> {
         match &self.kind {

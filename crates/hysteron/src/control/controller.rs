@@ -1,40 +1,44 @@
-//! One controller for all schemes: inverse feedforward, PID, both, with a loop around the input inside.
+//! One controller for all schemes: inverse feedforward, PID feedback, or both, with an optional
+//! inner loop around the input.
 
-use super::pid::limited;
-use super::watch::{Sight, Watch};
+use super::pid::clamp;
+use super::sensor::{Sensed, Sensor};
 use super::{LoopStatus, Pid, Reading, Scheme};
 use crate::error::Result;
 use crate::model::Policy;
 use hysteron_core::{Direction, Outcome};
 
-/// What the output should be, and where it goes next.
+/// The wanted output, and the direction it takes next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reference {
     /// The output wanted now.
     pub output: f64,
-    /// Where it goes next, where that is known; *anticipate* needs it.
+    /// The direction it takes next, if known. *Anticipate* needs it.
     pub heading: Option<Direction>,
 }
 
-/// What a controller does with a sample.
+/// What a controller does at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Action {
     /// The input asked for.
     pub command: f64,
     /// The drive to write to the device.
     pub drive: f64,
-    /// The output that the model expected before it learned, at the input that was seen last; NaN without a model.
+    /// The output that the model expected at the last measured input, before it learned from this
+    /// sample. NaN without a model.
     pub prediction: f64,
-    /// The readings as filtered; NaN where there is nothing new to be believed.
+    /// The filtered readings. NaN where there is no new valid reading.
     pub filtered: Reading,
-    /// What there is to say.
+    /// Flags for this sample.
     pub status: LoopStatus,
 }
 
-/// A [`Scheme`] in motion. Once a sample: read the device, [`step`](Controller::step), write the drive.
+/// A [`Scheme`] at work. At each sample: read the device, call [`step`](Controller::step), write
+/// the drive.
 ///
-/// Without news from the output's sensor the feedback stays as it is, the feedforward goes on and nothing is learned. Without news
-/// from the input's sensor the loop inside holds the drive for [`Scheme::stuck_s`] and then goes to the lowest one.
+/// If the output's sensor gives nothing new, the feedback is held, the feedforward continues and
+/// nothing is learned. If the input's sensor gives nothing new, the inner loop holds the drive for
+/// [`Scheme::stuck_s`] and then sets the lowest drive.
 ///
 /// ```
 /// use hysteron::control::{Controller, Device, Gains, Reading, Scheme, Reference};
@@ -48,7 +52,8 @@ pub struct Action {
 ///     }
 ///     fn write(&mut self, drive: f64) {
 ///         self.volts = drive;
-///         self.mm += 0.1 * (0.5 * self.volts - self.mm); // what the physics would do until the next sample
+///         // The physics until the next sample.
+///         self.mm += 0.1 * (0.5 * self.volts - self.mm);
 ///     }
 /// }
 ///
@@ -70,15 +75,15 @@ pub struct Controller {
     scheme: Scheme,
     pid: Option<Pid>,
     inner: Option<Pid>,
-    output: Watch,
-    input: Watch,
-    /// The last input that was asked of the device.
+    output: Sensor,
+    input: Sensor,
+    /// The last input that was commanded.
     last: Option<f64>,
-    /// Whether the drive stands at its lower and its upper limit.
+    /// Whether the drive is at its lower and at its upper limit.
     held: (bool, bool),
-    /// What the model expected when it last saw the input.
+    /// The output that the model expected at the last measured input.
     prediction: f64,
-    /// Whether the input's sensor was taken as broken, so that it is not known how the input came to where it is.
+    /// Whether the input's sensor was taken as broken. Then the path of the input is not known.
     lost: bool,
 }
 
@@ -86,15 +91,15 @@ impl Controller {
     /// A controller at rest.
     ///
     /// # Errors
-    /// [`crate::Error::Control`] for numbers that no loop can run with.
+    /// [`crate::Error::Control`] for settings that no loop can run with.
     pub fn new(scheme: Scheme) -> Result<Self> {
         scheme.check()?;
-        let watch = || Watch::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
+        let sensor = || Sensor::new(scheme.interval_s, scheme.filter_s, scheme.stuck_s);
         Ok(Self {
             pid: scheme.pid.map(Pid::new),
             inner: scheme.inner.map(|inner| Pid::new(inner.gains)),
-            output: watch(),
-            input: watch(),
+            output: sensor(),
+            input: sensor(),
             last: None,
             held: (false, false),
             prediction: f64::NAN,
@@ -103,8 +108,8 @@ impl Controller {
         })
     }
 
-    /// One sample: from what is wanted and what was read to what is to be written. The drive is finite and within its
-    /// limits whatever the readings are.
+    /// Runs one sample: takes the target and the readings, returns the drive to write. The drive is
+    /// finite and within its limits, whatever the readings are.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
@@ -113,7 +118,7 @@ impl Controller {
         let (output, input) = self.read(reading);
         let mut status = LoopStatus::default();
         if let Some(compensator) = &mut self.scheme.compensator {
-            if let Some(input) = input.and_then(Sight::value) {
+            if let Some(input) = input.and_then(Sensed::value) {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
@@ -122,13 +127,14 @@ impl Controller {
                 status.adapted = outcome == Some(Outcome::Learned);
                 status.rejected = outcome == Some(Outcome::Rejected);
             }
-            self.lost |= input == Some(Sight::Blind);
+            self.lost |= input == Some(Sensed::Broken);
         }
         let command = self.command(target, output.value(), &mut status)?;
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
-    /// One sample that brings the input to `command`, whatever the output is: for recordings and step tests.
+    /// Runs one sample with a given `command` for the input, without regard to the output. For
+    /// recordings and step tests.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a command that is not finite; nothing is changed then.
@@ -144,19 +150,20 @@ impl Controller {
         self.scheme.interval_s
     }
 
-    /// The model in the loop.
+    /// The model in the loop, if there is one.
     #[must_use]
     pub fn compensator(&self) -> Option<&super::Compensator> {
         self.scheme.compensator.as_ref()
     }
 
-    /// Output and input. Where no sensor measures the input, it is the one that was asked for, but not for a loop around it.
-    fn read(&mut self, reading: Reading) -> (Sight, Option<Sight>) {
+    /// Filters the readings of output and input. If no sensor measures the input, the last command
+    /// is used in its place, except where an inner loop needs a measurement.
+    fn read(&mut self, reading: Reading) -> (Sensed, Option<Sensed>) {
         let output = self.output.read(reading.output);
         let input = match (reading.input, self.scheme.inner) {
             (Some(input), _) => Some(self.input.read(input)),
             (None, Some(_)) => Some(self.input.read(f64::NAN)),
-            (None, None) => self.last.map(|last| Sight::Seen(self.input.filter(last))),
+            (None, None) => self.last.map(|last| Sensed::New(self.input.filter(last))),
         };
         (output, input)
     }
@@ -165,7 +172,7 @@ impl Controller {
         &mut self,
         command: f64,
         prediction: f64,
-        (output, input): (Sight, Option<Sight>),
+        (output, input): (Sensed, Option<Sensed>),
         status: LoopStatus,
     ) -> Action {
         let drive = self.drive(command, input);
@@ -193,7 +200,7 @@ impl Controller {
             },
             status: LoopStatus {
                 saturated: limits.contains(&true),
-                sensor_fault: output.fault() || input.is_some_and(Sight::fault),
+                sensor_fault: output.fault() || input.is_some_and(Sensed::fault),
                 ..status
             },
         }
@@ -220,7 +227,7 @@ impl Controller {
         };
         let (low, high) = scheme.commands;
         Ok(match (&mut self.pid, measured) {
-            (None, _) => limited(feedforward, low, high),
+            (None, _) => clamp(feedforward, low, high),
             (Some(pid), None) => pid.hold(feedforward, scheme.commands),
             (Some(pid), Some(measured)) => pid.step(
                 target.output - measured,
@@ -232,10 +239,10 @@ impl Controller {
         })
     }
 
-    fn drive(&mut self, command: f64, input: Option<Sight>) -> f64 {
+    fn drive(&mut self, command: f64, input: Option<Sensed>) -> f64 {
         let (low, high) = self.scheme.drives;
         let (Some(inner), Some(pid)) = (self.scheme.inner, &mut self.inner) else {
-            return limited(command, low, high);
+            return clamp(command, low, high);
         };
         let square = |drive: f64| match inner.square_root {
             true => drive * drive,
@@ -243,27 +250,27 @@ impl Controller {
         };
         let limits = (square(low), square(high));
         let power = match input {
-            Some(Sight::Seen(input)) => pid.step(
+            Some(Sensed::New(input)) => pid.step(
                 command - input,
                 self.scheme.interval_s,
                 0.0,
                 limits,
                 (false, false),
             ),
-            Some(Sight::Repeated | Sight::Missing) => pid.hold(0.0, limits),
-            // Not knowing how hot it is, it must not be heated.
-            Some(Sight::Blind) | None => {
+            Some(Sensed::Repeated | Sensed::Missing) => pid.hold(0.0, limits),
+            // Without a temperature reading, heating is not safe.
+            Some(Sensed::Broken) | None => {
                 pid.hold(0.0, limits);
                 limits.0
             }
         };
-        // The root of a square may differ from it by rounding.
+        // The square of a root may differ from the limit by rounding.
         let drive = if inner.square_root {
             power.sqrt()
         } else {
             power
         };
-        limited(drive, low, high)
+        clamp(drive, low, high)
     }
 }
 

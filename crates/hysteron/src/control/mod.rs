@@ -1,12 +1,19 @@
-//! Control loops on a hysteresis model and its inverse.
+//! Control loops with a hysteresis model and its inverse.
 //!
-//! A [`Controller`] is a [`Scheme`] in motion; it runs on whatever implements [`Device`], real or simulated, and [`run`] does so
-//! on a [`SimulatedPlant`]. Times are in seconds, inputs and outputs in the model's units.
+//! A [`Scheme`] is the configuration of a loop and a [`Controller`] runs it. The controller runs on
+//! anything that implements [`Device`], real or simulated; [`run`] does so on a [`SimulatedPlant`]
+//! and records a [`Trace`]. Times are in seconds, inputs and outputs in the model's units.
 //!
-//! An inverse in front of an actuator that it was identified from, and a PID that takes what is left:
+//! The files: `scheme` and `controller` as above; `compensator` is the model in the loop; `pid` the
+//! feedback and `tuning` its gains; `sensor` checks each sensor; `device`, `run` and `trace`
+//! connect the loop to a device and record it.
+//!
+//! Inverse feedforward with PID feedback, on an actuator that the model was identified from:
 //!
 //! ```
-//! use hysteron::control::{Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run};
+//! use hysteron::control::{
+//!     Compensator, Controller, Course, Device, Gains, Scheme, SimulatedPlant, run,
+//! };
 //! use hysteron_sim::plant::{PreisachPlant, PreisachPlantOptions};
 //! use hysteron::{Fit, Progress, Recording};
 //!
@@ -30,7 +37,8 @@
 //!     stuck_s: Some(0.15),
 //!     ..Scheme::new(0.01, (0.0, 150.0))
 //! })?;
-//! let reference: Vec<f64> = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos()).collect();
+//! let reference = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos());
+//! let reference: Vec<f64> = reference.collect();
 //! let course = Course { reference: &reference, headings: &[], events: &[] };
 //! let trace = run(&mut new()?, &mut controller, &course, Progress::NONE)?;
 //! let late = 200..1000; // after the start
@@ -45,9 +53,9 @@ mod device;
 mod pid;
 mod run;
 mod scheme;
+mod sensor;
 mod trace;
 mod tuning;
-mod watch;
 
 pub use compensator::Compensator;
 pub use controller::{Action, Controller, Reference};

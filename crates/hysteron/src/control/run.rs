@@ -1,4 +1,4 @@
-//! A controller on a simulated plant, sample by sample.
+//! Runs a controller on a simulated plant, sample by sample, and records the run.
 
 use super::{Controller, Disturbance, Reference, SimulatedPlant, Trace};
 use crate::error::Result;
@@ -6,22 +6,23 @@ use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::Direction;
 
-/// What happens in a run: the reference, and what acts on the plant. The run takes as many samples as the reference has.
+/// A run: the reference and the disturbances. It has as many samples as the reference.
 #[derive(Debug, Clone)]
 pub struct Course<'a> {
     /// The reference at each sample, in the output's unit.
     pub reference: &'a [f64],
-    /// Where it goes next at each sample ([`crate::headings`]), for *anticipate*; none where it is shorter than the reference.
+    /// The direction of the reference at each sample ([`crate::headings`]), for *anticipate*.
+    /// Samples beyond the end of this slice have none.
     pub headings: &'a [Option<Direction>],
-    /// What happens before which sample, counted from 0, in order.
+    /// Disturbances in order. Each acts before the sample with this index, counted from 0.
     pub events: &'a [(usize, Disturbance)],
 }
 
 /// Runs `controller` on `plant`. The trace holds the plant's true output and input.
 ///
 /// # Errors
-/// [`crate::Error::Rig`] for a disturbance that the plant does not know, [`crate::Error::Core`] for a reference that is not finite;
-/// what `progress` returns.
+/// [`crate::Error::Plant`] for a disturbance that the plant does not have; [`crate::Error::Core`]
+/// for a reference that is not finite; the error that `progress` returns.
 pub fn run(
     plant: &mut dyn SimulatedPlant,
     controller: &mut Controller,

@@ -1,50 +1,56 @@
-//! What a controller is made of.
+//! The configuration of a controller.
 
 use super::{Compensator, Gains};
 use crate::error::{Error, Result};
 use crate::model::Policy;
 
-/// The loop inside, which brings the input (a temperature) to the one commanded.
+/// The inner loop, which brings the input (a temperature) to the commanded value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InnerLoop {
-    /// Its gains: power for each degree.
+    /// Its gains: power per degree.
     pub gains: Gains,
-    /// The drive is the square root of what the gains give: a current, whose heat goes with its square.
+    /// Whether the drive is the square root of the controller's output. Use it where the drive is a
+    /// current, because its heat is proportional to its square.
     pub square_root: bool,
 }
 
-/// What a [`Controller`](super::Controller) is made of.
+/// The configuration of a [`Controller`](super::Controller).
 #[derive(Debug, Clone)]
 pub struct Scheme {
     /// Time between samples, s.
     pub interval_s: f64,
-    /// The model, for feedforward through its inverse.
+    /// The model, for feedforward through its inverse; `None` for feedback only.
     pub compensator: Option<Compensator>,
-    /// What the inverse does where the target rests.
+    /// Whether the inverse holds the input or crosses the dead band when the target reverses.
     pub policy: Policy,
-    /// Reversals of the target up to this size are not followed by the inverse, in the output's unit.
+    /// Reversals of the target up to this size are noise and the inverse does not follow them; in
+    /// the output's unit.
     pub tolerance: f64,
     /// Feedback of the output, added to the feedforward.
     pub pid: Option<Gains>,
-    /// Without a model the command sets out from here.
+    /// Command without feedback, for a scheme without a model.
     pub bias: f64,
     /// Lowest and highest input that may be commanded.
     pub commands: (f64, f64),
     /// Lowest and highest drive.
     pub drives: (f64, f64),
-    /// The loop inside; without one, the command is the drive.
+    /// The inner loop. Without one, the command is the drive.
     pub inner: Option<InnerLoop>,
-    /// Time constant of the filter on both readings, s; 0 for none.
+    /// Time constant of the low-pass filter on both readings, s; 0 for no filter.
     pub filter_s: f64,
-    /// Time without news (readings missing, or the same to the last bit) after which a sensor is taken as broken, s; until then
-    /// the loop inside holds the drive. `None` where a sensor has no noise to tell a broken one from one at
-    /// rest: then equal readings are believed, and a missing one counts at once.
+    /// Time in seconds after which a sensor that gives nothing new is taken as broken. A missing
+    /// reading, or one equal to the last to the last bit, is nothing new. Until this time has
+    /// passed the inner loop holds the drive.
+    ///
+    /// `None` for sensors without noise, where an unchanged reading is normal: equal readings are
+    /// valid then, and a missing reading counts as broken at once.
     pub stuck_s: Option<f64>,
 }
 
 impl Scheme {
-    /// A loop that samples every `interval_s` and commands inputs within `commands`, which are the
-    /// drive too. Without a model, feedback or filter: set the fields that differ.
+    /// A loop that samples every `interval_s` seconds and commands inputs within `commands`. The
+    /// commands are also the drives. There is no model, no feedback and no filter: set these fields
+    /// as needed.
     #[must_use]
     pub fn new(interval_s: f64, commands: (f64, f64)) -> Self {
         Self {
@@ -62,7 +68,7 @@ impl Scheme {
         }
     }
 
-    /// Refuses numbers that no loop can run with.
+    /// Refuses settings that no loop can run with.
     ///
     /// # Errors
     /// [`Error::Control`] names the field.
@@ -101,7 +107,7 @@ impl Scheme {
             let fine = !inner.square_root || self.drives.0 >= 0.0;
             require(
                 fine,
-                "a drive that is a square root cannot be below zero: `drives`",
+                "`drives` must not be negative, because the drive is a square root",
             )?;
         }
         Ok(())

@@ -1,30 +1,30 @@
-//! What a run of a control loop leaves behind.
+//! The record of a run of a control loop.
 
 use super::{Action, Controller, Reading};
 
-/// Snapshots of adapted weights over a run.
+/// Number of snapshots of adapted weights in a run.
 const SNAPSHOTS: usize = 60;
 
-/// What the loop had to say of a sample.
+/// Flags of one sample of a control loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopStatus {
-    /// The drive or the input asked for stood at a limit.
+    /// The drive or the commanded input was at a limit.
     pub saturated: bool,
-    /// The reference lay out of the model's reach; the nearest end was aimed at.
+    /// The model could not reach the reference. The nearest reachable output was used.
     pub out_of_reach: bool,
-    /// A reading was missing, or stuck: the loop went on without it.
+    /// A reading was missing or stuck. The loop continued without it.
     pub sensor_fault: bool,
     /// The model learned from the sample.
     pub adapted: bool,
-    /// Reading rejected: the model did not learn from it, because it was too far from what was
-    /// expected.
+    /// The reading was rejected: it was too far from the expected output, so the model did not
+    /// learn from it.
     pub rejected: bool,
 }
 
 /// The adapted weights at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// When, s.
+    /// Time, s.
     pub time: f64,
     /// Output with every operator off.
     pub offset: f64,
@@ -32,34 +32,34 @@ pub struct Snapshot {
     pub weights: Vec<f64>,
 }
 
-/// One controller's run: a value for each sample.
+/// The run of one controller, with one value per sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trace {
     /// Time, s.
     pub time: Vec<f64>,
-    /// What the output should be.
+    /// The wanted output.
     pub reference: Vec<f64>,
     /// The output: the true one of a simulated plant, the measured one of a real device.
     pub output: Vec<f64>,
-    /// The output as its sensor read it; NaN where it gave nothing.
+    /// The output as its sensor read it; NaN where the sensor gave nothing.
     pub measured: Vec<f64>,
     /// The input of the hysteresis, true or measured.
     pub input: Vec<f64>,
-    /// The input that the controller asked for.
+    /// The input that the controller commanded.
     pub command: Vec<f64>,
     /// The drive that was written to the device.
     pub drive: Vec<f64>,
-    /// The output that the controller's model expected before it learned from the reading; NaN for a controller without a model.
+    /// The output that the model expected before it learned from the reading; NaN without a model.
     pub prediction: Vec<f64>,
-    /// What the loop had to say.
+    /// Flags of each sample.
     pub status: Vec<LoopStatus>,
-    /// The weights over time, of a controller that adapts.
+    /// The weights over time, for a controller that adapts.
     pub snapshots: Vec<Snapshot>,
 }
 
 impl Trace {
-    /// Adds the next of `count` samples: what was wanted, what was read and, of a simulated plant, what was true, and what the
-    /// controller did. Now and then also its weights, where these adapt.
+    /// Adds the next of `count` samples: target, readings, true values (of a simulated plant) and
+    /// the controller's action. Also adds a snapshot of the weights now and then, if they adapt.
     pub fn record(
         &mut self,
         count: usize,

@@ -1,18 +1,20 @@
-//! PID gains from a test on a device, real or simulated.
+//! PID gains from a relay test or a step test on a device, real or simulated.
 
 use super::Gains;
 use crate::error::{Error, Result};
 use crate::series::mean_and_deviation;
 
-/// Periods of the relay test that are left out, and those that count.
+/// Number of periods of the relay test that are left out because the oscillation has not settled,
+/// and number of periods that count.
 const SETTLED: usize = 3;
 const COUNTED: usize = 5;
-/// Samples over which a level is taken, before the step and at the end.
+/// Number of samples that a level is averaged over, before the step and at the end.
 const LEVEL: usize = 50;
-/// What tells an answer from the noise, in standard deviations.
+/// A response smaller than this many standard deviations of the noise does not count.
 const ANSWER: f64 = 3.0;
 
-/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop oscillate.
+/// The relay test (Åström & Hägglund 1984): a relay in place of the controller makes the loop
+/// oscillate.
 ///
 /// ```
 /// use hysteron::control::RelayTest;
@@ -33,24 +35,26 @@ pub struct RelayTest {
     hysteresis: f64,
     high: bool,
     count: usize,
-    /// Outputs since the last period began, and all.
+    /// Range of the output since the last period began, and over the whole test.
     range: (f64, f64),
     all: (f64, f64),
-    /// Sample at which each period ended, and half the output's way in it.
+    /// For each period, the sample at its end and the amplitude of the output in it.
     periods: Vec<(usize, f64)>,
 }
 
 impl RelayTest {
-    /// A relay between two `commands`, which switches where the output is `hysteresis` beyond `middle`.
+    /// A relay between two `commands`, which switches when the output is `hysteresis` beyond
+    /// `middle`.
     ///
     /// # Errors
-    /// [`Error::Control`] for commands that do not differ and for numbers that are not finite.
+    /// [`Error::Control`] for commands that are equal and for numbers that are not finite.
     pub fn new(commands: (f64, f64), middle: f64, hysteresis: f64) -> Result<Self> {
         let (low, high) = commands;
         let fine = low < high && (high - low).is_finite() && middle.is_finite();
         if !(fine && hysteresis >= 0.0 && hysteresis.is_finite()) {
             return Err(Error::Control(format!(
-                "`commands` {low} to {high}, `middle` {middle}, `hysteresis` {hysteresis}: finite numbers are needed, the lower command first and the hysteresis from 0 on"
+                "`commands` {low} to {high}, `middle` {middle}, `hysteresis` {hysteresis}: finite \
+                 numbers are needed, the lower command first and the hysteresis from 0 on"
             )));
         }
         let none = (f64::INFINITY, f64::NEG_INFINITY);
@@ -66,7 +70,7 @@ impl RelayTest {
         })
     }
 
-    /// The command for the sample that comes.
+    /// The command for the next sample.
     #[must_use]
     pub fn command(&self) -> f64 {
         match self.high {
@@ -75,7 +79,7 @@ impl RelayTest {
         }
     }
 
-    /// Takes the output that followed; one that is NaN changes nothing but the time.
+    /// Takes the output of the next sample. For NaN only the time advances.
     pub fn push(&mut self, output: f64) {
         let widened = |(low, high): (f64, f64)| (low.min(output), high.max(output));
         (self.range, self.all) = (widened(self.range), widened(self.all));
@@ -90,20 +94,20 @@ impl RelayTest {
         self.count += 1;
     }
 
-    /// Whether there were periods enough.
+    /// Whether enough periods have been recorded.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.periods.len() > SETTLED + COUNTED
     }
 
-    /// Lowest and highest output so far; none before the first.
+    /// Lowest and highest output so far; `None` before the first sample.
     #[must_use]
     pub fn outputs(&self) -> Option<(f64, f64)> {
         (self.all.0 <= self.all.1).then_some(self.all)
     }
 
-    /// The ultimate gain, by the describing function of a relay, and the period in samples, of the periods that count; none before
-    /// the test is done.
+    /// The ultimate gain (from the describing function of the relay) and the period in samples,
+    /// over the periods that count. `None` before the test is done.
     #[must_use]
     pub fn oscillation(&self) -> Option<(f64, f64)> {
         let counted = self.periods.get(SETTLED..=SETTLED + COUNTED)?;
@@ -120,8 +124,9 @@ impl RelayTest {
 }
 
 impl Gains {
-    /// Proportional and integral gain by Tyreus & Luyben 1992, from the ultimate gain and the period, s. The rule for three terms is
-    /// not used: with noisy sensors the derivative throws the drive from limit to limit.
+    /// Proportional and integral gain by Tyreus & Luyben 1992, from the ultimate gain and the
+    /// period in seconds. The rule with a derivative term is not used, because with noisy sensors
+    /// the derivative drives the output from limit to limit.
     #[must_use]
     pub fn from_oscillation(ultimate_gain: f64, period_s: f64) -> Self {
         Self {
@@ -131,9 +136,10 @@ impl Gains {
         }
     }
 
-    /// Gains by SIMC (Skogestad 2003) from the `output` of a step test: before the sample `begin` the command rests, from there on it is
-    /// larger by `step`. The output is taken as a first-order lag with a delay, from the times at which it has gone 28.3 % and 63.2 %
-    /// of its way. None where it does not answer by more than its noise.
+    /// Gains by SIMC (Skogestad 2003) from the `output` of a step test. Before the sample `begin`
+    /// the command is constant; from there on it is larger by `step`. The response is modelled as a
+    /// first-order lag with a delay, from the times at which it has reached 28.3 % and 63.2 % of
+    /// its final change. `None` if the response is not larger than the noise.
     ///
     /// ```
     /// use hysteron::control::Gains;

@@ -1,4 +1,4 @@
-//! What came of an adaptation as a table.
+//! Writes the result of an adaptation as a table.
 
 use crate::adapt::Adapted;
 use crate::data::output::TableWriter;
@@ -6,12 +6,13 @@ use crate::error::{Error, Result};
 use crate::recording::Recording;
 
 impl Adapted {
-    /// Writes the recording as a table with the columns `output_model` (predicted before the sample was learned
-    /// from), `error` (measured less predicted) and `outcome` (`learned`, `waiting`, `at-rest`,
-    /// `frozen`, `rolled-back`, `rejected`).
+    /// Writes the recording as a table with three more columns: `output_model` (expected before the
+    /// sample was learned from), `error` (measured minus expected) and `outcome` (`learned`,
+    /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`).
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] for another recording than the one adapted to, as far as its length tells.
+    /// [`Error::File`]; [`Error::Recording`] if `recording` does not have as many samples as the
+    /// one adapted to.
     pub fn write_table(&self, recording: &Recording, table: TableWriter) -> Result<()> {
         if recording.len() != self.outcomes.len() {
             return Err(Error::Recording {

@@ -1,35 +1,36 @@
-//! What is in the columns of a table, for whoever does not know their names yet.
+//! Summarises the columns of a table, for users who do not know their names yet.
 
 use crate::data::table::TableReader;
 use crate::error::Result;
 use serde::Serialize;
 
-/// What is in a table.
+/// Summary of a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TableSummary {
-    /// Rows below the header.
+    /// Number of rows below the header.
     pub rows: u64,
-    /// Its columns, in their order.
+    /// The columns, in their order.
     pub columns: Vec<ColumnSummary>,
 }
 
-/// What is in a column.
+/// Summary of a column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ColumnSummary {
     /// Its name.
     pub name: String,
-    /// Smallest number; `None` in a column without any.
+    /// Smallest number; `None` if the column has no numbers.
     pub min: Option<f64>,
-    /// Largest number.
+    /// Largest number; `None` if the column has no numbers.
     pub max: Option<f64>,
-    /// Cells that are not numbers.
+    /// Number of cells that are not numbers.
     pub not_numbers: u64,
 }
 
 /// Reads `table` to its end and summarises its columns.
 ///
 /// # Errors
-/// [`crate::Error::File`]; [`crate::Error::Recording`] for a row that is cut short or too long.
+/// [`crate::Error::File`]; [`crate::Error::Recording`] for a row with more or fewer cells than the
+/// header.
 pub fn inspect_table(table: &mut TableReader) -> Result<TableSummary> {
     let empty = |name: &String| ColumnSummary {
         name: name.clone(),

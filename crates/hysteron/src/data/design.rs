@@ -1,4 +1,4 @@
-//! A designed input profile as a table.
+//! Writes a designed input profile as a table.
 
 use crate::data::output::TableWriter;
 use crate::design::Design;
@@ -6,7 +6,8 @@ use crate::error::Result;
 use std::path::Path;
 
 impl Design {
-    /// Writes the profile as CSV with the columns `time [s]` and `input`. Whatever file is there is replaced.
+    /// Writes the profile as CSV with the columns `time [s]` and `input`. An existing file is
+    /// replaced.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -14,7 +15,7 @@ impl Design {
         self.write_to(TableWriter::plain(Some(path.into()))?)
     }
 
-    /// As [`Design::write_csv`], to a table that was begun before.
+    /// As [`Design::write_csv`], to a table that is already open.
     ///
     /// # Errors
     /// [`Error::File`].

@@ -1,5 +1,10 @@
-//! Files: tables in and out, and the recordings, models and results that are read from and written
-//! to them. The only module that touches the file system; feature `data`.
+//! Reads and writes files: tables, recordings, models and results. This is the only module that
+//! uses the file system (feature `data`).
+//!
+//! `table` reads CSV, Parquet and MATLAB files. `recording` turns their columns into recordings.
+//! `output` writes files so that they appear complete or not at all. `run` simulates and inverts
+//! tables row by row. `model`, `design`, `adapted` and `trace` read and write what their names say.
+//! `columns` summarises a table, and `printable` makes text safe to show.
 
 mod adapted;
 mod columns;

@@ -1,4 +1,4 @@
-//! Model files on disk.
+//! Reads and writes model files.
 
 use crate::data::output::AtomicFile;
 use crate::data::output::is_our_model;
@@ -11,8 +11,8 @@ impl Model {
     /// Reads a model file.
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::ModelFile`] naming the field that is missing, of another type, out
-    /// of range, or of an unknown version.
+    /// [`Error::File`]; [`Error::ModelFile`] for an unknown version and for a field that is
+    /// missing, of the wrong type or out of range. The error names the field.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::File {
             path: path.to_owned(),
@@ -28,7 +28,8 @@ impl Model {
         })
     }
 
-    /// Writes this model's file, beside its place first. A path alone replaces whatever file is there.
+    /// Writes this model's file. It is complete before it replaces another one. A target that is
+    /// only a path replaces any existing file.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -36,7 +37,8 @@ impl Model {
         Self::file(target)?.commit_with(self.to_json().as_bytes())
     }
 
-    /// Starts the file of a model that is not there yet: a place that cannot be is refused before the work.
+    /// Opens the file of a model that is not identified yet. So a path that cannot be written is
+    /// refused before the work.
     ///
     /// # Errors
     /// [`Error::File`].

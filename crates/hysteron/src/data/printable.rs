@@ -1,12 +1,13 @@
-//! Text from files and names as it may be shown to people.
+//! Makes text from files and names safe to show to people.
 
 use std::borrow::Cow;
 
-/// The text without what changes a terminal, or the order in which it is read: control characters
-/// but line feed and tab, and marks of direction, are written as `\u` and four hexadecimal digits.
+/// The text without characters that would change the state of a terminal or the reading order.
+/// Control characters (except line feed and tab) and direction marks are written as `\u` and four
+/// hexadecimal digits.
 ///
-/// The result is valid within JSON too. What is written for programs, such as a CSV table, keeps its
-/// bytes.
+/// The result is also valid inside JSON. Output for programs, such as a CSV table, is not changed
+/// in this way.
 ///
 /// ```
 /// assert_eq!(hysteron::printable("a\u{1b}[31m\u{202e}b"), "a\\u001b[31m\\u202eb");
@@ -27,11 +28,11 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// Whether a character does something instead of showing something.
+/// Whether a character controls the display instead of being shown.
 fn is_active(character: char) -> bool {
     match character {
         '\n' | '\t' => false,
-        // Marks of direction, separators of lines and paragraphs, and the mark of byte order.
+        // Direction marks, line and paragraph separators, and the byte order mark.
         '\u{61c}'
         | '\u{200e}'
         | '\u{200f}'

@@ -1,4 +1,4 @@
-//! Simulation and inversion of tables row by row: memory does not grow with the file.
+//! Simulates and inverts tables row by row, so that memory does not grow with the file.
 
 use crate::data::output::{Added, Cell, TableWriter};
 use crate::data::table::Row;
@@ -11,20 +11,20 @@ use hysteron_core::{Direction, Status, Target};
 use serde::Serialize;
 use std::collections::VecDeque;
 
-/// What came of the rows.
+/// Counts of the rows processed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Counts {
     /// Rows read and written.
     pub samples: u64,
-    /// Inputs above or targets beyond the range, taken as its upper end.
+    /// Rows clipped at the upper end: an input above the range, or a target above it.
     pub high: u64,
-    /// Inputs below or targets short of the range, taken as its lower end.
+    /// Rows clipped at the lower end: an input below the range, or a target below it.
     pub low: u64,
-    /// Targets inside a jump of a relay model, which the output passes.
+    /// Targets inside a jump of a relay model, which no input reaches exactly.
     pub passed: u64,
 }
 
-/// What a simulation reads from a table, and what it adds to it.
+/// The columns and options of a simulation.
 #[derive(Debug, Clone, Copy)]
 pub struct Simulate<'a> {
     /// Column of the input.
@@ -33,16 +33,19 @@ pub struct Simulate<'a> {
     pub time: Option<&'a str>,
     /// Column of the load, for a model that depends on one.
     pub load: Option<&'a str>,
-    /// The band for the columns `output_low` and `output_high`.
+    /// The band, for the columns `output_low` and `output_high`; `None` for no band.
     pub band: Option<&'a Band>,
 }
 
-/// Copies `table` to `out`, which is ended, with a column `output_model`, the model's output, from every operator off;
-/// with a band, with `output_low` and `output_high` too. `progress` is told the bytes read.
+/// Copies `table` to `out` with an additional column `output_model`: the model's output, from every
+/// operator off. With a band, the columns `output_low` and `output_high` follow. `out` is finished
+/// at the end. `progress` gets the bytes read.
 ///
 /// # Errors
-/// [`crate::Error::File`], [`crate::Error::Recording`] with line and column; [`crate::Error::Thermal`] for a model with a
-/// thermal body without time, [`crate::Error::Fit`] for one that depends on a load without its column.
+/// - [`crate::Error::File`].
+/// - [`crate::Error::Recording`] with line and column.
+/// - [`crate::Error::Thermal`] for a model with a thermal body without time.
+/// - [`crate::Error::Fit`] for a model that depends on a load without its column.
 pub fn simulate_table(
     model: &Model,
     table: &mut TableReader,
@@ -100,24 +103,26 @@ pub fn simulate_table(
     sink.finish()
 }
 
-/// What an inversion reads from a table, and how it is done.
+/// The column and options of an inversion.
 #[derive(Debug, Clone, Copy)]
 pub struct Invert<'a> {
-    /// Column of the output wanted.
+    /// Column of the wanted output.
     pub target: &'a str,
-    /// What the input does where the target rests.
+    /// Whether the inverse holds the input or crosses the dead band when the target reverses.
     pub policy: Policy,
-    /// Reversals of the target up to this size are not followed, in its unit.
+    /// Reversals of the target up to this size are noise and are not followed; in its unit.
     pub tolerance: f64,
-    /// Rows to look ahead at most for [`Policy::Anticipate`]; further on the input rests.
+    /// Largest number of rows to look ahead for [`Policy::Anticipate`]. If the next turning point
+    /// is further away, the input is held.
     pub look_ahead: usize,
 }
 
-/// Copies `table` to `out`, which is ended, with the columns `input_model` and `status`, the input that gives the
-/// wanted output, from every operator off. `progress` is told the bytes read.
+/// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
+/// wanted output, from every operator off. `out` is finished at the end. `progress` gets the bytes
+/// read.
 ///
 /// # Errors
-/// As [`simulate_table`], and [`crate::Error::Core`] for a model with weights below zero.
+/// As [`simulate_table`], and [`crate::Error::Core`] for a model with negative weights.
 pub fn invert_table(
     model: &Model,
     table: &mut TableReader,

@@ -1,4 +1,4 @@
-//! The run of a control loop as a table.
+//! Writes the run of a control loop as a table.
 
 use crate::control::Trace;
 use crate::data::output::TableWriter;
@@ -6,7 +6,7 @@ use crate::error::Result;
 use std::path::Path;
 
 impl Trace {
-    /// Writes the run as a table, a row for each sample.
+    /// Writes the run as CSV, one row per sample. An existing file is replaced.
     ///
     /// # Errors
     /// [`crate::Error::File`].
@@ -58,7 +58,7 @@ impl Trace {
     }
 }
 
-/// A number, or nothing where there is none.
+/// A number, or an empty cell if there is none.
 fn cell(value: f64) -> String {
     match value.is_nan() {
         true => String::new(),

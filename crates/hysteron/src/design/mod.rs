@@ -1,4 +1,7 @@
-//! The experiment: an input that excites every operator in the shortest time.
+//! Design of an experiment: the shortest input profile that excites every operator.
+//!
+//! `spiral` finds the turning points of the profile. `profile` makes ramps over time from them.
+//! This file combines both, and takes earlier recordings and a time budget into account.
 
 mod profile;
 mod spiral;
@@ -14,21 +17,22 @@ use crate::series::range;
 use hysteron_core::Operator;
 use spiral::Corners;
 
-/// Most samples of a profile.
+/// Largest number of samples of a profile.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// Samples a level at the faster rate, where the step is not given: enough to average some noise away.
+/// Default number of samples per level at the faster rate. It is large enough to average out some
+/// noise.
 const SAMPLES_PER_LEVEL: f64 = 10.0;
 
-/// What an experiment is for.
+/// The options of an experiment.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `plane` | | | the plane of the model to be identified |
 /// | `operator` | MKP | MKP, KP, relay | its elementary operator |
-/// | `rates` | | above zero | how fast the input can rise and fall |
+/// | `rates` | | above 0 | how fast the input can rise and fall |
 /// | `budget_s` | none | enough for one ring | longest duration of the profile, s |
-/// | `step_s` | ten samples a level | above zero, at least one sample a level | longest time between samples, s |
+/// | `step_s` | 10 samples per level | above 0, 1 sample per level | longest sample interval, s |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignOptions {
     /// The plane of the model to be identified.
@@ -44,7 +48,7 @@ pub struct DesignOptions {
 }
 
 impl DesignOptions {
-    /// Options without a budget, for MKP operators.
+    /// Options for MKP operators without a time budget.
     #[must_use]
     pub fn new(plane: Plane, rates: Rates) -> Self {
         Self {
@@ -64,28 +68,30 @@ pub struct Leg {
     pub from: f64,
     /// Input at its end.
     pub to: f64,
-    /// Everett corners that neither recordings nor earlier legs show: 0 where the leg only leads on to the next.
+    /// Number of Everett corners that neither the recordings nor earlier legs determine; 0 for a
+    /// leg that only leads to the next one.
     pub new_corners: usize,
 }
 
-/// A profile, and what is known once it has been recorded.
+/// An input profile, and what the data will determine once it has been recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
     /// The plane.
     pub plane: Plane,
-    /// Time of each sample in seconds, from 0; empty where nothing is left to measure.
+    /// Time of each sample in seconds, from 0; empty if nothing is left to measure.
     pub time: Vec<f64>,
-    /// Input at each sample; it starts at the bottom of the plane, with every operator off.
+    /// Input at each sample. It starts at the bottom of the plane, where every operator is off.
     pub input: Vec<f64>,
     /// The branches in order.
     pub legs: Vec<Leg>,
-    /// What the recordings alone say of each operator; none without recordings.
+    /// How well the recordings alone determine each operator; `None` without recordings.
     pub recorded: Option<Vec<Excitation>>,
-    /// What recordings and profile say of each operator together.
+    /// How well the recordings and the profile together determine each operator.
     pub excitation: Vec<Excitation>,
-    /// Everett corners `C[p][q]`, `q < p`, known then; with all `N` of them every operator is determined.
+    /// Number of Everett corners `C[p][q]`, `q < p`, that are known after the profile. With all `N`
+    /// of them every operator is determined.
     pub corners: usize,
-    /// Duration in seconds without a budget.
+    /// Duration in seconds of the profile without a budget.
     pub full_duration_s: f64,
 }
 
@@ -96,20 +102,23 @@ impl Design {
         self.time.last().copied().unwrap_or_default()
     }
 
-    /// How many operators are of a class once the profile has been recorded.
+    /// Number of operators in a class after the profile has been recorded.
     #[must_use]
     pub fn count(&self, class: Excitation) -> usize {
         self.excitation.iter().filter(|e| **e == class).count()
     }
 }
 
-/// The shortest input profile that determines every operator: a spiral that shrinks from the whole plane to its middle, with
-/// one step of a level for each operator. What the inputs `recorded` so far determine already is left out. With a budget that is too short for it all, as
-/// many rings of the spiral stay as fit, the outermost first and the others evenly spread.
+/// The shortest input profile that determines every operator: a spiral that shrinks from the whole
+/// plane to its middle, with one step of a level for each operator.
 ///
-/// The proof that no profile turning at levels is shorter stands in `design/spiral.rs`; what completes recordings is short, not
-/// proven to be the shortest. Relays are passed half a step
-/// beyond their levels, so that they switch whatever the rounding.
+/// What the inputs `recorded` so far determine is left out. If the budget is too short for the
+/// whole profile, only as many rings of the spiral are kept as fit. The outermost ring comes first
+/// and the others are evenly spread.
+///
+/// The proof that no profile with turning points at levels is shorter is in `design/spiral.rs`. A
+/// profile that completes recordings is short, but not proven to be the shortest. For relays the
+/// input goes half a step beyond the levels, so that they switch in spite of rounding.
 ///
 /// ```
 /// use hysteron::{DesignOptions, Excitation, Plane, Rates, design};
@@ -124,8 +133,8 @@ impl Design {
 /// ```
 ///
 /// # Errors
-/// [`Error::Design`] for rates, a budget or a step that cannot be, a budget too short for one ring, and recordings outside
-/// the plane; as [`excitation`] otherwise.
+/// [`Error::Design`] for invalid rates, budgets and steps, for a budget too short for one ring, and
+/// for recordings outside the plane; otherwise as [`excitation`].
 pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let step_s = check(options, recorded)?;
     let levels = options.plane.levels();
@@ -147,7 +156,8 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     let samples = options.rates.duration(&inputs(options, &turns)) / step_s;
     if samples > MOST_SAMPLES {
         return Err(Error::Design(format!(
-            "a sample every {step_s:e} s makes {samples:.1e} samples, more than {MOST_SAMPLES:e}: give a longer step, or rates nearer to each other"
+            "a sample every {step_s:e} s makes {samples:.1e} samples, more than {MOST_SAMPLES:e}: \
+             give a longer step, or rates nearer to each other"
         )));
     }
     let (time, input) = match legs.is_empty() {
@@ -170,7 +180,7 @@ pub fn design(options: &DesignOptions, recorded: &[&[f64]]) -> Result<Design> {
     })
 }
 
-/// Refuses what cannot be; gives the time between samples.
+/// Checks the options and returns the time between samples.
 fn check(options: &DesignOptions, recorded: &[&[f64]]) -> Result<f64> {
     options.rates.check()?;
     let plane = options.plane;
@@ -184,14 +194,16 @@ fn check(options: &DesignOptions, recorded: &[&[f64]]) -> Result<f64> {
     let level_s = plane.step() / options.rates.fastest();
     if let Some(step) = options.step_s.filter(|step| *step > level_s * (1.0 + 1e-9)) {
         return Err(Error::Design(format!(
-            "in a step of {step} s the input passes more than one level: take at most {level_s:.4} s, or fewer levels"
+            "in a step of {step} s the input passes more than one level: \
+             take at most {level_s:.4} s, or fewer levels"
         )));
     }
     for (n, input) in recorded.iter().enumerate() {
         let (low, high) = range(input);
         if input.is_empty() || plane.normalise(low) >= plane.normalise(high) {
             return Err(Error::Design(format!(
-                "recording {} of {} moves no operator: its input lies between {low} and {high}, the plane's active range is {} to {}",
+                "recording {} of {} moves no operator: its input lies between {low} and {high}, \
+                 the plane's active range is {} to {}",
                 n + 1,
                 recorded.len(),
                 plane.bottom(),
@@ -202,13 +214,13 @@ fn check(options: &DesignOptions, recorded: &[&[f64]]) -> Result<f64> {
     Ok(options.step_s.unwrap_or(level_s / SAMPLES_PER_LEVEL))
 }
 
-/// As many rings as the budget allows.
+/// The turning points of as many rings as the budget allows.
 fn within_budget(options: &DesignOptions, turns: &[usize]) -> Result<Vec<usize>> {
     let Some(budget) = options.budget_s else {
         return Ok(turns.to_vec());
     };
     let seconds = |turns: &[usize]| options.rates.duration(&inputs(options, turns));
-    // A budget that was worked out as the duration allows it, whatever the rounding.
+    // A user may give exactly the duration as the budget. Allow for rounding.
     let fits = |turns: &Vec<usize>| seconds(turns) <= budget * (1.0 + 1e-9);
     let rings = spiral::rings(turns);
     if rings == 0 {
@@ -218,14 +230,15 @@ fn within_budget(options: &DesignOptions, turns: &[usize]) -> Result<Vec<usize>>
     selections.into_iter().find(fits).ok_or_else(|| {
         let least = seconds(&spiral::evenly(turns, 1));
         Error::Design(format!(
-            "{:.4} min ({budget:.1} s) are too short for a single ring, which takes {:.4} min ({least:.1} s): allow more time or faster rates",
+            "{:.4} min ({budget:.1} s) are too short for a single ring, which takes {:.4} min \
+             ({least:.1} s): allow more time or faster rates",
             budget / 60.0,
             least / 60.0
         ))
     })
 }
 
-/// The input at a grid position. A relay needs to pass its level, upwards and downwards.
+/// The input at a grid position. For relays it lies beyond the level, in both directions.
 fn input_at(options: &DesignOptions, position: usize) -> f64 {
     let beyond = match options.operator {
         Operator::Mkp | Operator::Kp => 0.0,

@@ -1,13 +1,13 @@
-//! From turning points to an input over time.
+//! Ramps over time through given turning points, within the rates of the actuator.
 
 use crate::error::{Error, Result};
 
-/// How fast the input can change, in its unit per second; both above zero.
+/// How fast the input can change, in its unit per second. Both rates are above zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rates {
-    /// When it rises.
+    /// Rate of a rising input.
     pub heating: f64,
-    /// When it falls.
+    /// Rate of a falling input.
     pub cooling: f64,
 }
 
@@ -16,7 +16,8 @@ impl Rates {
         for (name, rate) in [("heating", self.heating), ("cooling", self.cooling)] {
             if !(rate.is_finite() && rate > 0.0) {
                 return Err(Error::Design(format!(
-                    "the {name} rate is {rate}, but must be above zero, in units of the input per second"
+                    "the {name} rate is {rate}, but must be above zero, in units of the input per \
+                     second"
                 )));
             }
         }
@@ -27,7 +28,7 @@ impl Rates {
         self.heating.max(self.cooling)
     }
 
-    /// Seconds from one input to another.
+    /// Time in seconds from one input to another.
     pub(super) fn seconds(self, from: f64, to: f64) -> f64 {
         if to > from {
             (to - from) / self.heating
@@ -36,7 +37,7 @@ impl Rates {
         }
     }
 
-    /// Seconds along all turning points.
+    /// Time in seconds along all turning points.
     pub(super) fn duration(self, turns: &[f64]) -> f64 {
         turns
             .windows(2)
@@ -45,8 +46,9 @@ impl Rates {
     }
 }
 
-/// Straight ramps through the inputs `turns`, as time in seconds from 0 and input. Each turning point is a sample, and those between two
-/// are evenly spread, at most `step_s` apart.
+/// Straight ramps through the inputs `turns`. Returns time (in seconds, from 0) and input. Each
+/// turning point is a sample. The samples between two turning points are evenly spread, at most
+/// `step_s` apart.
 #[must_use]
 pub fn ramps(turns: &[f64], rates: Rates, step_s: f64) -> (Vec<f64>, Vec<f64>) {
     let mut time: Vec<f64> = turns.first().map(|_| 0.0).into_iter().collect();
@@ -55,12 +57,12 @@ pub fn ramps(turns: &[f64], rates: Rates, step_s: f64) -> (Vec<f64>, Vec<f64>) {
     for leg in turns.windows(2) {
         let (from, to) = (leg[0], leg[1]);
         let duration = rates.seconds(from, to);
-        // A whole number of steps stays one when its quotient is rounded up.
+        // The factor keeps a whole number of steps from being rounded up to one more.
         let count = (duration / step_s * (1.0 - 1e-9)).ceil().max(1.0);
         for k in 1..=count as usize {
             let part = k as f64 / count;
             time.push(began + part * duration);
-            // Exactly the turning point at its end.
+            // The last sample of a ramp is exactly the turning point.
             input.push(if k as f64 == count {
                 to
             } else {
@@ -91,7 +93,8 @@ mod tests {
         for (t, x) in time.windows(2).zip(input.windows(2)) {
             let (step, rate) = (t[1] - t[0], (x[1] - x[0]) / (t[1] - t[0]));
             assert!(step > 0.2 && step <= 0.25 + 1e-9);
-            // Differences of times of some hundred seconds, 1e-13 each, over a quarter of one.
+            // Times of some hundred seconds are exact to 1e-13; their differences are divided by a
+            // quarter of a second.
             assert!(
                 (rate - 2.0).abs() < 1e-9 || (rate + 0.5).abs() < 1e-9,
                 "{rate}"

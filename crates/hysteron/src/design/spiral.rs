@@ -1,29 +1,36 @@
-//! The shrinking spiral, as turning points in grid positions: `0` is the bottom of the plane, `k` its level `k`.
+//! The shrinking spiral: the order of turning points that determines all operators with the
+//! shortest travel. Positions are on the grid: `0` is the bottom of the plane, `k` its level `k`.
 //!
-//! With every operator off at the start, a rise from `q` past the levels up to `p` shows the Everett corners `C[q+1][q] … C[p][q]`, and
-//! a fall from `p` to `q` shows `C[p][p−1] … C[p][q]`, one for each step of a level. The corners with `q < p` are `N`
-//! numbers from which all weights follow as second differences.
+//! At the start every operator is off. A rise from `q` to `p` shows the Everett corners
+//! `C[q+1][q] … C[p][q]`. A fall from `p` to `q` shows `C[p][p−1] … C[p][q]`. Each step of one
+//! level shows one corner. The corners with `q < p` are `N` numbers. All weights follow from them
+//! as second differences.
 //!
-//! **No profile that turns at levels is shorter.** Along one step between neighbouring levels the output is linear, so a step adds at most one equation,
-//! and `N` unknown weights need `N` steps, a travel of `N ΔT`. The spiral `0, K, 1, K−1, 2, …` needs no more, because its legs have
-//! `K, K−1, …, 1` steps and a step never repeats a corner: `C[p][q]` belongs to the rise from `q` where `p + q ≤ K`, and to the fall from `p` otherwise.
+//! **No profile that turns at levels is shorter.** Along one step between neighbouring levels the
+//! output is linear. So a step adds at most one equation, and `N` unknown weights need `N` steps, a
+//! travel of `N ΔT`. The spiral `0, K, 1, K−1, 2, …` needs no more: its legs have `K, K−1, …, 1`
+//! steps, and no step repeats a corner. `C[p][q]` belongs to the rise from `q` if `p + q ≤ K`,
+//! otherwise to the fall from `p`.
 //!
-//! A path that repeats no corner never closes a loop, for the step that closes it shows what the fall before has shown; so it is this very
-//! spiral, and ends at `⌈K/2⌉`. Since rises minus falls are where it ends, its time `R/heating + F/cooling` has
-//! `R = (N + ⌈K/2⌉)/2`, `F = (N − ⌈K/2⌉)/2`. With slow cooling an end at `K` would save at most `K/4` of some `K²/4` falls; a search over all paths up to
-//! `K = 5`, for ratios of the rates from 1/10 to 100, found nothing faster than the spiral.
+//! A path that repeats no corner never closes a loop, because the step that closes a loop shows
+//! again what the fall before has shown. So such a path is this spiral, and it ends at `⌈K/2⌉`.
+//! Rises minus falls equal the end position. So the time `R/heating + F/cooling` has
+//! `R = (N + ⌈K/2⌉)/2` and `F = (N − ⌈K/2⌉)/2`. With slow cooling, an end at `K` would save at most
+//! `K/4` of about `K²/4` falls. A search over all paths up to `K = 5`, for ratios of the rates from
+//! 1/10 to 100, found nothing faster than the spiral.
 //!
-//! Turning between levels would let one step show two combinations of corners, each at a part of its size: fewer steps in
-//! principle, at the cost of noise. A full set of first-order reversal curves travels `K(K + 1)`, twice as much.
+//! If a path turned between levels, one step could show two combinations of corners, each at a part
+//! of its size. That needs fewer steps in principle, but noise has more effect. A full set of
+//! first-order reversal curves travels `K(K + 1)`, twice as much.
 
 use hysteron_core::{operator_count, operator_index};
 
-/// The turning points of the full spiral, the start at 0 included.
+/// The turning points of the full spiral, including the start at 0.
 pub(super) fn full(levels: usize) -> Vec<usize> {
     between(levels, 1)
 }
 
-/// A spiral whose first maximum is `max` and whose first minimum is `min`, from 0 on.
+/// A spiral from 0 whose first maximum is `max` and whose first minimum is `min`.
 fn between(max: usize, min: usize) -> Vec<usize> {
     let turn = |n: usize| match n {
         0 => 0,
@@ -33,8 +40,9 @@ fn between(max: usize, min: usize) -> Vec<usize> {
     (0..max + 2 - min).map(turn).collect()
 }
 
-/// Turning points that show all corners that are not `known`: of the full spiral and the smallest that is enough the
-/// one that is shorter once what is known is left out. Short, not proven to be the shortest.
+/// Turning points that show all corners that are not `known`. Two spirals are compared: the full
+/// one and the smallest one that is sufficient. Known parts are removed from both, and the shorter
+/// result is taken. It is short, but not proven to be the shortest.
 pub(super) fn completing(levels: usize, known: &Corners) -> Vec<usize> {
     let all = operator_count(levels);
     let mut spirals: Vec<Vec<usize>> = (1..=levels)
@@ -51,7 +59,7 @@ pub(super) fn completing(levels: usize, known: &Corners) -> Vec<usize> {
     pruned.min_by_key(|turns| travel(turns)).unwrap_or_default()
 }
 
-/// Which corners `C[p][q]` are known, each at the place of weight `(q + 1, p)`.
+/// Which corners `C[p][q]` are known. Each is at the index of the weight `(q + 1, p)`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Corners(pub(super) Vec<bool>);
 
@@ -64,7 +72,8 @@ impl Corners {
         self.0.iter().filter(|known| **known).count()
     }
 
-    /// Adds what a leg shows, on a path that closes no loop, and says how many of these corners were new.
+    /// Adds the corners that a leg shows and returns how many of them are new. The path must not
+    /// close a loop.
     pub(super) fn add(&mut self, from: usize, to: usize) -> usize {
         let mut new = 0;
         for step in from.min(to)..from.max(to) {
@@ -88,9 +97,11 @@ impl Corners {
     }
 }
 
-/// `turns` without what shows nothing beyond `known`: whole rings are left out, and what stays is shortened.
+/// `turns` without the parts that show only `known` corners. Whole rings are removed, the others
+/// are shortened.
 ///
-/// What nested turning points show only shrinks as some are taken out, so one pair at a time finds all that can go.
+/// Removing turning points from a nested path only removes corners from what it shows. So it is
+/// sufficient to remove one pair at a time.
 fn prune(mut turns: Vec<usize>, known: &Corners) -> Vec<usize> {
     let wanted = known.with(&turns);
     while let Some(shorter) = without_a_pair(&turns)
@@ -107,7 +118,8 @@ fn prune(mut turns: Vec<usize>, known: &Corners) -> Vec<usize> {
     turns
 }
 
-/// `turns` without two neighbours, which leaves them nested, or without the last one.
+/// All variants of `turns` with two neighbours removed, which keeps the rest nested, and the
+/// variant without the last one.
 fn without_a_pair(turns: &[usize]) -> impl Iterator<Item = Vec<usize>> + '_ {
     (1..turns.len()).map(|at| {
         let mut shorter = turns.to_vec();
@@ -116,7 +128,8 @@ fn without_a_pair(turns: &[usize]) -> impl Iterator<Item = Vec<usize>> + '_ {
     })
 }
 
-/// `turns` with the one at `at` a step nearer to the one before, as long as they stay nested.
+/// `turns` with the one at `at` moved one step towards the one before; `None` if they would not
+/// stay nested.
 fn shortened(turns: &[usize], at: usize) -> Option<Vec<usize>> {
     let mut shorter = turns.to_vec();
     let rising = turns[at] > turns[at - 1];
@@ -146,8 +159,9 @@ fn travel(turns: &[usize]) -> usize {
     turns.windows(2).map(|leg| leg[0].abs_diff(leg[1])).sum()
 }
 
-/// The `count` rings (a maximum and the minimum after it) of `turns` that are spread most evenly, the outermost first:
-/// in bit-reversed order (van der Corput 1935), so that more rings never leave one out and show all that fewer do.
+/// The `count` rings of `turns` (a maximum and the minimum after it) that are spread most evenly.
+/// The outermost is always among them. The order is bit-reversed (van der Corput 1935), so a larger
+/// `count` only adds rings.
 pub(super) fn evenly(turns: &[usize], count: usize) -> Vec<usize> {
     let Some((&start, rest)) = turns.split_first() else {
         return Vec::new();
@@ -163,7 +177,7 @@ pub(super) fn evenly(turns: &[usize], count: usize) -> Vec<usize> {
     std::iter::once(start).chain(kept).collect()
 }
 
-/// How many rings there are in `turns`.
+/// Number of rings in `turns`.
 pub(super) fn rings(turns: &[usize]) -> usize {
     turns.len().saturating_sub(1).div_ceil(2)
 }
@@ -193,7 +207,7 @@ mod tests {
         assert_eq!(prune(full(levels), &nothing), full(levels));
         let all = nothing.with(&full(levels));
         assert_eq!(prune(full(levels), &all), [0]);
-        // Each single corner that is missing is reached, by a path that is short.
+        // Each single missing corner is reached, by a short path.
         for p in 1..=levels {
             for q in 0..p {
                 let mut known = all.clone();
@@ -203,7 +217,7 @@ mod tests {
                 assert!(travel(&turns) <= 3 * levels, "({p}, {q}): {turns:?}");
             }
         }
-        // After the major loop a plane of one level less is left.
+        // After the major loop, the corners of a plane with one level less are left.
         let known = nothing.with(&[0, levels, 1]);
         let turns = completing(levels, &known);
         assert_eq!(turns, between(levels - 1, 1));
@@ -222,7 +236,7 @@ mod tests {
                 let shown = Corners::none(levels).with(&some);
                 assert_eq!(shown.with(&evenly(&turns, count - 1)), shown);
                 assert!(shown.count() > before.count());
-                // They are covered exactly: no step is spent twice.
+                // They are covered exactly: no step is used twice.
                 assert_eq!(shown.count(), travel(&some));
                 before = shown;
             }

@@ -1,4 +1,4 @@
-//! What a fit should make its user look at again.
+//! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
 use crate::error::Result;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
@@ -7,30 +7,32 @@ use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use std::fmt;
 
-/// Part of the operators from which on it matters that a start leaves them open.
+/// From this share of the operators on, it matters that the first sample does not determine their
+/// state.
 const MANY: f64 = 0.05;
 
-/// A doubt about a fit; [`Advice::remedy`] says what may help.
+/// A warning about a fit. [`Advice::remedy`] suggests what may help.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Advice {
-    /// Inputs outside the plane's active range were taken as its ends.
+    /// Inputs outside the plane's active range were clipped to its ends.
     Clipped {
-        /// How many.
+        /// Number of inputs outside.
         inputs: usize,
-        /// Of how many.
+        /// Number of inputs in all.
         samples: usize,
-        /// The active range.
+        /// Lowest and highest input of the active range.
         range: (f64, f64),
     },
-    /// The output goes against its input, which weights from zero on cannot follow.
+    /// The output moves against its input. Non-negative weights cannot follow that.
     AgainstInput {
-        /// The part of its way, from 0 to 1.
+        /// The share of the output's path on which it does so, from 0 to 1.
         part: f64,
     },
-    /// The first input leaves operators open, and all were taken as off.
+    /// The first input does not determine the state of some operators, and all of these were taken
+    /// as off.
     OpenStart {
-        /// How many.
+        /// Number of these operators.
         operators: usize,
     },
 }
@@ -44,21 +46,24 @@ impl fmt::Display for Advice {
                 range: (low, high),
             } => write!(
                 f,
-                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} and were taken as its ends"
+                "{inputs} of {samples} inputs lie outside the active range {low:.6} to {high:.6} \
+                 and were clipped to its ends"
             ),
             Self::AgainstInput { part } if *part > 0.5 => write!(
                 f,
-                "on {:.0} % of its way the output goes the other way than the model's sign allows",
+                "on {:.0} % of its path the output moves against the sign of the model",
                 100.0 * part
             ),
             Self::AgainstInput { part } => write!(
                 f,
-                "on {:.0} % of its way the output goes against the input, which weights from zero on cannot follow",
+                "on {:.0} % of its path the output moves against the input, which non-negative \
+                 weights cannot follow",
                 100.0 * part
             ),
             Self::OpenStart { operators } => write!(
                 f,
-                "the first input leaves {operators} operators open, which are taken as off"
+                "the first input does not determine the state of {operators} operators: they are \
+                 taken as off"
             ),
         }
     }
@@ -71,11 +76,11 @@ impl Advice {
         match self {
             Self::Clipped { .. } => Remedy::new("widen {}", [Setting::any("range")]),
             Self::AgainstInput { part } if *part > 0.5 => Remedy::new(
-                "leave {} out; where it was left out, the output hardly follows from this input",
+                "leave {} out; if it was not set, the output hardly depends on this input",
                 [Setting::any("sign")],
             ),
             Self::AgainstInput { .. } => Remedy::new(
-                "a butterfly loop needs {}, several loads {}, a drive that heats {}",
+                "use {} for a butterfly loop, {} for several loads, {} for a drive that heats",
                 [
                     Setting::word("solver", "ols"),
                     Setting::any("load"),
@@ -90,10 +95,10 @@ impl Advice {
     }
 }
 
-/// What there is to say of a model fitted to these recordings.
+/// The warnings for a `model` that was fitted to `recordings`.
 ///
 /// # Errors
-/// [`crate::Error::Thermal`] for recordings without time where the model has a thermal body.
+/// [`crate::Error::Thermal`] for recordings without time if the model has a thermal body.
 pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
     let plane = model.plane();
     let (mut inputs, mut samples, mut against) = (0, 0, 0.0_f64);
@@ -105,7 +110,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
             .filter(|t| plane.clipped(**t).is_some())
             .count();
         samples += seen.len();
-        // A load that changes moves the output by itself.
+        // A load that changes moves the output by itself, so the test says nothing then.
         if model.load.is_none() {
             against = against.max(way_against_input(&seen, model.sign())?);
         }

@@ -1,4 +1,4 @@
-//! The one door to identification.
+//! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
 use crate::error::{Error, Result};
 use crate::identify::choose::validate::{Candidates, cross_validate};
@@ -11,16 +11,16 @@ use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use hysteron_core::Operator;
 
-/// Left to the data.
+/// Let the data decide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Auto;
 
-/// A value, or left to the data; made of either by `into`.
+/// A fixed value, or a choice left to the data. Both convert into it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice<T> {
-    /// Left to the data.
+    /// Let the data decide.
     Auto,
-    /// This value.
+    /// Use this value.
     Fixed(T),
 }
 
@@ -42,15 +42,15 @@ impl From<f64> for Choice<f64> {
     }
 }
 
-/// Identifies a model from recordings: say what differs from the defaults, then [`run`](Fit::run).
+/// Identifies a model from recordings. Set the options that differ from the defaults, then call
+/// [`run`](Fit::run).
 ///
-/// The defaults are those of [`FitOptions`], but for the bootstrap: [`Fit::new`] takes as many
-/// replicates as [`FitOptions::usual_bootstrap`] has for the levels, so that the model says how
-/// certain it is.
+/// The defaults are those of [`FitOptions`], with one exception: [`Fit::new`] runs a bootstrap with
+/// [`FitOptions::usual_bootstrap`] replicates, so the model has standard errors and a band.
 ///
-/// Never forms the `n × N` matrix of operator states. The Gram matrix takes `O(N²)` memory and
-/// `O(n + N²)` time, for inputs with few turning points at once. The weights take `O(N p + p²)` for
-/// each of some `p` steps, `p` being those not zero.
+/// The `n × N` matrix of operator states is never formed. The Gram matrix takes `O(N²)` memory and,
+/// for inputs with few turning points at once, `O(n + N²)` time. The solver then takes about `p`
+/// steps of `O(N p + p²)` each, where `p` is the number of weights that are not zero.
 ///
 /// ```
 /// use hysteron::{Auto, Fit, Recording};
@@ -84,7 +84,7 @@ impl Default for Fit<'_> {
 }
 
 impl From<FitOptions> for Fit<'_> {
-    /// These options, and nothing left to the data.
+    /// Fixed options; nothing is left to the data.
     fn from(options: FitOptions) -> Self {
         Self {
             options,
@@ -117,7 +117,8 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of levels; [`Auto`] chooses it by the error on branches that were left out.
+    /// Number of levels, 2 or more. [`Auto`] chooses it by cross-validation: the error on branches
+    /// that were left out.
     #[must_use]
     pub fn levels(mut self, levels: impl Into<Choice<usize>>) -> Self {
         match levels.into() {
@@ -127,7 +128,8 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Strength of the smoothness; [`Auto`] chooses it as the levels.
+    /// Strength of the smoothness, 0 or more. [`Auto`] chooses it by cross-validation, as for the
+    /// levels.
     #[must_use]
     pub fn smooth(mut self, smooth: impl Into<Choice<f64>>) -> Self {
         match smooth.into() {
@@ -137,7 +139,8 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Replicates of the bootstrap; [`Auto`] takes [`FitOptions::usual_bootstrap`].
+    /// Number of bootstrap replicates, up to 10,000; 0 for none. [`Auto`] takes
+    /// [`FitOptions::usual_bootstrap`].
     #[must_use]
     pub fn bootstrap(mut self, replicates: impl Into<Choice<usize>>) -> Self {
         match replicates.into() {
@@ -147,14 +150,14 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Lowest and highest level.
+    /// Lowest and highest level of the plane, in the input's unit.
     #[must_use]
     pub fn range(mut self, min: f64, max: f64) -> Self {
         self.options.range = Some((min, max));
         self
     }
 
-    /// How the weights are found.
+    /// Least squares with or without the constraint that weights are not negative.
     #[must_use]
     pub fn solver(mut self, solver: Solver) -> Self {
         self.options.solver = solver;
@@ -168,53 +171,56 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Output with every operator off.
+    /// Output with every operator off, in the output's unit.
     #[must_use]
     pub fn offset(mut self, offset: f64) -> Self {
         self.options.offset = Some(offset);
         self
     }
 
-    /// Where the operators stand before the first sample of each recording.
+    /// State of the operators before the first sample of each recording.
     #[must_use]
     pub fn start(mut self, start: Start) -> Self {
         self.options.start = start;
         self
     }
 
-    /// Order of the weights as a function of the load, where the recordings have one.
+    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load.
     #[must_use]
     pub fn load_degree(mut self, degree: usize) -> Self {
         self.options.load_degree = degree;
         self
     }
 
-    /// Whether a thermal body stands in front of the operators and is identified with the weights.
+    /// Whether a thermal body in front of the operators is identified together with the weights.
     ///
-    /// The recordings need time. Their input is a drive that heats (current squared, voltage
-    /// squared, duty). For given time constants the weights are a closed problem; the search is over
-    /// the time constants only (separable least squares, Golub and Pereyra 1973).
+    /// The recordings need time. Their input is a drive that heats (squared current, squared
+    /// voltage, duty cycle). For given time constants, finding the weights is a convex problem. So
+    /// the search is over the time constants only (separable least squares, Golub and Pereyra
+    /// 1973).
     #[must_use]
     pub fn thermal(mut self, body: bool) -> Self {
         self.body = body;
         self
     }
 
-    /// Who is told of the progress, and may end the work.
+    /// A callback for the progress, which may cancel the work.
     #[must_use]
     pub fn progress(mut self, progress: Progress<'a>) -> Self {
         self.progress = progress;
         self
     }
 
-    /// Identifies the model. Several recordings are one experiment, each from its own initial state;
-    /// with a load in them, the weights depend on it.
+    /// Identifies the model. Several recordings are parts of one experiment, each with its own
+    /// initial state. If they have a load, the weights depend on it.
     ///
     /// # Errors
-    /// [`Error::Recording`] for a recording that cannot be worked with or whose input never changes;
-    /// [`Error::Core`] for a plane that cannot be; [`Error::Fit`] for options that contradict each
-    /// other, and for levels or smoothness left to the data behind a thermal body;
-    /// [`Error::Thermal`] for a thermal body without time; what `progress` returns.
+    /// - [`Error::Recording`] for an invalid recording or a constant input.
+    /// - [`Error::Core`] for an invalid plane.
+    /// - [`Error::Fit`] for options that contradict each other, and for automatic levels or
+    ///   smoothness with a thermal body.
+    /// - [`Error::Thermal`] for a thermal body without time.
+    /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
         let mut options = self.options.clone();
@@ -246,7 +252,7 @@ impl<'a> Fit<'a> {
         if !self.body {
             return Ok(());
         }
-        let what = "behind a thermal body neither levels nor smoothness can be chosen";
+        let what = "with a thermal body, levels and smoothness cannot be chosen automatically";
         let settings = [Setting::any("levels"), Setting::any("smooth")];
         let remedy = Remedy::new("give {} and {} yourself", settings);
         Err(Error::Fit(what.into()).remedied(remedy))

@@ -1,4 +1,9 @@
-//! Identification: the weights of a model from recordings.
+//! Identification: finds the weights of a model from recordings.
+//!
+//! `fit` is the entry point; `options` are its settings. `weights` solves the least-squares
+//! problem. `choose` selects levels and smoothness by cross-validation. `doubt` estimates how well
+//! the data determine the weights. `stages` identifies the thermal body in front of the operators.
+//! `advice` and `monotone` warn about data that the model cannot follow.
 
 mod advice;
 mod choose;

@@ -1,4 +1,4 @@
-//! Whether an output goes with its input, as weights from zero on demand.
+//! How much of its path an output moves against its input. Non-negative weights cannot follow that.
 
 use crate::error::Result;
 use crate::model::Sign;
@@ -7,14 +7,14 @@ use crate::series::headings;
 use crate::series::usual_tolerance;
 use hysteron_core::Direction;
 
-/// From here on the output goes against the input on so much of its way that no monotone model can follow: an
-/// ideal loop has nothing of it, a symmetric butterfly a half.
+/// Above this share no monotone model can follow the output. An ideal loop has 0, a symmetric
+/// butterfly loop 0.5.
 pub const AGAINST_INPUT: f64 = 0.1;
 
-/// The part of the output's way, from 0 to 1, on which it moves against the input, for outputs of that `sign`. Movements
-/// of up to 1 % of the range are noise on both.
+/// The share of the output's path, from 0 to 1, on which it moves against the input, for outputs of
+/// that `sign`. Movements of up to 1 % of the range are noise, on input and output.
 ///
-/// Butterfly loops, loads that change and rate make it large; hysteresis does not.
+/// Butterfly loops, changing loads and rate dependence make this share large. Hysteresis does not.
 ///
 /// ```
 /// use hysteron::{Recording, Sign, way_against_input};
@@ -27,16 +27,16 @@ pub const AGAINST_INPUT: f64 = 0.1;
 /// ```
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+/// [`crate::Error::Recording`] for an invalid recording.
 pub fn way_against_input(recording: &Recording, sign: Sign) -> Result<f64> {
     recording.check()?;
-    let band = usual_tolerance(&recording.output);
+    let tolerance = usual_tolerance(&recording.output);
     let headings = headings(&recording.input, usual_tolerance(&recording.input));
     let (mut with, mut against) = (0.0, 0.0);
     let mut held = recording.output[0];
     for (&y, heading) in recording.output.iter().zip(headings) {
-        // The output with a play of the band: noise does not move it.
-        let next = held.clamp(y - band, y + band);
+        // The output behind a play operator, so that noise within the tolerance does not move it.
+        let next = held.clamp(y - tolerance, y + tolerance);
         let way = sign.factor() * (next - held);
         held = next;
         match heading {

@@ -1,50 +1,51 @@
-//! What a fit may choose, and what it tells afterwards.
+//! The options of a fit.
 
 use crate::model::Sign;
 use crate::model::{Solver, Start};
 use hysteron_core::Operator;
 
-/// What a fit may choose.
+/// The options of a fit.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `operator` | MKP | MKP, KP, relay | the elementary operator |
-/// | `levels` | 20 | from 2 on; the Gram matrix takes `8 N²` bytes, `N = K(K + 1)/2` | how fine the plane is |
+/// | `levels` | 20 | 2 or more | number of levels `K` |
 /// | `range` | from the data | finite, in order | the plane's lowest and highest level |
 /// | `solver` | NNLS | NNLS, OLS | see [`Solver`] |
 /// | `sign` | the better one | ± | direction of the output |
 /// | `offset` | free | finite | output with every operator off |
-/// | `smooth` | 0 | from 0 on; 1e-10 to 1e-4 as a rule | strength of the smoothness across the plane |
-/// | `start` | off | off, on, unknown | where the operators stand before each recording |
-/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, where the recordings have one |
+/// | `smooth` | 0 | 0 to 1e6, usually 1e-10 to 1e-4 | strength of the smoothness |
+/// | `start` | off | off, on, unknown | state of the operators before each recording |
+/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, if any |
 /// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// The elementary operator.
     pub operator: Operator,
-    /// Number of levels `K`.
+    /// Number of levels `K`. The Gram matrix takes `8 N²` bytes, with `N = K(K + 1)/2`.
     pub levels: usize,
-    /// Lowest and highest level; `None` for a plane whose active range is that of the input.
+    /// Lowest and highest level; `None` for the plane whose active range is the range of the input.
     pub range: Option<(f64, f64)>,
-    /// How the weights are found.
+    /// Least squares with or without the constraint that weights are not negative.
     pub solver: Solver,
-    /// Direction of the output; `None` for the one that fits better.
+    /// Direction of the output; `None` to take the one that fits better.
     pub sign: Option<Sign>,
     /// Output with every operator off; `None` to identify it.
     pub offset: Option<f64>,
-    /// Strength `λ` of the smoothness of the weights' density across the plane, against the mean squared
-    /// error; it means the same whatever the number of levels.
+    /// Strength `λ` of the smoothness of the weights' density across the plane, relative to the
+    /// mean squared error. Its effect does not depend on the number of levels.
     pub smooth: f64,
-    /// Where the operators stand before the first sample of each recording.
+    /// State of the operators before the first sample of each recording.
     pub start: Start,
     /// Order of the weights as a function of the load.
     pub load_degree: usize,
-    /// Replicates of the bootstrap.
+    /// Number of bootstrap replicates.
     pub bootstrap: usize,
 }
 
 impl FitOptions {
-    /// Replicates that standard errors of two digits take, and none from 45 levels on, where they take long.
+    /// Default number of bootstrap replicates: enough for standard errors of two digits. From 45
+    /// levels on there are none, because they would take long.
     #[must_use]
     pub fn usual_bootstrap(levels: usize) -> usize {
         if levels < 45 { 200 } else { 0 }

@@ -1,4 +1,4 @@
-//! What is in a table, a recording or a model.
+//! Summaries of a recording and of a model, for users who want to know what a file contains.
 
 mod model;
 
@@ -25,9 +25,9 @@ pub struct Series {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Turning points, reversals of up to 1 % of its range apart.
+    /// Number of turning points, without reversals up to 1 % of the range.
     pub reversals: usize,
-    /// Turning points of any size: many more than `reversals` speak of noise.
+    /// Number of turning points of any size. Many more than `reversals` indicate noise.
     pub reversals_of_any_size: usize,
 }
 
@@ -40,15 +40,15 @@ pub struct RecordingSummary {
     pub input: Series,
     /// The output.
     pub output: Series,
-    /// The sampling, where there is a time column.
+    /// The sampling; `None` without time.
     pub time: Option<Sampling>,
-    /// Levels of the plane that `excited` is counted on.
+    /// Number of levels of the plane that `excited` is counted on.
     pub levels: usize,
-    /// Its lowest and highest level.
+    /// Lowest and highest level of this plane.
     pub plane: (f64, f64),
-    /// Operators of that plane.
+    /// Number of operators of this plane.
     pub operators: usize,
-    /// Those of them that the input moves: nothing can be learned of the others.
+    /// Number of operators that the input excites. Nothing can be learned about the others.
     pub excited: usize,
 }
 
@@ -57,24 +57,24 @@ pub struct RecordingSummary {
 pub struct Sampling {
     /// Time of the first sample, in seconds.
     pub start: f64,
-    /// Time of the last sample.
+    /// Time of the last sample, in seconds.
     pub end: f64,
-    /// Median time between samples.
+    /// Median time between samples, in seconds.
     pub median_step: f64,
-    /// Longest time between samples.
+    /// Longest time between samples, in seconds.
     pub longest_step: f64,
-    /// The sample at its end, counted from 1.
+    /// The sample after the longest step, counted from 1.
     pub longest_step_before_sample: usize,
-    /// Gaps: steps of more than three times the median.
+    /// Number of gaps: steps of more than three times the median.
     pub gaps: usize,
-    /// Samples at the time of the one before.
+    /// Number of samples with the same time as the sample before.
     pub repeated: usize,
 }
 
-/// Summarises `recording`, counting the operators that it excites on `plane`.
+/// Summarises `recording`, and counts the operators of `plane` that it excites.
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for a recording that cannot be worked with.
+/// [`crate::Error::Recording`] for an invalid recording.
 pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<RecordingSummary> {
     recording.check()?;
     let series = |values: &[f64], quantity: &crate::recording::Quantity| {
@@ -82,7 +82,7 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
         let count = |band: f64| {
             let mut turning = Turning::new(band);
             let turns = values.iter().filter_map(|&v| turning.push(v)).count();
-            turns.saturating_sub(1) // the start is no reversal
+            turns.saturating_sub(1) // the start is not a reversal
         };
         Series {
             name: quantity.name.clone(),
@@ -105,9 +105,10 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
     })
 }
 
-/// How many MKP operators have different states at different samples.
+/// Counts the MKP operators whose states differ between samples.
 ///
-/// After the first sample, from off, `γ = r_j(x)`; it changes once some `r_j` lies above or some `r_i` below.
+/// After the first sample, from off, `γ = r_j(x)`. The state changes once some `r_j` is above this
+/// value or some `r_i` is below it.
 fn excited(input: &[f64], plane: Plane) -> usize {
     let (low, high) = range(input);
     let [first, low, high] = [input[0], low, high].map(|t| plane.normalise(t));

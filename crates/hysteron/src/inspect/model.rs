@@ -1,34 +1,36 @@
-//! What is in a model.
+//! Summary of a model: its plane, its weights, its widest loop and its confidence.
 
 use crate::error::Result;
 use crate::model::{Confidence, Excitation, Model};
+use hysteron_core::operators;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What is in a model.
+/// Summary of a model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelSummary {
-    /// Levels of the plane.
+    /// Number of levels of the plane.
     pub levels: usize,
     /// Lowest and highest level.
     pub plane: (f64, f64),
-    /// Distance between levels.
+    /// Distance between levels, in the input's unit.
     pub step: f64,
     /// Number of operators.
     pub operators: usize,
-    /// Weights that are not zero.
+    /// Number of weights that are not zero.
     pub weights_not_zero: usize,
-    /// Weights below zero: with any, there is no inverse.
+    /// Number of negative weights. If there are any, the model has no inverse.
     pub weights_below_zero: usize,
     /// Output with every operator off, and with every operator on.
     pub output: (f64, f64),
-    /// Widest loop: the largest difference between the falling and the rising major branch, in the output's unit.
+    /// Width of the widest loop: the largest difference between the falling and the rising major
+    /// branch, in the output's unit.
     pub widest_loop: f64,
-    /// The input at which it is.
+    /// The input at which the loop is widest.
     pub widest_loop_at: f64,
-    /// The load that the weights depend on, where they do.
+    /// The load that the weights depend on, if they do.
     pub load: Option<LoadSummary>,
-    /// What the data said of the weights, where the fit asked.
+    /// Confidence in the weights, if the fit estimated it.
     pub confidence: Option<ConfidenceSummary>,
 }
 
@@ -41,39 +43,39 @@ pub struct LoadSummary {
     pub unit: Option<String>,
     /// Smallest load that the model was identified at.
     pub min: f64,
-    /// Largest.
+    /// Largest load that the model was identified at.
     pub max: f64,
-    /// Order of the weights as a function of it.
+    /// Order of the weights as a function of the load.
     pub order: usize,
 }
 
-/// What the data said of the weights: [`Confidence`] in short.
+/// Short form of [`Confidence`]: how well the data determine the weights.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConfidenceSummary {
-    /// Operators in each class, from the least known to the best.
+    /// Number of operators in each class, from the least known to the best known.
     pub excitation: BTreeMap<Excitation, usize>,
-    /// Combinations of weights that the data determine.
+    /// Number of combinations of unknowns that the data determine.
     pub rank: usize,
-    /// How many there are.
+    /// Number of unknowns.
     pub unknowns: usize,
-    /// Ratio of the best to the worst determined of them.
+    /// Condition number: ratio of the best to the worst determined combination.
     pub condition: f64,
-    /// Standard deviation of what the model leaves, in the output's unit.
+    /// Standard deviation of the residuals, in the output's unit.
     pub noise: f64,
-    /// Replicates of the bootstrap.
+    /// Number of bootstrap replicates.
     pub replicates: usize,
-    /// Standard error of the offset.
+    /// Standard error of the offset, in the output's unit.
     pub offset_error: f64,
-    /// The weights with the largest standard errors, the largest first.
+    /// The weights with the largest standard errors, largest first.
     pub least_certain: Vec<Uncertain>,
 }
 
 /// A weight and its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Uncertain {
-    /// Level of `α`, from 1.
+    /// Index `i` of the level of `α`, from 1.
     pub i: usize,
-    /// Level of `β`, from `i`.
+    /// Index `j` of the level of `β`, from `i`.
     pub j: usize,
     /// The weight `μ_ij`.
     pub weight: f64,
@@ -81,14 +83,13 @@ pub struct Uncertain {
     pub standard_error: f64,
 }
 
-/// How many of the least certain weights are named.
+/// Number of weights listed in `least_certain`.
 const NAMED: usize = 5;
 
 impl ConfidenceSummary {
     fn new(model: &Model, confidence: &Confidence) -> Self {
-        let rows = (1..=model.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
         let weights = model.weights().iter().zip(&confidence.standard_error);
-        let mut least_certain: Vec<Uncertain> = rows
+        let mut least_certain: Vec<Uncertain> = operators(model.plane().levels())
             .zip(weights)
             .map(|((i, j), (&weight, &standard_error))| Uncertain {
                 i,
@@ -117,16 +118,17 @@ impl ConfidenceSummary {
 /// Summarises `model`.
 ///
 /// # Errors
-/// None on a model made by this crate.
+/// None for a model made by this crate.
 pub fn inspect_model(model: &Model) -> Result<ModelSummary> {
     let plane = model.plane();
     let levels = plane.levels();
-    // The major branches bend only at the levels.
+    // The major branches bend only at the levels, so the widest loop is at one of them.
     let ladder: Vec<f64> = (0..=levels).map(|k| plane.level(k)).collect();
-    let rising = model.simulate(&ladder)?;
+    let operators = model.operators();
+    let rising = operators.simulate(&ladder)?;
     let mut falling = vec![0.0; ladder.len()];
     let down: Vec<f64> = ladder.iter().rev().copied().collect();
-    model.run(&mut model.saturated(), &down, &mut falling)?;
+    operators.run(&mut operators.saturated(), &down, &mut falling)?;
     falling.reverse();
     let gap = |k: &usize| (falling[*k] - rising[*k]).abs();
     let widest = (0..=levels)

@@ -1,4 +1,4 @@
-//! A 95 % band around the modelled output: how far off the weights may put it, and the noise.
+//! The 95 % band around the modelled output, from the uncertainty of the weights and the noise.
 
 use crate::error::{Error, Result};
 use crate::model::confidence::{Confidence, INTERVAL};
@@ -6,16 +6,18 @@ use crate::model::{Model, OperatorState, Operators};
 use crate::recording::Recording;
 use serde::Serialize;
 
-/// The 95 % prediction band of a model whose file says how certain its weights are.
+/// The 95 % prediction band of a model with confidence.
 ///
-/// A factor `f` of the confidence is a joint deviation of offset and weights by one standard deviation; the
-/// output deviates by its own forward run, so that a sample takes `O(1)` for each factor. Independent factors and
-/// the noise `ν` add as squares: half the width is `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
+/// A factor `f` of the confidence is a joint deviation of offset and weights by one standard
+/// deviation. The resulting deviation of the output is a forward run with these weights, so each
+/// factor takes `O(1)` per sample. The factors and the noise `ν` are independent, so their squares
+/// add: half the width is `1.96 · √(Σ_f (δ_f + Σ δμ_f γ)² + ν²)`.
 ///
 /// ```
 /// use hysteron::{FitOptions, Recording, Fit};
 /// let input: Vec<f64> = (0..300).map(|n| 50.0 - 30.0 * (f64::from(n) * 0.1).cos()).collect();
-/// let output = input.iter().enumerate().map(|(n, t)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin()).collect();
+/// let noisy = |(n, t): (usize, &f64)| 0.5 * t + 0.1 * (n as f64 * 7.0).sin();
+/// let output = input.iter().enumerate().map(noisy).collect();
 /// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
 /// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;
@@ -30,11 +32,11 @@ pub struct Band {
 }
 
 impl Model {
-    /// The prediction band; `None` for a model without confidence or one without factors. With a load it is that of the
-    /// middle of its range.
+    /// The prediction band. `None` for a model without confidence or without factors. If the model
+    /// depends on a load, the band is that of the middle of the load range.
     ///
     /// # Errors
-    /// [`Error::ModelFile`] for factors that do not have as many weights as the model.
+    /// [`Error::ModelFile`] if a factor does not have as many weights as the model.
     pub fn band(&self) -> Result<Option<Band>> {
         match self.fit.as_ref().and_then(|fit| fit.confidence.as_ref()) {
             Some(confidence) if !confidence.factors.is_empty() => {
@@ -69,13 +71,14 @@ impl Band {
         })
     }
 
-    /// States of the factors with every operator off.
+    /// The states of all factors with every operator off.
     #[must_use]
     pub fn start(&self) -> Vec<OperatorState> {
         self.factors.iter().map(Operators::start).collect()
     }
 
-    /// Moves `states` to `input` and returns half the width of the band there, in the output's unit.
+    /// Moves `states` to `input` and returns half the width of the band there, in the output's
+    /// unit.
     ///
     /// # Errors
     /// As [`Model::step`].
@@ -87,7 +90,8 @@ impl Band {
         Ok(INTERVAL * variance.sqrt())
     }
 
-    /// Half the width of the band at each of `input`, from every operator off.
+    /// Half the width of the band at each sample of `input`, in the output's unit, from every
+    /// operator off.
     ///
     /// # Errors
     /// As [`Model::run`].
@@ -105,7 +109,7 @@ impl Band {
     }
 }
 
-/// Lower and upper end of a band around a modelled output.
+/// Lower and upper end of the band around a modelled output.
 pub(crate) fn ends(output_model: &[f64], half_width: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let pairs = output_model.iter().zip(half_width);
     pairs.map(|(y, half)| (y - half, y + half)).unzip()
@@ -116,18 +120,19 @@ pub(crate) fn ends(output_model: &[f64], half_width: &[f64]) -> (Vec<f64>, Vec<f
 pub struct BandEvaluation {
     /// Half the width at each sample, in the output's unit.
     pub half_width: Vec<f64>,
-    /// Share of the measured samples inside, in percent; about 95 where the recording is like those fitted.
+    /// Share of the measured samples inside the band, in percent. About 95 if the recording is
+    /// similar to those fitted.
     pub coverage_percent: f64,
 }
 
 impl BandEvaluation {
-    /// Lower and upper end around the modelled output.
+    /// Lower and upper end of the band around the modelled output.
     #[must_use]
     pub fn ends(&self, output_model: &[f64]) -> (Vec<f64>, Vec<f64>) {
         ends(output_model, &self.half_width)
     }
 
-    /// Of `model` on `recording`, whose output is modelled as `output_model`.
+    /// The band of `model` on `recording`. `output_model` is the modelled output.
     pub(crate) fn of(
         model: &Model,
         recording: &Recording,
@@ -164,7 +169,7 @@ mod tests {
     use hysteron_core::Operator;
     use rand::{RngExt, SeedableRng};
 
-    /// A model with `factors` at random, and an input that wanders over and beyond its plane.
+    /// A model with random `factors`, and an input that moves over and beyond its plane.
     fn uncertain(operator: Operator, sign: Sign, factors: usize) -> (Model, Vec<f64>) {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(factors as u64);
         let plane = Plane::new(20.0, 80.0, 7).unwrap();
@@ -230,7 +235,7 @@ mod tests {
         let (model, input) = uncertain(Operator::Mkp, Sign::Positive, 3);
         let half = model.band().unwrap().unwrap().run(&input).unwrap();
         let modelled = model.simulate(&input).unwrap();
-        // Every fourth sample just outside, the others just inside, on either side in turn.
+        // Every fourth sample is just outside, the others are just inside, above and below in turn.
         let output = (0..input.len())
             .map(|n| {
                 let share = if n % 4 == 0 { 1.001 } else { 0.999 };

@@ -1,4 +1,5 @@
-//! A thermal body in front of the operators: a drive goes in, the temperature that moves the operators comes out.
+//! The thermal body in front of the operators. It turns a drive into the temperature that moves the
+//! operators.
 
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -7,11 +8,13 @@ use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and one for cooling.
+/// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and
+/// one for cooling.
 ///
-/// `θ` is the temperature above the surroundings. Where no temperature was measured the gain cannot
-/// be identified: it is 1, and `θ` is in units of the drive that holds it at rest. The drive is taken as proportional to the heating
-/// power, as a duty cycle is; of a current or a voltage give the square.
+/// `θ` is the temperature above the surroundings. If no temperature was measured, the gain cannot
+/// be identified. It is then 1, and `θ` is in units of the drive that holds it constant. The drive
+/// must be proportional to the heating power, as a duty cycle is. Of a current or a voltage, give
+/// the square.
 ///
 /// ```
 /// let body = hysteron::FirstOrder { gain: 1.0, tau_heating: 2.0, tau_cooling: 4.0 };
@@ -22,7 +25,7 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct FirstOrder {
-    /// Temperature at rest for a unit of the drive; above zero.
+    /// Temperature at rest per unit of the drive; above zero.
     pub gain: f64,
     /// Time constant of heating in seconds; above zero.
     pub tau_heating: f64,
@@ -30,7 +33,7 @@ pub struct FirstOrder {
     pub tau_cooling: f64,
 }
 
-/// Where a body stands: the last drive, and the temperature then.
+/// State of a body: the last drive, and the temperature at that time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThermalState {
     drive: f64,
@@ -38,7 +41,7 @@ pub struct ThermalState {
 }
 
 impl ThermalState {
-    /// The temperature above the surroundings.
+    /// Temperature above the surroundings.
     #[must_use]
     pub fn temperature(&self) -> f64 {
         self.temperature
@@ -46,7 +49,7 @@ impl ThermalState {
 }
 
 impl FirstOrder {
-    /// A body at rest with the drive.
+    /// A body at rest under a constant `drive`.
     #[must_use]
     pub fn at_rest(&self, drive: f64) -> ThermalState {
         ThermalState {
@@ -57,16 +60,17 @@ impl FirstOrder {
 
     /// The temperature `dt` seconds after the last sample, when the drive changes to `drive`.
     ///
-    /// Exact for a drive that is held between samples, however far apart they are: the temperature
-    /// goes towards the drive and never past it, so that one time constant holds for the whole step.
+    /// This is exact for a drive that is held between samples, for any step length. The temperature
+    /// moves towards its rest value and never beyond it, so one time constant holds for the whole
+    /// step.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for numbers that are not finite, a `dt` below zero, or a body whose numbers
-    /// are not above zero; the state is then as it was.
+    /// [`Error::Thermal`] for numbers that are not finite, a negative `dt`, or a body with a
+    /// parameter that is not above zero; then the state is unchanged.
     pub fn step(&self, state: &mut ThermalState, dt: f64, drive: f64) -> Result<f64> {
         if let Some((name, value)) = self.fault() {
             return Err(Error::Thermal(format!(
-                "the body's {name} is {value}, where a finite number above zero is needed"
+                "the body's {name} is {value}, but must be a finite number above zero"
             )));
         }
         if !(dt >= 0.0 && dt.is_finite() && drive.is_finite()) {
@@ -84,10 +88,11 @@ impl FirstOrder {
         Ok(temperature)
     }
 
-    /// The temperature at each time (seconds) under `drive`, as many samples, from rest with the first of them.
+    /// The temperature at each time (seconds) under `drive`, which has as many samples. The body
+    /// starts at rest with the first drive.
     ///
     /// # Errors
-    /// As [`FirstOrder::step`], and for series of different length.
+    /// As [`FirstOrder::step`], and for series of different lengths.
     pub fn respond(&self, time: &[f64], drive: &[f64]) -> Result<Vec<f64>> {
         if time.len() != drive.len() {
             return Err(Error::Thermal(format!(
@@ -107,7 +112,7 @@ impl FirstOrder {
             .collect()
     }
 
-    /// The recording with the body's temperature for an input.
+    /// The recording with the body's temperature as its input.
     ///
     /// # Errors
     /// [`Error::Thermal`] for a recording without time, and as [`FirstOrder::respond`].
@@ -119,7 +124,8 @@ impl FirstOrder {
         })
     }
 
-    /// That the three numbers can be worked with; otherwise the name of the first that cannot.
+    /// The name and value of the first parameter that is not a finite number above zero; `None` if
+    /// all are valid.
     pub(crate) fn fault(&self) -> Option<(&'static str, f64)> {
         [
             ("gain", self.gain),
@@ -132,10 +138,10 @@ impl FirstOrder {
 }
 
 impl Model {
-    /// The recording as the operators see it: behind the thermal body, where the model has one.
+    /// The recording as the operators see it: behind the thermal body, if the model has one.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for a recording without time where there is a body.
+    /// [`Error::Thermal`] for a recording without time if there is a body.
     pub fn behind_body<'r>(&self, recording: &'r Recording) -> Result<Cow<'r, Recording>> {
         match &self.thermal {
             None => Ok(Cow::Borrowed(recording)),
@@ -177,7 +183,7 @@ mod tests {
             let (time, drive) = held(parts);
             let fine = BODY.respond(&time, &drive).unwrap();
             for (n, theta) in coarse.iter().enumerate() {
-                // A rounding for each of up to 3000 samples.
+                // One rounding for each of up to 3000 samples.
                 assert!((fine[n * parts] - theta).abs() < 3000.0 * 8.0 * f64::EPSILON);
             }
         }

@@ -1,37 +1,42 @@
-//! What a fit says of how well the data determined its weights.
+//! How well the data determined the weights of a model. This part of the model file is written by a
+//! fit.
 
 use crate::model::excitation::Excitation;
 use crate::model::load::LoadPart;
 use serde::{Deserialize, Serialize};
 
-/// What the data say of the weights, and what not.
+/// How well the data determine the weights.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct Confidence {
-    /// Branches of the input.
+    /// Number of branches of the input.
     pub branches: usize,
-    /// How many combinations of weights (and initial states, where these are unknown) the data determine at all.
+    /// Rank: number of combinations of weights (and of unknown initial states) that the data
+    /// determine.
     pub rank: usize,
-    /// How many there are.
+    /// Number of unknowns.
     pub unknowns: usize,
-    /// Ratio of the best to the worst determined of them, singular values of the centred regressor.
+    /// Condition number: ratio of the largest to the smallest non-zero singular value of the
+    /// centred regressor.
     pub condition: f64,
-    /// Standard deviation of what the model leaves, in the output's unit.
+    /// Standard deviation of the residuals, in the output's unit.
     pub noise: f64,
-    /// Replicates of the bootstrap.
+    /// Number of bootstrap replicates.
     pub replicates: usize,
-    /// What the input says of each operator, in the order of the weights.
+    /// How well the input determines each operator, in the order of the weights.
     pub excitation: Vec<Excitation>,
-    /// Standard error of each weight, in the output's unit; with a load, at the middle of its range.
+    /// Standard error of each weight, in the output's unit; with a load, at the middle of its
+    /// range.
     pub standard_error: Vec<f64>,
-    /// Standard error of the offset.
+    /// Standard error of the offset, in the output's unit.
     pub offset_error: f64,
-    /// The main joint deviations of offset and weights, each one standard deviation long.
+    /// Principal components of the joint deviations of offset and weights, each scaled to one
+    /// standard deviation.
     pub factors: Vec<LoadPart>,
 }
 
 impl Confidence {
-    /// The first entry that cannot be, of a model with `operators` operators, and why.
+    /// The first invalid entry for a model with `operators` operators, and the reason.
     pub(crate) fn fault(&self, operators: usize) -> Option<(String, String)> {
         let lengths = [
             ("excitation", self.excitation.len()),
@@ -55,23 +60,23 @@ impl Confidence {
         let deviations = factors.flat_map(|f| f.weights.iter().chain([&f.offset]));
         let deviations = deviations.map(|d| ("factors", d.abs()));
         let mut numbers = sizes.into_iter().chain(errors).chain(deviations);
-        // Their squares are summed.
+        // Their squares will be summed, so limit their size.
         numbers
             .find(|(_, value)| !(0.0..=1e140).contains(value))
             .map(|(name, value)| {
                 (
                     name.to_owned(),
-                    format!("{value:e} is not a number from zero on that can be squared"),
+                    format!("{value:e} is negative, not a number, or too large to be squared"),
                 )
             })
     }
 
-    /// How many operators are in a class.
+    /// Number of operators in a class.
     #[must_use]
     pub fn count(&self, class: Excitation) -> usize {
         self.excitation.iter().filter(|e| **e == class).count()
     }
 }
 
-/// Half the width of a 95 % interval in standard errors of a normal distribution.
+/// Half the width of a 95 % interval of a normal distribution, in standard deviations.
 pub const INTERVAL: f64 = 1.959_963_984_540_054;

@@ -1,4 +1,4 @@
-//! The model file: JSON, versioned, every fault named by its field.
+//! The model file: JSON with a version. Every error names the field.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
@@ -33,7 +33,7 @@ struct File {
     fit: Option<FitSummary>,
 }
 
-/// Only what tells whether the rest can be read at all.
+/// The fields that show whether the rest of the file can be read.
 #[derive(Deserialize)]
 #[serde(expecting = "a model: an object in braces")]
 struct Head {
@@ -77,7 +77,8 @@ struct OutputEntry {
     sign: i64,
 }
 
-/// Weights that depend on a load: `weights` and `offset` above are then those at the middle of its range.
+/// Weights that depend on a load. `weights` and `offset` of the file are then those at the middle
+/// of its range.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 struct LoadEntry {
@@ -87,7 +88,7 @@ struct LoadEntry {
     unit: Option<String>,
     min: f64,
     max: f64,
-    /// For each Bernstein polynomial, from the smallest load on.
+    /// One entry for each Bernstein polynomial, from the smallest load on.
     parts: Vec<LoadPart>,
 }
 
@@ -132,7 +133,8 @@ impl Model {
     /// let text = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
     ///     "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2]}"#;
     /// let error = hysteron::Model::from_json(text).unwrap_err();
-    /// assert!(error.to_string().contains("field `weights`: 2 weights where K(K+1)/2 = 3 are needed"));
+    /// let expected = "field `weights`: 2 weights where K(K+1)/2 = 3 are needed";
+    /// assert!(error.to_string().contains(expected));
     /// ```
     ///
     /// # Errors
@@ -152,7 +154,8 @@ impl Model {
             found => {
                 let found = found.map_or("none".into(), |v| v.to_string());
                 let problem = format!(
-                    "version {found} is not known, only {VERSION}: a newer hysteron may read this file"
+                    "version {found} is not known, only {VERSION}: \
+                     a newer hysteron may read this file"
                 );
                 return Err(fault("version", problem));
             }
@@ -236,7 +239,7 @@ impl Model {
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
             fit: self.fit.clone(),
         };
-        // Numbers and strings only: there is nothing that JSON cannot hold.
+        // The file has only numbers and strings, so writing JSON cannot fail.
         serde_json::to_string(&file).unwrap_or_default() + "\n"
     }
 }
@@ -256,7 +259,7 @@ impl LoadEntry {
     fn into_load(self, model: &Model) -> Result<LoadDependence> {
         let (min, max) = (self.min, self.max);
         if !(min.is_finite() && max.is_finite() && min < max) {
-            let problem = format!("the range {min} to {max} is not finite and in order");
+            let problem = format!("the range {min} to {max} must be finite, the smaller end first");
             return Err(fault("load", problem));
         }
         if self.parts.is_empty() {

@@ -1,4 +1,4 @@
-//! The inverse of a model in its own units: of one target, and of a series of them.
+//! The inverse of a model: the input for a wanted output, for one target or a series of them.
 
 use crate::error::Result;
 use crate::model::policy::Policy;
@@ -10,8 +10,8 @@ impl Model {
     /// The inverse of a plain model.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) naming the first weights below zero,
-    /// if there are any.
+    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) for negative weights, which names
+    /// the first of them.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
         self.plain()?.inverse()
     }
@@ -21,7 +21,7 @@ impl Operators {
     /// The inverse of these operators.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core)(crate::Error::Core) naming the first weights below zero, if there are any.
+    /// [`Error::Core`](crate::Error::Core) for negative weights, which names the first of them.
     pub fn inverse(&self) -> Result<Inverse<'_>> {
         Ok(Inverse {
             operators: self,
@@ -31,7 +31,7 @@ impl Operators {
 }
 
 impl Sign {
-    /// The target for the output without sign, which is then `output`.
+    /// The target for the core. `output` is the target's output without offset and sign.
     pub(crate) fn inward(self, target: Target<f64>, output: f64) -> Target<f64> {
         let heading = match (self, target.heading) {
             (Sign::Negative, Some(Direction::Rising)) => Some(Direction::Falling),
@@ -45,7 +45,7 @@ impl Sign {
         }
     }
 
-    /// The status for the output with its sign.
+    /// The solution of the core, with the status for the signed output.
     pub(crate) fn outward(self, solution: Solution<f64>) -> Solution<f64> {
         let status = match self {
             Sign::Positive => solution.status,
@@ -65,16 +65,17 @@ pub struct Inverse<'m> {
 impl Inverse<'_> {
     /// Finds the input for `target` and moves `state` there. `O(log K)`.
     ///
-    /// Status and heading speak of the target as given: with a negative sign, [`Low`](crate::Status::Low) needs an
-    /// input above the plane.
+    /// Status and heading refer to the target as given. So with a negative sign,
+    /// [`Low`](crate::Status::Low) means that the input would have to be above the plane.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another model; the state is then as it was.
+    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another
+    /// model; then the state is unchanged.
     pub fn step(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
         self.step_operators(&mut state.operators, target)
     }
 
-    /// As [`Inverse::step`], of operators alone.
+    /// As [`Inverse::step`], for the state of the operators alone.
     ///
     /// # Errors
     /// As [`Inverse::step`].
@@ -89,12 +90,12 @@ impl Inverse<'_> {
         Ok(sign.outward(solution))
     }
 
-    /// Finds the inputs for a series of targets that is known as a whole, and moves `state` through
-    /// them. Reversals of the target up to `tolerance` are not followed.
+    /// Finds the inputs for a whole series of targets, and moves `state` through them. Reversals of
+    /// the target up to `tolerance` (in the output's unit) are not followed.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) with the place of a target that is not finite, or for a state of another
-    /// model; the state is then as it was.
+    /// [`Error::Core`](crate::Error::Core) with the index of a target that is not finite, or for a
+    /// state of another model; then the state is unchanged.
     ///
     /// ```
     /// use hysteron::{Model, Operator, Plane, Policy, Sign};
@@ -121,8 +122,8 @@ impl Inverse<'_> {
         self.headed(state, targets, &headings, tolerance)
     }
 
-    /// As [`Inverse::series`], told at each target where it goes next; a target is held where that
-    /// is `None` or `headings` is shorter.
+    /// As [`Inverse::series`], with the direction that each target takes next. A target without one
+    /// (`None`, or beyond the end of `headings`) is held.
     ///
     /// # Errors
     /// As [`Inverse::series`].

@@ -1,4 +1,4 @@
-//! Weights that depend on a load: one model for several loads or stresses.
+//! Weights that depend on a load, so that one model holds for several loads or stresses.
 
 use crate::error::{Error, Result};
 use crate::model::{Model, Operators};
@@ -6,7 +6,7 @@ use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
 
-/// Offset and weights that one Bernstein polynomial of the load is multiplied with.
+/// Offset and weights that belong to one Bernstein polynomial of the load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct LoadPart {
@@ -17,7 +17,7 @@ pub struct LoadPart {
 }
 
 impl LoadPart {
-    /// The parts with the factors of the middle of the range.
+    /// Offset and weights at the middle of the load range.
     pub(crate) fn at_middle(parts: &[Self]) -> Self {
         Self::sum(parts, &bernstein(parts.len() - 1, 0.5))
     }
@@ -37,23 +37,25 @@ impl LoadPart {
     }
 }
 
-/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)` with the Bernstein polynomials of the load
-/// scaled to `s` in `[0, 1]`. The parts belong to the smallest load, those between, and the largest.
+/// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)`, where `B_k` are Bernstein
+/// polynomials and `s` in `[0, 1]` is the load scaled to its range. The first part is the model at
+/// the smallest load and the last part the model at the largest; those between are control points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadDependence {
-    /// What the load is.
+    /// Name and unit of the load.
     pub quantity: Quantity,
     range: (f64, f64),
     parts: Vec<LoadPart>,
-    /// Those of each part.
+    /// One set of operators for each part.
     operators: Vec<Operators>,
 }
 
 impl LoadDependence {
-    /// Of the parts, one at least, over the `range` of loads, for operators such as `like`.
+    /// Operators of the same kind as `like` for each of `parts` (at least one), over the `range` of
+    /// loads.
     ///
     /// # Errors
-    /// As [`Operators::new`], with the place of the part.
+    /// As [`Operators::new`], with the index of the part.
     pub(crate) fn new(
         quantity: Quantity,
         range: (f64, f64),
@@ -85,7 +87,7 @@ impl LoadDependence {
         self.operators.iter()
     }
 
-    /// Why a model that depends on a load does not run without one.
+    /// The error for a model that depends on a load but was given none.
     pub(crate) fn one_is_needed(&self) -> Error {
         let (low, high) = self.range;
         let what = format!(
@@ -105,23 +107,24 @@ impl LoadDependence {
         self.range
     }
 
-    /// The parts, one more than the order in the load.
+    /// The parts: one more than the degree in the load.
     #[must_use]
     pub fn parts(&self) -> &[LoadPart] {
         &self.parts
     }
 
-    /// The factors of the parts at a load.
+    /// The factor of each part at a load: the values of the Bernstein polynomials.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a load outside the range: weights there could be below zero.
+    /// [`Error::Fit`] for a load outside the range, because weights could be negative there.
     pub fn factors(&self, load: f64) -> Result<Vec<f64>> {
         let (low, high) = self.range;
-        // A millionth of the range is a number printed with few digits, not another load.
+        // A difference of a millionth of the range is rounding in print, not another load.
         let slack = 1e-6 * (high - low);
         if !(load >= low - slack && load <= high + slack) {
             return Err(Error::Fit(format!(
-                "the {} {load} is outside the range {low} to {high} that the model was identified at",
+                "the {} {load} is outside the range {low} to {high} that the model was identified \
+                 at",
                 self.quantity.name
             )));
         }
@@ -139,10 +142,10 @@ impl LoadDependence {
 }
 
 impl Model {
-    /// The model at a load, which depends on it no more.
+    /// The model at one load. The result does not depend on a load.
     ///
     /// # Errors
-    /// [`Error::Fit`] where the model has no load, or for one outside its range.
+    /// [`Error::Fit`] if the model does not depend on a load, or for a load outside its range.
     pub fn at_load(&self, load: f64) -> Result<Self> {
         let Some(dependence) = &self.load else {
             return Err(no_load());
@@ -157,12 +160,15 @@ impl Model {
         Ok(model)
     }
 
-    /// The outputs for `input` under a `load` that may change from sample to sample, as many, from every operator off.
+    /// The outputs for `input` under a `load` that may change from sample to sample, from every
+    /// operator off. All three have the same length.
     ///
-    /// The operators move with the input alone, so that each part of the load dependence is a run of its own.
+    /// The operators move with the input alone. So each part of the load dependence is simulated on
+    /// its own.
     ///
     /// # Errors
-    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] where there are not as many loads as inputs.
+    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] if there are not as many loads as
+    /// inputs.
     pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
         let Some(dependence) = &self.load else {
             return Err(no_load());
@@ -190,10 +196,11 @@ pub(crate) fn no_load() -> Error {
     Error::Fit("this model does not depend on a load: leave the load out".into())
 }
 
-/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one, so that
-/// coefficients from zero on make weights from zero on at every load in the range (Farouki 2012).
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one.
+/// So non-negative coefficients give non-negative weights at every load in the range (Farouki
+/// 2012).
 pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
-    // De Casteljau's scheme.
+    // De Casteljau's algorithm.
     let mut values = vec![1.0];
     for _ in 0..degree {
         let mut next = vec![0.0; values.len() + 1];

@@ -1,4 +1,10 @@
-//! The model of an actuator: operators, the stages in front of them, and how they were identified.
+//! The model of an actuator: operators, the stages in front of them, and a record of how they were
+//! identified.
+//!
+//! `operators` are the weighted operators; `body` and `load` are the stages. `state` moves a model
+//! sample by sample, `surroundings` simulates it with time and load, and `inverse` inverts it
+//! (`policy` says how). `band` is the interval around the output. `file` reads and writes models;
+//! `summary`, `validation`, `confidence` and `excitation` are the record of the fit.
 
 mod band;
 mod body;
@@ -38,7 +44,7 @@ use hysteron_core::{ClippedCount, Operator, Output};
 /// The discrete Preisach plane, equation (3).
 pub type Plane = hysteron_core::Plane<f64>;
 
-/// A model of an actuator: weighted operators, and what stands in front of them.
+/// A model of an actuator: weighted operators and the stages in front of them.
 ///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign, Target};
@@ -57,22 +63,22 @@ pub type Plane = hysteron_core::Plane<f64>;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     operators: Operators,
-    /// What the input is.
+    /// Name and unit of the input.
     pub input: Quantity,
-    /// What the output is.
+    /// Name and unit of the output.
     pub output: Quantity,
-    /// How offset and weights depend on a load, where they do; the operators are then those of the
-    /// middle of its range.
+    /// How offset and weights depend on a load, if they do. `operators` are then those of the
+    /// middle of the load range.
     pub load: Option<LoadDependence>,
-    /// The thermal body in front of the operators, where there is one. The input is then what drives
-    /// the body, and the operators follow its temperature, of which the plane speaks.
+    /// The thermal body in front of the operators, if there is one. The input then drives the body,
+    /// and the operators follow the body's temperature. The plane is in units of that temperature.
     pub thermal: Option<FirstOrder>,
-    /// How the model was obtained, where it was identified.
+    /// How the model was obtained, if it was identified.
     pub fit: Option<FitSummary>,
 }
 
 impl From<Operators> for Model {
-    /// A model of these operators alone.
+    /// A model of these operators without stages.
     fn from(operators: Operators) -> Self {
         Self {
             operators,
@@ -86,7 +92,7 @@ impl From<Operators> for Model {
 }
 
 impl Model {
-    /// A plain model of `operator`s on `plane`; arguments and errors as [`Operators::new`].
+    /// A plain model: `operator`s on `plane`, without stages. Arguments as [`Operators::new`].
     ///
     /// # Errors
     /// As [`Operators::new`].
@@ -100,20 +106,21 @@ impl Model {
         Ok(Operators::new(operator, plane, weights, offset, sign)?.into())
     }
 
-    /// The operators alone, without the thermal body and the load that may stand in front of them.
+    /// The operators, without the thermal body and the load in front of them.
     #[must_use]
     pub fn operators(&self) -> &Operators {
         &self.operators
     }
 
-    /// The operators of a model that is no more than these.
+    /// The operators of a plain model: one without a thermal body and a load.
     ///
     /// # Errors
     /// [`Error::Thermal`] for a model with a thermal body, [`Error::Fit`] for one that depends on a
     /// load.
     pub fn plain(&self) -> Result<&Operators> {
         if self.thermal.is_some() {
-            let what = "the model has a thermal body: it runs forward only, and needs the time of each sample";
+            let what = "the model has a thermal body: an inverse gives its temperature, not the \
+                        drive that takes it there, and each sample needs its time";
             return Err(Error::Thermal(what.into()));
         }
         match &self.load {
@@ -140,13 +147,13 @@ impl Model {
         self.operators.weights()
     }
 
-    /// Output with `Σ μ γ = 0`.
+    /// The output where `Σ μ γ = 0`.
     #[must_use]
     pub fn offset(&self) -> f64 {
         self.operators.offset()
     }
 
-    /// Direction of the output.
+    /// Whether the output rises or falls with the input.
     #[must_use]
     pub fn sign(&self) -> Sign {
         self.operators.sign()
@@ -158,14 +165,14 @@ impl Model {
         self.operators.output_range()
     }
 
-    /// Reversals of a target that count as noise if nothing else is said: [`crate::NOISE`] of the
-    /// output's range.
+    /// The default tolerance for targets: [`crate::NOISE`] times the output's range. Smaller
+    /// reversals of a target count as noise.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
         self.operators.usual_tolerance()
     }
 
-    /// A state with every operator off; a thermal body is at rest with the first input.
+    /// A state with every operator off. A thermal body is at rest with the first input.
     #[must_use]
     pub fn start(&self) -> State {
         State::new(self, Operators::start)
@@ -177,12 +184,12 @@ impl Model {
         State::new(self, Operators::saturated)
     }
 
-    /// The state of a plain model that gave `turning_points` ([`State::turning_points`]) and `input`
-    /// ([`State::input`]), bit for bit.
+    /// The state of a plain model that returned these `turning_points` ([`State::turning_points`])
+    /// and this `input` ([`State::input`]), to the last bit.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`] for turning points that do not nest and for an input that
-    /// is not finite.
+    /// As [`Model::plain`]; [`Error::Core`] for turning points that are not nested and for an input
+    /// that is not finite.
     ///
     /// ```
     /// # use hysteron::{Model, Operator, Plane, Sign};
@@ -198,9 +205,9 @@ impl Model {
         Ok(self.plain()?.restore(turning_points, input)?.into())
     }
 
-    /// Moves `state` by a sample and returns the output, and whether the operators' input was outside
-    /// the plane. A plain model takes a number; one with a thermal body or a load needs the time step
-    /// or the load too.
+    /// Moves `state` by one sample. Returns the output, and whether the operators' input was
+    /// outside the plane. A plain model takes a number. A model with a thermal body also needs the
+    /// time step, and one that depends on a load needs the load.
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign};
@@ -218,15 +225,18 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite or a state of another model;
-    /// [`Error::Thermal`] for a thermal body without `dt`, or a `dt` that goes back; [`Error::Fit`]
-    /// for a load that is missing, out of range, or of no use. The state is then as it was.
+    /// - [`Error::Core`] for an input that is not finite or a state of another model.
+    /// - [`Error::Thermal`] for a thermal body without `dt`, or a negative `dt`.
+    /// - [`Error::Fit`] for a load that is missing, out of range, or given to a model that has
+    ///   none.
+    ///
+    /// After an error the state is unchanged.
     pub fn step(&self, state: &mut State, sample: impl Into<Sample>) -> Result<Output<f64>> {
         state.step(self, sample.into())
     }
 
-    /// Moves the `state` of a plain model through `input` and writes the outputs, and returns how
-    /// many inputs were clipped.
+    /// Moves the `state` of a plain model through `input` and writes the outputs to `output`, which
+    /// is at least as long. Returns how many inputs were clipped.
     ///
     /// # Errors
     /// As [`Model::plain`] and [`Operators::run`].

@@ -1,18 +1,20 @@
-//! Weighted operators: what every model has, whatever stands in front of it.
+//! Weighted operators with offset and sign: the core of every model, without the stages in front of
+//! it.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
 use crate::model::sign::Sign;
 use crate::series::NOISE;
-use hysteron_core::{Operator, Turn, table_len, turn_capacity};
+use hysteron_core::{Operator, Turn, operators, table_len, turn_capacity};
 
-/// The state of operators: their turning points.
+/// The state of weighted operators: their turning points.
 pub type OperatorState = hysteron_core::State<f64, Vec<Turn<f64>>>;
 
-/// Weighted operators, offset and sign: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation (2).
+/// Weighted operators, offset and sign: `output = offset + sign · Σ μ_ij γ_ij(input)`, equation
+/// (2).
 ///
-/// A [`Model`](crate::Model) without a thermal body and a load is no more than this; what needs such
-/// a plain model takes this type ([`Model::plain`](crate::Model::plain)).
+/// A [`Model`](crate::Model) without a thermal body and a load consists only of this. Functions for
+/// such a plain model use this type ([`Model::plain`](crate::Model::plain)).
 ///
 /// ```
 /// use hysteron::{Operator, Operators, Plane, Sign};
@@ -35,8 +37,8 @@ impl Operators {
     /// `j = 1…K` and within a row `i = 1…j`, in the unit of the output.
     ///
     /// # Errors
-    /// [`Error::Core`] for a wrong number of weights or one that is not finite; [`Error::ModelFile`]
-    /// for an offset that is not finite.
+    /// [`Error::Core`] for a wrong number of weights or one that is not finite;
+    /// [`Error::ModelFile`] for an offset that is not finite.
     pub fn new(
         operator: Operator,
         plane: Plane,
@@ -51,7 +53,7 @@ impl Operators {
                 problem: format!("{offset} is not a finite number"),
             });
         }
-        // Counted before the table is made, which for a wrong number of levels can be huge.
+        // Check the count before the table is allocated: a wrong number of levels can make it huge.
         let (expected, found) = (plane.operators(), weights.len());
         if expected != found {
             return Err(hysteron_core::Error::WeightCount { expected, found }.into());
@@ -92,13 +94,13 @@ impl Operators {
         &self.weights
     }
 
-    /// Output with `Σ μ γ = 0`.
+    /// The output where `Σ μ γ = 0`.
     #[must_use]
     pub fn offset(&self) -> f64 {
         self.offset
     }
 
-    /// Direction of the output.
+    /// Whether the output rises or falls with the input.
     #[must_use]
     pub fn sign(&self) -> Sign {
         self.sign
@@ -111,7 +113,8 @@ impl Operators {
         (self.outward(off), self.outward(on))
     }
 
-    /// Reversals of a target that count as noise where nobody says otherwise: [`crate::NOISE`] of the output's range.
+    /// The default tolerance for targets: [`crate::NOISE`] times the output's range. Smaller
+    /// reversals of a target count as noise.
     #[must_use]
     pub fn usual_tolerance(&self) -> f64 {
         let (off, on) = self.output_range();
@@ -137,10 +140,11 @@ impl Operators {
         state
     }
 
-    /// The state that gave `turning_points` ([`State::turning_points`]) and `input` ([`State::input`]), bit for bit.
+    /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
+    /// ([`State::input`]), to the last bit.
     ///
     /// # Errors
-    /// [`Error::Core`] for turning points that do not nest and for an input that is not finite.
+    /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.
     ///
     /// ```
     /// # use hysteron::{Operator, Operators, Plane, Sign};
@@ -158,10 +162,11 @@ impl Operators {
         Ok(state)
     }
 
-    /// Moves `state` to `input` and returns the output, and whether the input was outside the plane.
+    /// Moves `state` to `input`. Returns the output, and whether the input was outside the plane.
     ///
     /// # Errors
-    /// [`Error::Core`] for an input that is not finite or a state of another model; the state is then as it was.
+    /// [`Error::Core`] for an input that is not finite or a state of another model; then the state
+    /// is unchanged.
     pub fn step(
         &self,
         state: &mut OperatorState,
@@ -174,10 +179,12 @@ impl Operators {
         })
     }
 
-    /// Moves `state` through `input` and writes the outputs, and returns how many inputs were clipped.
+    /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
+    /// Returns how many inputs were clipped.
     ///
     /// # Errors
-    /// As [`Operators::step`], with the index of the sample.
+    /// As [`Operators::step`], with the index of the sample; [`Error::Core`] for an `output` that
+    /// is shorter than `input`.
     pub fn run(
         &self,
         state: &mut OperatorState,
@@ -209,15 +216,17 @@ impl Operators {
     /// ```
     /// # use hysteron::{Operator, Operators, Plane, Sign};
     /// # let plane = Plane::new(0.0, 1.0, 2)?;
-    /// # let model = Operators::new(Operator::Mkp, plane, vec![1.0, 2.0, 4.0], 0.0, Sign::Positive)?;
+    /// # let weights = vec![1.0, 2.0, 4.0];
+    /// # let model = Operators::new(Operator::Mkp, plane, weights, 0.0, Sign::Positive)?;
     /// let mut state = model.start();
     /// model.run(&mut state, &[0.5, 1.0, 0.5], &mut [0.0; 3])?;
     /// assert_eq!(model.operator_states(&state)?, [1.0, 1.0, 0.5]); // γ_11, γ_12, γ_22
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     pub fn operator_states(&self, state: &OperatorState) -> Result<Vec<f64>> {
-        let rows = (1..=self.plane().levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        rows.map(|(i, j)| Ok(state.gamma(i, j)?)).collect()
+        operators(self.plane().levels())
+            .map(|(i, j)| Ok(state.gamma(i, j)?))
+            .collect()
     }
 
     fn outward(&self, sum: f64) -> f64 {

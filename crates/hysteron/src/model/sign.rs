@@ -1,12 +1,12 @@
-//! The direction of the output.
+//! Whether the output rises or falls with the input.
 
-/// Direction in which the output moves when the operators switch on.
+/// Direction in which the output moves when operators switch on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sign {
     /// The output rises with the input.
     #[default]
     Positive,
-    /// The output falls as the input rises, as a strain does that is recovered on heating.
+    /// The output falls as the input rises, for example a strain that is recovered on heating.
     Negative,
 }
 

@@ -1,4 +1,4 @@
-//! Where an actuator stands, and the sample that moves it.
+//! The state of a model, and the sample that moves it.
 
 use crate::error::Result;
 use crate::model::body::{ThermalState, needs_time};
@@ -6,14 +6,14 @@ use crate::model::load::no_load;
 use crate::model::{Model, OperatorState, Operators};
 use hysteron_core::Output;
 
-/// One sample of what goes into an actuator. A number alone is its input.
+/// One input sample of a model. A plain number converts to a sample with that input only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// The input, or the drive of a thermal body.
+    /// The input; for a model with a thermal body, its drive.
     pub input: f64,
-    /// Time since the sample before, s, for a model with a thermal body.
+    /// Time since the sample before, s; needed by a model with a thermal body.
     pub dt: Option<f64>,
-    /// The load, for a model that depends on one.
+    /// The load; needed by a model that depends on one.
     pub load: Option<f64>,
 }
 
@@ -27,13 +27,13 @@ impl From<f64> for Sample {
     }
 }
 
-/// Where an actuator stands: its operators, and the temperature of its thermal body.
+/// The state of a model: of its operators, and of its thermal body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     pub(crate) operators: OperatorState,
-    /// Of the operators of each part of a load dependence.
+    /// States of the operators of each part of a load dependence.
     parts: Vec<OperatorState>,
-    /// None before the first sample, with which the body is at rest.
+    /// `None` before the first sample. At that sample the body is at rest.
     body: Option<ThermalState>,
 }
 
@@ -57,7 +57,7 @@ impl State {
         }
     }
 
-    /// The last input of the operators: of a model with a thermal body the temperature.
+    /// The last input of the operators. For a model with a thermal body, this is the temperature.
     #[must_use]
     pub fn input(&self) -> f64 {
         self.operators.input()
@@ -68,7 +68,7 @@ impl State {
         self.operators.turning_points()
     }
 
-    /// Whether the operators' input rises.
+    /// Whether the operators' input is rising.
     #[must_use]
     pub fn is_rising(&self) -> bool {
         self.operators.is_rising()

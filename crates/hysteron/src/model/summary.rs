@@ -1,4 +1,4 @@
-//! How a model was obtained, as it stands in the model file.
+//! The record of a fit in the model file: options, data and errors.
 
 use crate::model::confidence::Confidence;
 use serde::{Deserialize, Serialize};
@@ -10,25 +10,27 @@ pub enum Solver {
     /// Non-negative least squares: a monotone model, which has an inverse.
     #[default]
     Nnls,
-    /// Plain least squares, the chapter's; of all solutions that of smallest norm. Weights of either
-    /// sign, which a material with a butterfly loop needs; as a rule without an inverse.
+    /// Ordinary least squares, as in the chapter. If there are several solutions, the one of
+    /// smallest norm. The weights can have either sign, which a material with a butterfly loop
+    /// needs. Such a model usually has no inverse.
     Ols,
 }
 
-/// Where the operators stand before the first sample of each recording.
+/// State of the operators before the first sample of each recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Start {
-    /// All off, as after the lowest input.
+    /// All operators off, as after the lowest input.
     #[default]
     Off,
-    /// All on, as after the highest input.
+    /// All operators on, as after the highest input.
     On,
-    /// Not known: what the operators that the input has not reached yet contribute is estimated with the weights.
+    /// Unknown: the initial states of operators that the first sample does not determine are
+    /// estimated together with the weights.
     Unknown,
 }
 
-/// How a model was obtained; it goes into the model file.
+/// How a model was obtained, as stored in the model file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FitSummary {
@@ -36,38 +38,39 @@ pub struct FitSummary {
     pub solver: Solver,
     /// Strength of the smoothness.
     pub smooth: f64,
-    /// Where the operators were taken to stand before each recording.
+    /// State of the operators that was assumed before each recording.
     pub start: Start,
-    /// Operators that the first sample of a recording leaves open: on or off there by `start` alone.
+    /// Number of operators whose state the first sample of a recording does not determine. Only
+    /// `start` decides it.
     pub open_at_start: usize,
-    /// Samples fitted.
+    /// Number of samples fitted.
     pub samples: usize,
-    /// Root mean squared error over them, in the output's unit.
+    /// Root mean squared error over these samples, in the output's unit.
     pub rmse: f64,
     /// Largest absolute error, in the output's unit.
     pub max_abs: f64,
     /// `rmse` in percent of the measured range.
     pub nrmse_percent: f64,
-    /// Weights that are not zero.
+    /// Number of weights that are not zero.
     pub weights_not_zero: usize,
     /// Whether the data came from a simulated plant.
     pub simulated: bool,
-    /// The file fitted, the first where there were several.
+    /// The file fitted; the first one if there were several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// SHA-256 of its bytes.
+    /// SHA-256 of its bytes, in hexadecimal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
-    /// The other files fitted with it.
+    /// The other files fitted together with it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub other_files: Vec<String>,
     /// How smoothness and levels were chosen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<super::Validation>,
-    /// What the data say, and what not.
+    /// How well the data determine the weights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub confidence: Option<Confidence>,
-    /// What else a model file says of its fit.
+    /// All other entries of the model file under `fit`.
     #[serde(flatten)]
     pub other: std::collections::BTreeMap<String, serde_json::Value>,
 }

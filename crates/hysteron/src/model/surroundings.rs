@@ -1,4 +1,5 @@
-//! The output of an actuator for what it is driven with: through its thermal body, under its load, with its band.
+//! Simulates any model, together with the series that it may need besides its input: the time, for
+//! a thermal body, and the load. Also computes the band around that output.
 
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -7,18 +8,19 @@ use crate::model::body::needs_time;
 use crate::remedy::{Remedy, Setting};
 use std::borrow::Cow;
 
-/// What goes with the samples of an input, each series as long as it.
+/// The series that accompany an input. Each is as long as the input.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Surroundings<'a> {
-    /// Time in seconds, which a model with a thermal body needs.
+    /// Time in seconds; needed by a model with a thermal body.
     pub time: Option<&'a [f64]>,
-    /// The load, which a model that depends on one needs.
+    /// The load; needed by a model that depends on one.
     pub load: Option<&'a [f64]>,
 }
 
 impl Model {
-    /// The outputs for `input`, from every operator off, whatever the model is made of: an input that drives a thermal
-    /// body goes through it, and a load is followed. For a plain model the same as [`Model::simulate`].
+    /// The outputs for `input`, from every operator off, for any model. The input passes through
+    /// the thermal body, if there is one, and the load is taken into account. For a plain model
+    /// this equals [`Model::simulate`].
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Surroundings};
@@ -32,8 +34,11 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// As [`Model::run`]; [`Error::Thermal`] for a model with a thermal body without time, and for times that go back;
-    /// [`Error::Fit`] for a model that depends on a load without it, and the other way round.
+    /// - As [`Model::run`].
+    /// - [`Error::Thermal`] for a model with a thermal body without time, and for times that go
+    ///   back.
+    /// - [`Error::Fit`] for a model that depends on a load without a load, and for a load with a
+    ///   model that has none.
     pub fn simulate_in(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
         self.at(&self.seen(input, surroundings)?, surroundings)
     }
@@ -41,7 +46,7 @@ impl Model {
     /// The lower and the upper end of the 95 % band around [`Model::simulate_in`].
     ///
     /// # Errors
-    /// As [`Model::simulate_in`]; [`Error::Fit`] for a model that does not say how certain it is.
+    /// As [`Model::simulate_in`]; [`Error::Fit`] for a model without a band.
     pub fn band_in(
         &self,
         input: &[f64],
@@ -59,7 +64,7 @@ impl Model {
         Ok(ends(&output, &half))
     }
 
-    /// The input as the operators see it.
+    /// The input as the operators see it: behind the thermal body.
     fn seen<'i>(&self, input: &'i [f64], around: Surroundings<'_>) -> Result<Cow<'i, [f64]>> {
         let Some(body) = &self.thermal else {
             return Ok(Cow::Borrowed(input));

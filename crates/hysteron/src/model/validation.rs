@@ -1,8 +1,8 @@
-//! The record of a cross-validation, as it stands in the model file.
+//! The record of a cross-validation in the model file.
 
 use serde::{Deserialize, Serialize};
 
-/// The error of one candidate on what was left out.
+/// The cross-validation error of one candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Number of levels.
@@ -13,24 +13,26 @@ pub struct Score {
     pub rmse: f64,
 }
 
-/// What a cross-validation found.
+/// The result of a cross-validation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
-    /// Groups of branches that were left out in turn.
+    /// Number of folds: groups of branches that were left out in turn.
     pub folds: usize,
-    /// Whether whole branches were left out: with fewer than six, parts of them.
+    /// Whether whole branches were left out. With fewer than six branches, parts of branches were
+    /// left out.
     pub whole_branches: bool,
-    /// The error left out of the candidate chosen, in the output's unit.
+    /// Cross-validation error of the candidate that was chosen, in the output's unit.
     pub rmse: f64,
-    /// The same in percent of the measured range.
+    /// The same error in percent of the measured range.
     pub nrmse_percent: f64,
-    /// All candidates.
+    /// The errors of all candidates.
     pub scores: Vec<Score>,
 }
 
 impl Validation {
-    /// The scores as a table: the numbers of levels and the strengths of the smoothness tried, each ascending, and for
-    /// each number of levels the error at each strength, `None` where it was not tried.
+    /// The scores as a table: the numbers of levels tried and the strengths of the smoothness
+    /// tried, each ascending, then one row per number of levels with the error at each strength.
+    /// `None` for a combination that was not tried.
     #[must_use]
     pub fn table(&self) -> (Vec<usize>, Vec<f64>, Vec<Vec<Option<f64>>>) {
         let mut levels: Vec<usize> = self.scores.iter().map(|score| score.levels).collect();

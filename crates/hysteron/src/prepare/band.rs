@@ -1,16 +1,19 @@
-//! A dead band for reversals, without lag.
+//! The dead band for reversals of the input. It removes reversals that are noise, without a time
+//! lag.
 //!
-//! Noise on the input makes turning points that never were, and each of them moves operators. A reversal counts only when it goes
-//! beyond a band; between two that count, the input is made monotone: half-way between the largest value so far and the
-//! smallest still to come.
+//! Noise on the input causes false turning points, and each of them moves operators. A reversal
+//! counts only if it is larger than the dead band. Between two reversals that count, the input is
+//! made monotone: each value becomes the mean of the largest value so far and the smallest value
+//! still to come (on a rising branch).
 
 use super::noise::resolution;
 use crate::series::Turning;
 use hysteron_core::Direction;
 
-/// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by more than half the band.
-pub(super) fn settle(values: &mut [f64], band: f64) {
-    let mut turning = Turning::new(band);
+/// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by
+/// more than half the dead band.
+pub(super) fn settle(values: &mut [f64], dead_band: f64) {
+    let mut turning = Turning::new(dead_band);
     let turns: Vec<(usize, Direction)> = values.iter().filter_map(|&v| turning.push(v)).collect();
     let ends = turns.iter().skip(1).map(|(n, _)| *n);
     let ends: Vec<usize> = ends.chain(values.len().checked_sub(1)).collect();
@@ -23,7 +26,8 @@ pub(super) fn settle(values: &mut [f64], band: f64) {
     }
 }
 
-/// The mean of the running extreme from the front, by `ahead`, and of that from the back, by `behind`.
+/// Replaces each value by the mean of two running extremes: from the front with `ahead`, from the
+/// back with `behind`.
 fn monotone(branch: &mut [f64], ahead: fn(f64, f64) -> f64, behind: fn(f64, f64) -> f64) {
     let mut from_back = branch.to_vec();
     for n in (1..from_back.len()).rev() {
@@ -41,16 +45,17 @@ fn monotone(branch: &mut [f64], ahead: fn(f64, f64) -> f64, behind: fn(f64, f64)
     }
 }
 
-/// The smallest step of a reading, and a hair more, for the difference of two readings is rounded.
+/// The smallest step of a reading, plus a margin for the rounding of the difference of two
+/// readings.
 pub(super) fn resolution_with_rounding(values: &[f64]) -> f64 {
     resolution(values) * (1.0 + 1e-9)
 }
 
-/// How many times the series turns, by however little.
+/// Number of reversals of the series, of any size.
 pub(super) fn reversals(values: &[f64]) -> usize {
     let mut turning = Turning::new(0.0);
     let turns = values.iter().filter_map(|&v| turning.push(v)).count();
-    turns.saturating_sub(1) // the start is no reversal
+    turns.saturating_sub(1) // the start is not a reversal
 }
 
 #[cfg(test)]

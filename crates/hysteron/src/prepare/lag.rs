@@ -1,7 +1,8 @@
-//! The lag of the input's sensor.
+//! Removes the lag of the input's sensor, and estimates its time constant.
 //!
-//! A thermocouple behind the wire follows it as `τ dT/dt + T = T_wire`. With `τ` known the lag is undone; it
-//! can be estimated where the material itself does not depend on rate, for then a static model fits best when the lag is gone.
+//! A thermocouple behind the wire follows it as `τ dT/dt + T = T_wire`. With a known `τ` the lag
+//! can be undone. `τ` can be estimated if the material itself does not depend on rate, because then
+//! a static model fits best without lag.
 
 use crate::error::{Error, Result};
 use crate::identify::{FitOptions, fit_weights};
@@ -9,20 +10,21 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::filter::low_pass;
 
-/// Levels of the models that compare lags: enough to tell loops apart, few enough to be fitted forty times.
+/// Number of levels of the models that compare lags: enough to resolve the loops, and few enough to
+/// fit forty models.
 const LEVELS: usize = 12;
 
-/// The longest lag tried, as a part of the duration.
+/// The longest lag tried, as a share of the duration.
 const LONGEST: f64 = 0.05;
-/// Lags of the first search, from the time between samples to the longest.
+/// Number of lags in the first search, from the time between samples to the longest.
 const TRIED: usize = 12;
-/// Steps of the second: each narrows the interval to 0.618 of itself.
+/// Number of steps of the second search. Each narrows the interval to 0.618 of its length.
 const NARROWED: usize = 10;
 
-/// The model's error has to fall by this part of itself, or the lag is not taken for one.
+/// A lag is accepted only if it reduces the model's error by at least this share.
 pub(super) const WORTHWHILE: f64 = 0.1;
 
-/// What a search for the lag found.
+/// The result of a search for the lag.
 pub(super) struct Estimate {
     /// The lag of the best fit, s.
     pub(super) tau: f64,
@@ -32,10 +34,12 @@ pub(super) struct Estimate {
     pub(super) rmse_after: f64,
 }
 
-/// The input before a sensor of time constant `tau` (s), from readings at every `step` (s).
+/// The input in front of a sensor with the time constant `tau` (s), from readings at every `step`
+/// (s).
 ///
-/// `x + τ dx/dt`, with the derivative of the zero-phase low-passed input: cut off at `1/τ`, where the sensor leaves a sixth of the
-/// signal, so that noise grows about three times and not without bound.
+/// `x + τ dx/dt`, with the derivative of the zero-phase low-passed input. The cut-off is `1/τ`,
+/// where the sensor passes a sixth of the signal. So noise grows about three times, and not without
+/// bound.
 pub(super) fn undo(values: &[f64], step: f64, tau: f64) -> Result<Vec<f64>> {
     let (rate, cutoff) = (1.0 / step, 1.0 / tau);
     let smooth = match cutoff < 0.45 * rate {
@@ -50,14 +54,16 @@ pub(super) fn undo(values: &[f64], step: f64, tau: f64) -> Result<Vec<f64>> {
     Ok((0..).zip(values).map(|(n, x)| x + tau * slope(n)).collect())
 }
 
-/// By how many times white noise below `cutoff` (cycles a sample; 0.5 for all of it) grows when a lag is undone.
+/// The factor by which white noise grows when a lag is undone. The noise is limited to frequencies
+/// below `cutoff` (cycles per sample; 0.5 for all frequencies).
 pub(super) fn growth(step: f64, tau: f64, cutoff: f64) -> f64 {
     let edge = (cutoff / step).min(1.0 / tau);
-    // The mean of (2π f τ)² up to the edge is a third of that at the edge.
+    // The mean of (2π f τ)² up to the cut-off is a third of its value there.
     (1.0 + (std::f64::consts::TAU * tau * edge).powi(2) / 3.0).sqrt()
 }
 
-/// The lag whose undoing lets a static model fit best: tried on a grid of ratios, then narrowed by golden section (Kiefer 1953).
+/// The lag that gives the best fit of a static model. It is found on a logarithmic grid, then
+/// narrowed by golden section search (Kiefer 1953).
 pub(super) fn estimate(
     recording: &Recording,
     step: f64,
@@ -123,7 +129,7 @@ fn rmse(recording: &Recording, progress: Progress<'_>) -> Result<f64> {
     model
         .fit
         .map(|fit| fit.rmse)
-        .ok_or_else(|| Error::Preparation("a fit did not say how it went".into()))
+        .ok_or_else(|| Error::Preparation("a fit returned no summary".into()))
 }
 
 #[cfg(test)]
@@ -144,7 +150,7 @@ mod tests {
             let errors = a.iter().zip(&truth).skip(200).map(|(a, b)| (a - b).abs());
             errors.take(3600).fold(0.0, f64::max)
         };
-        // ω τ = 0.2: the reading is off by 0.2 of the amplitude, the filter at 1/τ by (ωτ/2π)⁴.
+        // ω τ = 0.2: the reading is wrong by 0.2 of the amplitude, the filter at 1/τ by (ωτ/2π)⁴.
         assert!(largest(&read) > 5.0);
         assert!(largest(&undone) < 0.05, "{}", largest(&undone));
     }
@@ -155,7 +161,8 @@ mod tests {
         let mut recording = two_rates(step);
         recording.input = behind_sensor(&recording.input, step, tau);
         let found = estimate(&recording, step, Progress::NONE).unwrap();
-        // Grid and golden section end within 1 %; the filter of the derivative and 12 levels cost more.
+        // Grid and golden section are within 1 %. The filter of the derivative and 12 levels add
+        // more error.
         assert!((found.tau / tau - 1.0).abs() < 0.15, "{}", found.tau);
         assert!(found.rmse_after < 0.5 * found.rmse_before);
     }

@@ -1,4 +1,9 @@
-//! From a recording as it was measured to one that a model can be identified from.
+//! Preparation: turns a recording as measured into one that a model can be identified from.
+//!
+//! `spikes` and `sign` repair single samples. `resample` makes equal time steps. `noise` estimates
+//! the noise and `smooth` the low-pass that removes it. `lag` undoes a sensor's lag. `band` removes
+//! false reversals of the input. `rate` tests whether the material depends on rate. `report`
+//! records what was done.
 
 mod band;
 mod lag;
@@ -30,35 +35,42 @@ use crate::series::range;
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Step {
-    /// What follows from the data.
+    /// Use the value that follows from the data.
     #[default]
     Auto,
-    /// Nothing.
+    /// Skip the step.
     Off,
-    /// What is given.
+    /// Use this value.
     Value(f64),
 }
 
 /// The steps of [`prepare`], in their order.
 ///
-/// | field | default | value | by default |
+/// | field | default | value | unit |
 /// | --- | --- | --- | --- |
-/// | `spikes` | auto | how many median absolute deviations make a spike, above 0 | 4; lost signs are given back first |
-/// | `resample` | auto | time between samples, s, above 0 | the median step, only where time is irregular and a filter needs it |
-/// | `low_pass` | auto | cut-off of both series, above 0 and below half the sampling rate; Hz, without time cycles a sample | for each series, that at which what is taken away is as large as the noise; none where that is below 0.05 % of the range |
-/// | `lag` | off | time constant of the input's sensor, s, above 0 | `Auto`: that with which a static model fits best, if it fits 10 % better; right only where the material does not depend on rate |
-/// | `dead_band` | auto | reversals of the input up to this are noise, in its unit, from 0 | as far as noise reaches in so many samples, `2√(2 ln n) σ` |
+/// | `spikes` | auto | above 0 | median absolute deviations |
+/// | `resample` | auto | above 0 | s |
+/// | `low_pass` | auto | above 0, below half the sampling rate | Hz; without time cycles/sample |
+/// | `lag` | off | above 0 | s |
+/// | `dead_band` | auto | 0 or more | unit of the input |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrepareOptions {
-    /// Lost signs and isolated spikes.
+    /// Repair of lost signs, then removal of isolated spikes. The value is the number of deviations
+    /// from which on a sample is a spike. Auto: 4.
     pub spikes: Step,
-    /// Samples at equal steps of time.
+    /// Resampling to equal time steps of this length. Auto: the median step, and only if the time
+    /// is irregular and a filter needs equal steps.
     pub resample: Step,
-    /// Zero-phase low-pass.
+    /// Zero-phase low-pass filter; the value is the cut-off for both series. Auto: for each series,
+    /// the cut-off that removes as much as the noise. No filter if the noise is below 0.05 % of the
+    /// range.
     pub low_pass: Step,
-    /// Lag of the input's sensor.
+    /// Compensation of the lag of the input's sensor; the value is its time constant. Auto: the
+    /// time constant that gives the best fit of a static model, if that fit is 10 % better. This is
+    /// valid only if the material does not depend on rate.
     pub lag: Step,
-    /// Dead band for reversals of the input.
+    /// Dead band: reversals of the input up to this are noise. Auto: the largest reversal that
+    /// noise causes in this number of samples, `2√(2 ln n) σ`.
     pub dead_band: Step,
 }
 
@@ -72,7 +84,7 @@ impl Default for PrepareOptions {
 }
 
 impl PrepareOptions {
-    /// Every step the same.
+    /// The same choice for every step.
     #[must_use]
     pub fn all(step: Step) -> Self {
         Self {
@@ -103,32 +115,39 @@ impl PrepareOptions {
         }
         match self.dead_band {
             Step::Value(band) if !(band.is_finite() && band >= 0.0) => Err(Error::Preparation(
-                format!("the dead band must be a number from zero on, not {band}"),
+                format!("the dead band must be zero or above, not {band}"),
             )),
             _ => Ok(()),
         }
     }
 }
 
-/// Prepares a recording for [`crate::fit`]: restores lost signs and removes spikes, resamples and smooths where noise asks for it, undoes a sensor's lag
-/// if told to, and takes false reversals from the input. Says what it did.
+/// Prepares a recording for [`crate::Fit`] and reports what was done. It restores lost signs,
+/// removes spikes, resamples and smooths if the noise requires it, undoes a sensor's lag on
+/// request, and removes false reversals of the input.
 ///
-/// A clean recording comes through unchanged, a prepared one almost so. All series of the result have the same length, which only resampling changes.
+/// A clean recording is not changed. Preparing a prepared recording changes almost nothing. All
+/// series of the result have the same length; only resampling changes it.
 ///
 /// ```
-/// use hysteron::{PrepareOptions, Recording, prepare};
+/// use hysteron::{PrepareOptions, Progress, Recording, prepare};
 /// let mut input: Vec<f64> = (0..300).map(|n| 40.0 * (f64::from(n) * 0.05).sin()).collect();
 /// let output = input.iter().map(|t| 0.5 * t).collect();
 /// input[100] = 0.0; // a reading that was lost
-/// let (prepared, report) = prepare(&Recording::new(input, output)?, &PrepareOptions::default(), Progress::NONE)?;
+/// let recording = Recording::new(input, output)?;
+/// let (prepared, report) = prepare(&recording, &PrepareOptions::default(), Progress::NONE)?;
 /// assert_eq!(report.spikes.map(|spikes| spikes.input.first), Some(vec![101])); // counted from 1
 /// assert!((prepared.input[100] + 38.36).abs() < 0.1);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Recording`] for a recording that cannot be worked with; [`Error::Preparation`] for a value outside the table of [`PrepareOptions`], or a
-/// lag or a step without time; [`Error::Filter`] for a cut-off that does not fit the samples; those of [`crate::fit`] where a lag is estimated.
+/// - [`Error::Recording`] for an invalid recording.
+/// - [`Error::Preparation`] for a value outside the table of [`PrepareOptions`], and for a lag or a
+///   time step without time.
+/// - [`Error::Filter`] for a cut-off that does not fit the samples.
+/// - As [`crate::Fit::run`], if a lag is estimated.
+/// - The error that `progress` returns.
 pub fn prepare(
     recording: &Recording,
     options: &PrepareOptions,
@@ -163,7 +182,7 @@ pub fn prepare(
     let input_cutoff = input_filter.map(|filter| filter.cutoff * step.unwrap_or(1.0));
     let lag = undo_lag(&mut work, options.lag, step, progress)?;
 
-    // What is left of the noise on the input.
+    // Noise that remains on the input after filtering.
     let mut left = sigma[0] * input_cutoff.map_or(1.0, smooth::let_through);
     let undone = lag.as_ref().and_then(|lag| lag.undone);
     if let (Some(tau), Some(step)) = (undone, step) {
@@ -204,7 +223,7 @@ fn remove_spikes(work: &mut Recording, step: Step) -> Option<Spikes> {
     })
 }
 
-/// Returns the step that was taken, if any was.
+/// Returns the time step if the recording was resampled.
 fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64>> {
     let taken = match (step, &work.time) {
         (Step::Value(_), None) => {
@@ -216,7 +235,8 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
             let duration = time[time.len() - 1] - time[0];
             if step > duration {
                 return Err(Error::Preparation(format!(
-                    "a step of {step} s is longer than the recording, {duration} s: take a shorter one"
+                    "a step of {step} s is longer than the recording, {duration} s: \
+                     take a shorter one"
                 )));
             }
             step
@@ -228,7 +248,7 @@ fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64
         _ => return Ok(None),
     };
     if taken <= 0.0 {
-        return Ok(None); // time stands still throughout
+        return Ok(None); // the time never advances
     }
     resample::resample(work, taken)?;
     Ok(Some(taken))
@@ -300,7 +320,8 @@ fn undo_lag(
     Ok(Some(report))
 }
 
-/// `left` is the standard deviation of the noise that is left on the input; `as_read` says that its values are still those of the meter.
+/// `left` is the standard deviation of the noise that remains on the input. `as_read` is true if
+/// the values are still those of the meter.
 fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<Option<DeadBand>> {
     let size = match how {
         Step::Off => return Ok(None),
@@ -308,15 +329,16 @@ fn settle(work: &mut Recording, how: Step, left: f64, as_read: bool) -> Result<O
             let (low, high) = range(&work.input);
             if size >= high - low {
                 return Err(Error::Preparation(format!(
-                    "a dead band of {size} takes the whole range of the input, {low} to {high}: take a smaller one"
+                    "a dead band of {size} covers the whole range of the input, {low} to {high}: \
+                     take a smaller one"
                 )));
             }
             size
         }
         Step::Auto => {
-            // How far the largest of n Gaussian values reaches (Donoho & Johnstone 1994), to both sides.
+            // The largest of n Gaussian values (Donoho & Johnstone 1994), on both sides.
             let reach = 2.0 * (2.0 * (work.len() as f64).ln()).sqrt() * left;
-            // A meter that flickers between two readings has not turned.
+            // Flicker of a meter between two neighbouring readings is not a reversal.
             let (low, high) = range(&work.input);
             let flicker = band::resolution_with_rounding(&work.input);
             match as_read && flicker <= NOISE * (high - low) {

@@ -1,18 +1,22 @@
-//! How much noise a series has, and how finely it was read.
+//! Estimates the white noise of a series, and the resolution of its readings.
 
 /// Orders of the differences that are tried.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
-/// Fewer differences than this say nothing.
+/// With fewer differences than this there is no estimate.
 const FEWEST: usize = 8;
 /// Standard deviation of a Gaussian variable over the median of its absolute value.
 const SIGMA_PER_MEDIAN: f64 = 1.4826;
 
-/// The standard deviation of the white noise on `values`, in their unit; 0 for fewer than ten samples.
+/// The standard deviation of the white noise on `values`, in their unit. 0 for fewer than ten
+/// samples.
 ///
-/// The median of the absolute differences of order `k`, over `√C(2k, k)`, by which such a difference enlarges white noise. Noise
-/// gives the same at every order from 2 to 6, a smooth signal less with each: so the smallest is taken. (Differences of second order:
-/// Gasser, Sroka & Jennen-Steinmetz 1986; of higher order: Hall, Kay & Titterington 1990.) It is blind to noise
-/// that is slow, and on a series that mostly stands still it is 0.
+/// The estimate is the median of the absolute differences of order `k`, over `√C(2k, k)`, the
+/// factor by which such a difference amplifies white noise. White noise gives the same at every
+/// order from 2 to 6. A smooth signal gives less at each higher order. So the smallest estimate is
+/// taken. (Differences of second order: Gasser, Sroka & Jennen-Steinmetz 1986; of higher order:
+/// Hall, Kay & Titterington 1990.)
+///
+/// Slow noise is not detected. For a series that is mostly constant the estimate is 0.
 ///
 /// ```
 /// // Every other sample 0.1 too high: a standard deviation of 0.05, though no Gaussian one.
@@ -24,7 +28,7 @@ const SIGMA_PER_MEDIAN: f64 = 1.4826;
 #[must_use]
 pub fn noise(values: &[f64]) -> f64 {
     let mut differences = values.to_vec();
-    // C(2k, k), from one order to the next
+    // C(2k, k), from one order to the next.
     let mut gain = 1.0;
     let mut smallest: Option<f64> = None;
     for order in 1..=*ORDERS.end() {
@@ -47,8 +51,8 @@ pub(super) fn deviation_of(residuals: impl Iterator<Item = f64>) -> f64 {
     SIGMA_PER_MEDIAN * median_of(residuals.map(f64::abs).collect())
 }
 
-/// The smallest distance between two different values: the resolution of a reading that is shown in steps; 0 where
-/// there is but one value.
+/// The smallest distance between two different values: the resolution of a reading with a fixed
+/// step. 0 if there is only one value.
 pub(super) fn resolution(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -57,7 +61,7 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
     steps.reduce(f64::min).unwrap_or(0.0)
 }
 
-/// The middle value, the mean of both where there are two; 0 of nothing.
+/// The median, with the mean of the two middle values for an even count; 0 for no values.
 pub(super) fn median_of(mut values: Vec<f64>) -> f64 {
     let Some(middle) = values.len().checked_sub(1).map(|last| last.div_ceil(2)) else {
         return 0.0;
@@ -86,8 +90,8 @@ mod tests {
             let signal = (0..count).map(|n| 10.0 * (n as f64 * 0.01).sin());
             let noisy: Vec<f64> = signal.zip(white).map(|(s, e)| s + sigma * e).collect();
             let found = noise(&noisy) / sigma;
-            // The median of n absolute values is known to 1.17/√n, 2 %, of itself; differences that overlap and the smallest
-            // of five orders make it three times as much.
+            // The median of n absolute values has an error of 1.17/√n, 2 %. Overlapping differences
+            // and taking the smallest of five orders make it three times as much.
             assert!((found - 1.0).abs() < 0.06, "{found} of {sigma}");
         }
     }

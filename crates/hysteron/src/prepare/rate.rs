@@ -1,9 +1,12 @@
-//! Does the material depend on rate?
+//! Tests whether the material depends on the rate of the input.
 //!
-//! Hysteresis as modelled here does not: run the input faster and the loops stay, for only the path of the
-//! input counts, not the clock (Visintin 1994). So what a static model leaves over is explained twice by what lags behind input and modelled output:
-//! once with time as the clock, once with the length of the path that the input has gone. A residual that time explains and the path does
-//! not comes from rate; one that both explain alike comes from a plane that is too coarse or a start that is not known.
+//! The hysteresis models here are rate-independent: only the path of the input counts, not its
+//! speed (Visintin 1994). So the test explains the residual of a static model twice, by first-order
+//! lags of input and modelled output. The first time the lags are over time, the second time over
+//! the length of the path that the input has travelled.
+//!
+//! If time explains the residual and the path does not, it comes from rate. If both explain it
+//! equally, it comes from a plane that is too coarse or an unknown start.
 
 use super::{PrepareOptions, Step, prepare};
 use crate::error::Result;
@@ -14,21 +17,21 @@ use crate::series::NOISE;
 use crate::series::range;
 use serde::Serialize;
 
-/// Time constants tried on either clock, from the mean step to a tenth of the whole.
+/// Number of time constants tried, from the mean step to a tenth of the whole length.
 const CONSTANTS: usize = 12;
 
-/// Fewer samples than this say nothing.
+/// With fewer samples than this there is no result.
 const FEWEST: usize = 20;
 
 /// How much the output depends on the rate of the input, beyond what a static model can follow.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RateDependence {
-    /// Root mean square of what rate alone explains, in percent of the output's range:
+    /// Root mean square of the residual that only rate explains, in percent of the output's range:
     /// `nrmse_percent · √(r2_time − r2_path)`.
     pub percent: f64,
-    /// R² of what a static model leaves, explained by lags in time.
+    /// R² of the static model's residual, explained by lags in time.
     pub r2_time: f64,
-    /// The same with the path of the input for time.
+    /// R² of the same residual, explained by lags over the path of the input.
     pub r2_path: f64,
     /// The time constant that explains most, s.
     pub time_constant: f64,
@@ -37,23 +40,25 @@ pub struct RateDependence {
 }
 
 impl RateDependence {
-    /// Above this, in percent of the range, a static model errs by rate more than noise would make it: [`NOISE`].
+    /// Above this share of the range, in percent, the error from rate is larger than noise:
+    /// [`NOISE`].
     pub const THRESHOLD: f64 = 100.0 * NOISE;
 
-    /// Whether to warn.
+    /// Whether the dependence on rate is large enough for a warning.
     #[must_use]
     pub fn is_material(&self) -> bool {
         self.percent > Self::THRESHOLD
     }
 }
 
-/// How much the recording, without its spikes, depends on rate; `None` without time, with fewer than 20 samples, or where time
-/// stands still.
+/// How much the recording, without its spikes, depends on rate. `None` without time, with fewer
+/// than 20 samples, or if time does not advance.
 ///
 /// ```
 /// use hysteron::{Recording, rate_dependence};
 /// let input: Vec<f64> = (0..600).map(|n| 50.0 - 30.0 * (f64::from(n * n) * 1e-4).cos()).collect();
-/// let output = input.iter().scan(20.0_f64, |y, x| { *y = y.clamp(x - 2.0, x + 2.0); Some(*y) }).collect();
+/// let mut y = 20.0_f64;
+/// let output = input.iter().map(|x| { y = y.clamp(x - 2.0, x + 2.0); y }).collect();
 /// let mut recording = Recording::new(input, output)?;
 /// recording.time = Some((0..600).map(f64::from).collect());
 /// let rate = rate_dependence(&recording)?.unwrap();
@@ -62,9 +67,9 @@ impl RateDependence {
 /// ```
 ///
 /// # Errors
-/// As [`fit`].
+/// As [`Fit::run`].
 pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> {
-    // A reading that dropped out is fast as well, but no rate of the material's.
+    // A spike changes fast as well, but this is not a property of the material.
     let without_spikes = PrepareOptions {
         spikes: Step::Auto,
         ..PrepareOptions::all(Step::Off)
@@ -104,8 +109,8 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
     }))
 }
 
-/// The largest R², over time constants on `clock`, of `residual` against what first-order lags of the two series are behind by;
-/// and that constant.
+/// The largest R² of `residual`, explained by how far the two series are ahead of their first-order
+/// lags on `clock`; and the time constant for it.
 fn explained(residual: &[f64], series: [&Vec<f64>; 2], clock: &[f64]) -> (f64, f64) {
     let total = clock[clock.len() - 1] - clock[0];
     let shortest = total / clock.len() as f64;
@@ -123,7 +128,8 @@ fn explained(residual: &[f64], series: [&Vec<f64>; 2], clock: &[f64]) -> (f64, f
     )
 }
 
-/// How far a first-order lag of time constant `tau` is behind: for short ones, `τ dx/dt`.
+/// The difference between a series and its first-order lag of time constant `tau`; for a short one,
+/// `τ dx/dt`.
 fn behind(values: &[f64], clock: &[f64], tau: f64) -> Vec<f64> {
     let mut lagging = values[0];
     let mut last = clock[0];
@@ -141,14 +147,15 @@ fn centred(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The part of the variance of `y` that the best combination of `a` and `b` explains, all of mean zero.
+/// The share of the variance of `y` that the best combination of `a` and `b` explains. All have
+/// mean zero.
 fn r_squared(y: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let dot = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
     let (aa, yy) = (dot(a, a), dot(y, y));
     if yy <= 0.0 {
         return 0.0;
     }
-    // Gram-Schmidt: first along a, then along what b adds to it.
+    // Gram-Schmidt: first along a, then along the part of b that is orthogonal to a.
     let along = if aa > 0.0 { dot(a, b) / aa } else { 0.0 };
     let rest: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - along * a).collect();
     let first = if aa > 0.0 {
@@ -157,7 +164,7 @@ fn r_squared(y: &[f64], a: &[f64], b: &[f64]) -> f64 {
         0.0
     };
     let (bb, rr) = (dot(b, b), dot(&rest, &rest));
-    // What is left of b by rounding says nothing.
+    // If the orthogonal part of b is only rounding, ignore it.
     let second = if rr > 1e-12 * bb {
         dot(&rest, y).powi(2) / rr
     } else {

@@ -1,26 +1,28 @@
-//! What a preparation did.
+//! The report of a preparation: what each step did.
 
 use serde::Serialize;
 
-/// How many places are named.
+/// Number of repaired samples that are listed.
 const NAMED: usize = 10;
 
-/// What [`crate::prepare`] did, step by step; `None` for a step that was off, or for resampling that was not needed.
+/// What [`crate::prepare()`] did, step by step. `None` for a step that was off, or for resampling
+/// that was not needed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preparation {
-    /// Samples of the recording as it came.
+    /// Number of samples before.
     pub samples_before: usize,
-    /// Samples of the result.
+    /// Number of samples after.
     pub samples: usize,
-    /// Standard deviation of the white noise on the input, without spikes, in its unit: see [`crate::noise`].
+    /// Standard deviation of the white noise on the input after spikes were removed, in its unit;
+    /// see [`crate::noise`].
     pub input_noise: f64,
-    /// The same of the output.
+    /// Standard deviation of the white noise on the output after spikes were removed, in its unit.
     pub output_noise: f64,
-    /// Lost signs and isolated spikes.
+    /// Repaired signs and removed spikes.
     pub spikes: Option<Spikes>,
-    /// The time between samples that was taken, s.
+    /// The time between samples after resampling, s.
     pub resampled: Option<f64>,
-    /// The low-pass.
+    /// The low-pass filter.
     pub low_pass: Option<LowPass>,
     /// The sensor's lag.
     pub lag: Option<SensorLag>,
@@ -28,30 +30,31 @@ pub struct Preparation {
     pub dead_band: Option<DeadBand>,
 }
 
-/// Lost signs and isolated spikes.
+/// Repaired signs and removed spikes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spikes {
-    /// How many median absolute deviations from its neighbours make a spike.
+    /// A sample is a spike if it is more than this many median absolute deviations from its
+    /// neighbours.
     pub deviations: f64,
-    /// Those of the input.
+    /// Repairs of the input.
     pub input: Repairs,
-    /// Those of the output.
+    /// Repairs of the output.
     pub output: Repairs,
 }
 
 /// Repaired samples of one series.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Repairs {
-    /// Samples that were given their sign back.
+    /// Number of samples whose sign was restored.
     pub signs: usize,
-    /// Samples that were replaced by the line between their neighbours.
+    /// Number of samples that were replaced by linear interpolation between their neighbours.
     pub spikes: usize,
-    /// The first ten of both, counted from 1 in the recording as it came.
+    /// The first ten of both, counted from 1 in the recording before the preparation.
     pub first: Vec<usize>,
 }
 
 impl Repairs {
-    /// From places counted from 0.
+    /// From indices counted from 0.
     pub(super) fn new(signs: &[usize], spikes: &[usize]) -> Self {
         let mut first: Vec<usize> = signs.iter().chain(spikes).map(|n| n + 1).collect();
         first.sort_unstable();
@@ -64,48 +67,48 @@ impl Repairs {
     }
 }
 
-/// The zero-phase low-pass.
+/// The zero-phase low-pass filter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LowPass {
-    /// That of the input; `None` where there was too little noise to ask for one.
+    /// Filter of the input; `None` if there was too little noise.
     pub input: Option<Smoothed>,
-    /// That of the output.
+    /// Filter of the output; `None` if there was too little noise.
     pub output: Option<Smoothed>,
-    /// Whether the cut-offs are in Hz; otherwise they are in cycles a sample.
+    /// Whether the cut-offs are in Hz; otherwise they are in cycles per sample.
     pub in_hertz: bool,
 }
 
-/// The low-pass of one series.
+/// The low-pass filter of one series.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Smoothed {
-    /// Where its gain is ½.
+    /// The frequency at which its gain is ½.
     pub cutoff: f64,
-    /// Root mean square of what it took away, in the unit of the series.
+    /// Root mean square of the part removed, in the unit of the series.
     pub removed: f64,
 }
 
 /// The lag of the input's sensor.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SensorLag {
-    /// The time constant that was undone, s; `None` where none was worth while.
+    /// The time constant that was undone, s; `None` if no lag improved the fit enough.
     pub undone: Option<f64>,
-    /// The time constant with which a static model fits best, s, where it was looked for.
+    /// The time constant that gives the best fit of a static model, s, if it was estimated.
     pub estimate: Option<f64>,
     /// RMSE of the static model before, in the output's unit.
     pub rmse_before: Option<f64>,
-    /// RMSE with the estimated lag undone.
+    /// RMSE of the static model with the estimated lag undone, in the output's unit.
     pub rmse_after: Option<f64>,
 }
 
 /// The dead band for reversals of the input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeadBand {
-    /// Reversals up to this are none, in the input's unit.
+    /// Largest reversal that is taken as noise, in the input's unit.
     pub size: f64,
-    /// Reversals that went.
+    /// Number of reversals removed.
     pub false_reversals: usize,
-    /// Samples that were moved.
+    /// Number of samples changed.
     pub samples_changed: usize,
-    /// The furthest that one was, in the input's unit.
+    /// Largest change of a sample, in the input's unit.
     pub largest_change: f64,
 }

@@ -1,38 +1,42 @@
-//! Samples at equal steps of time.
+//! Resamples a recording to equal time steps.
 
 use super::noise::median_of;
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 
-/// Steps that differ from the median by up to this part of it are equal: a filter does not notice.
+/// Steps that differ from the median by at most this share of it count as equal. A filter is not
+/// affected.
 const JITTER: f64 = 0.1;
 
-/// By default, the samples grow at most this many times in number, however short the median step is.
+/// By default the number of samples grows at most by this factor, however short the median step is.
 const GROWTH: f64 = 4.0;
 
-/// More samples than this are a mistyped step.
+/// A step that gives more samples than this is taken as a typing error.
 const MOST_SAMPLES: f64 = 1e8;
 
-/// The median step, or the average one where that is so much longer that the samples would grow beyond all bounds.
+/// The median step. If it would make far too many samples, the average step instead.
 pub(super) fn step_of(time: &[f64]) -> f64 {
     let duration = time[time.len() - 1] - time[0];
     let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
     median.max(duration / (GROWTH * time.len() as f64))
 }
 
-/// That the median step does not make the samples many times as many: over a long pause there is nothing to filter.
+/// Checks that the median step does not multiply the number of samples: over a long pause there is
+/// nothing to filter.
 pub(super) fn fits(time: &[f64]) -> Result<()> {
     let duration = time[time.len() - 1] - time[0];
     let median = median_of(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let samples = duration / median;
     if median > 0.0 && samples > GROWTH * time.len() as f64 {
         let what = format!(
-            "the time has gaps: at the median step of {median} s there would be {samples:.0} samples instead of {}",
+            "the time has gaps: at the median step of {median} s there would be {samples:.0} \
+             samples instead of {}",
             time.len()
         );
         let remedy = Remedy::new(
-            "cut the recording at its gaps (several files make one experiment), or leave the filter out ({}) or give a step ({})",
+            "cut the recording at its gaps (several files make one experiment), or turn the filter \
+             off ({}), or give a step ({})",
             [Setting::word("low-pass", "off"), Setting::any("resample")],
         );
         return Err(Error::Preparation(what).remedied(remedy));
@@ -47,7 +51,8 @@ pub(super) fn irregular(time: &[f64]) -> bool {
     steps().any(|step| (step - median).abs() > JITTER * median)
 }
 
-/// All series at every `step` from the first sample on, on straight lines between samples. Of samples at the same time the last counts.
+/// Interpolates all series linearly at every `step` from the first sample on. Of several samples at
+/// the same time the last one counts.
 pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
     let Some(old) = recording.time.take() else {
         return Ok(());
@@ -59,7 +64,7 @@ pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
             "a step of {step} s makes {steps:.1e} samples: take a longer one"
         )));
     }
-    // The last sample stays, though rounding puts it a hair before the end.
+    // The last sample stays, although rounding may place it slightly before the end.
     let count = (steps * (1.0 + 1e-12) + 1e-9).floor() as usize + 1;
     let time: Vec<f64> = (0..count).map(|n| start + step * n as f64).collect();
     let at_new_times = |values: &[f64]| -> Vec<f64> {
@@ -123,7 +128,7 @@ mod tests {
             .map(|n| (f64::from(n) * 0.000135 * 1e6).round() / 1e6)
             .collect();
         assert!(!irregular(&rounded));
-        // Half the samples at the time of the one before: the median step is zero.
+        // Half of the samples have the time of the sample before, so the median step is zero.
         let repeated: Vec<f64> = (0..900).map(|n| f64::from(n / 3)).collect();
         assert!(irregular(&repeated));
         assert!(step_of(&repeated) > 0.05);

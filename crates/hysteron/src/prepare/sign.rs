@@ -1,24 +1,27 @@
-//! Readings that lost their sign.
+//! Restores the sign of readings that lost it.
 //!
-//! A meter that shows the magnitude only, as some do just below zero, turns −3 into 3. Over a run of such samples the series
-//! jumps where the run begins or ends, unless it begins at zero. Of all ways of giving signs back the one is taken that makes the path of the
-//! series shortest, each run costing as much as a jump that is beyond doubt (a shortest path through two states a
-//! sample: Viterbi 1967).
+//! Some meters show only the magnitude just below zero and turn −3 into 3. A run of such samples
+//! makes the series jump where the run begins and ends, unless it does so at zero. Among all ways
+//! to restore signs, this module takes the one with the shortest path of the series. Each run costs
+//! as much as a jump that is certainly not noise. This is a shortest path with two states per
+//! sample (Viterbi 1967).
 
 use super::noise::{median_of, noise};
 use crate::series::range;
 
-/// Signs are lost near zero: only readings up to this part of the range are turned.
+/// Signs are lost near zero: only readings up to this share of the range are changed.
 const NEAR_ZERO: f64 = 0.1;
 
-/// What one run costs: this part of the range, or more.
+/// The cost of one run is at least this share of the range,
 const LEAST_GAIN: f64 = 0.04;
-/// Or this many standard deviations of the noise, which crosses zero too: turning one sample saves at most four times its magnitude.
+/// and at least this many standard deviations of the noise, because noise crosses zero too:
+/// changing the sign of one sample saves at most four times its magnitude,
 const NOISES: f64 = 16.0;
-/// Or this many usual steps: a series that goes from one side to the other in single steps does so by itself.
+/// and at least this many usual steps, because some series go from one side to the other in single
+/// steps.
 const STEPS: f64 = 3.0;
 
-/// Gives back lost signs, in place, and returns which samples were turned.
+/// Restores lost signs, in place, and returns the indices of the samples changed.
 pub(super) fn restore(values: &mut [f64]) -> Vec<usize> {
     let (low, high) = range(values);
     if low >= 0.0 || high <= 0.0 {
@@ -31,7 +34,8 @@ pub(super) fn restore(values: &mut [f64]) -> Vec<usize> {
         .max(STEPS * usual);
     let turnable = |x: f64| x >= 0.0 && x <= NEAR_ZERO * (high - low);
 
-    // Cost of the best path that ends with the sample as it is, and turned; and whether that path came from a turned one.
+    // For the sample as it is and with its sign changed: cost of the best path that ends there, and
+    // whether the sample before has its sign changed on that path.
     let mut cost = [0.0, f64::INFINITY];
     let mut came_turned: Vec<[bool; 2]> = Vec::with_capacity(values.len());
     let mut last = None;
@@ -80,7 +84,7 @@ mod tests {
     fn single_readings_and_runs_get_their_sign_back() {
         let truth = cooling_and_heating();
         let below_zero = |n: &usize| (-8.0..0.0).contains(&truth[*n]);
-        // The first three passes from zero down to −8 whole, of the others every third sample.
+        // All samples of the first three passes from zero down to −8, then every third sample.
         let lost: Vec<usize> = (0..truth.len())
             .filter(below_zero)
             .filter(|n| *n < 1000 || n % 3 == 0 && truth[*n] < -3.0)
@@ -93,7 +97,7 @@ mod tests {
         let turned = restore(&mut read);
         assert!(turned.iter().all(|n| lost.contains(n)));
         for (n, (found, truth)) in read.iter().zip(&truth).enumerate() {
-            // Within a step of zero, 0.5, either sign continues the series as well.
+            // Within a step of zero, 0.5, either sign continues the series equally well.
             let unsure = if truth.abs() < 0.5 { 1.0 } else { 0.0 };
             assert!((found - truth).abs() <= unsure, "{n}: {found} for {truth}");
         }
@@ -108,7 +112,7 @@ mod tests {
             .map(|(x, e)| x + e)
             .collect();
         let noise_alone = gaussian(5, 4000);
-        // Demagnetisation in single steps, a square wave, a touch of zero.
+        // Demagnetisation in single steps, a square wave, and a series that touches zero.
         let alternating: Vec<f64> = (0..100)
             .map(|n| f64::from(100 - n) * if n % 2 == 0 { 1.0 } else { -1.0 })
             .collect();

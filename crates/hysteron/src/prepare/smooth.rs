@@ -1,22 +1,23 @@
-//! How far to smooth: as far as the noise goes.
+//! Chooses the cut-off of the low-pass filter, so that it removes as much as the noise.
 //!
-//! The discrepancy principle (Morozov 1966): what is taken away must be as large as the noise, for more would be signal and
-//! less would leave noise.
+//! This is the discrepancy principle (Morozov 1966): the part removed must be as large as the
+//! noise. Removing more would remove signal, and removing less would leave noise.
 
 use crate::error::Result;
 use crate::series::filter::low_pass;
 
-/// Noise below this part of the range is left alone. A model of 20 levels misses clean recordings by about 0.5 % of
-/// the range at best; a tenth of that, added in squares, changes such an error by a half per cent of itself.
+/// Noise below this share of the range is not filtered. A model of 20 levels has an error of at
+/// least 0.5 % of the range on clean recordings. A tenth of that, added in squares, increases the
+/// error by half a percent of itself.
 pub(super) const NEGLIGIBLE: f64 = 0.0005;
 
-/// The highest cut-off, in cycles a sample; half a cycle is the most there can be.
+/// The highest cut-off, in cycles per sample. The limit is half a cycle.
 const HIGHEST: f64 = 0.45;
-/// The lowest, in cycles over the whole series.
+/// The lowest cut-off, in cycles over the whole series.
 const LOWEST: f64 = 4.0;
 
-/// The cut-off, in cycles a sample, at which the root mean square of what the filter takes away is `sigma`;
-/// `None` where even the highest takes away more.
+/// The cut-off, in cycles per sample, at which the root mean square of the part removed is `sigma`.
+/// `None` if even the highest cut-off removes more.
 pub(super) fn cutoff_for(values: &[f64], sigma: f64) -> Result<Option<f64>> {
     let removed = |cutoff: f64| -> Result<f64> {
         let smooth = low_pass(values, 1.0, cutoff)?;
@@ -26,7 +27,7 @@ pub(super) fn cutoff_for(values: &[f64], sigma: f64) -> Result<Option<f64>> {
     if low >= high || removed(high)? >= sigma {
         return Ok(None);
     }
-    // To a hundredth of itself.
+    // To an accuracy of 1 %.
     while high / low > 1.01 {
         let middle = (low * high).sqrt();
         if removed(middle)? > sigma {
@@ -38,10 +39,10 @@ pub(super) fn cutoff_for(values: &[f64], sigma: f64) -> Result<Option<f64>> {
     Ok(Some(high))
 }
 
-/// The part of white noise of standard deviation 1 that the filter lets through, as a standard deviation.
+/// Standard deviation after the filter of white noise with standard deviation 1.
 ///
-/// Its gain at `f` is `1/(1 + (f/f_c)⁴)` (twice a Butterworth filter of order 2), the square of which has the area `3π f_c / 8√2`; white noise
-/// fills half a cycle a sample.
+/// The gain at `f` is `1/(1 + (f/f_c)⁴)` (a Butterworth filter of order 2, applied twice). Its
+/// square has the area `3π f_c / 8√2`. White noise fills half a cycle per sample.
 pub(super) fn let_through(cutoff: f64) -> f64 {
     let area = 3.0 * std::f64::consts::PI / (8.0 * std::f64::consts::SQRT_2) * cutoff;
     (area / 0.5).min(1.0).sqrt()
@@ -69,10 +70,11 @@ mod tests {
             .collect();
         let cutoff = cutoff_for(&noisy, 0.05).unwrap().unwrap();
         let smooth = low_pass(&noisy, 1.0, cutoff).unwrap();
-        // The cut-off is found to a hundredth.
+        // The cut-off is accurate to 1 %.
         assert!((distance(&noisy, &smooth) / 0.05 - 1.0).abs() < 0.01);
-        // What is taken away is nearly all noise: of 3000 samples it is known to 1.3 %, and what the signal may lose beside
-        // it is √(2 · 0.013) = 0.16 of it; as much noise stays, and both may be somewhat unlucky.
+        // The part removed is nearly all noise. Over 3000 samples its size is known to 1.3 %, so up
+        // to √(2 · 0.013) = 0.16 of it may be signal. About as much noise remains, and both may be
+        // larger by chance.
         assert!(distance(&truth, &smooth) < 0.3 * 0.05, "cut-off {cutoff}");
     }
 
@@ -82,7 +84,8 @@ mod tests {
         for cutoff in [0.02, 0.1, 0.2] {
             let left = low_pass(&white, 1.0, cutoff).unwrap();
             let ratio = distance(&left, &vec![0.0; left.len()]) / let_through(cutoff);
-            // Some 2·0.02·20,000 independent values at the lowest cut-off: 3 % of the deviation, twice that allowed.
+            // About 2·0.02·20,000 independent values at the lowest cut-off give 3 % of the
+            // deviation. Twice that is allowed.
             assert!((ratio - 1.0).abs() < 0.06, "{cutoff}: {ratio}");
         }
     }

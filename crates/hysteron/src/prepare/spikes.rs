@@ -1,29 +1,33 @@
-//! Isolated spikes.
+//! Removes isolated spikes.
 //!
-//! Hampel's identifier (1974): a sample is an outlier if it is further from the median of its neighbours than so many of their median
-//! absolute deviations. Recordings of actuators go up and down steeply, so the median gives way to a robust line through
-//! the neighbours (Theil 1950, Sen 1968), and a spike has to stick out beyond the samples on both sides of it: a step or a turn of the
-//! signal does not.
+//! Hampel's identifier (1974): a sample is an outlier if it is more than a given number of median
+//! absolute deviations from the median of its neighbours. Recordings of actuators rise and fall
+//! steeply. So the median is replaced by a robust line through the neighbours (Theil 1950, Sen
+//! 1968). A spike must also be beyond the samples on both sides of it, which a step or a turning
+//! point of the signal is not.
 
 use super::noise::{deviation_of, median_of, noise};
 use crate::series::range;
 
-/// Neighbours on either side. Eight of them outvote three samples in a row that are wrong.
+/// Number of neighbours on either side. Eight in all are enough to outvote three wrong samples in a
+/// row.
 const REACH: usize = 4;
 
-/// Deviations from which on a sample is a spike. Hampel's 3 would take one sample in 400 of Gaussian noise for one; 4, one
-/// in 16,000.
+/// Number of deviations from which on a sample is a spike. Hampel's 3 would remove one sample in
+/// 400 of Gaussian noise, 4 removes one in 16,000.
 pub(super) const DEVIATIONS: f64 = 4.0;
 
-/// A spike below this part of the range is left: less than half the distance between the levels of a plane of 20.
+/// A spike below this share of the range is not removed. It is less than half the distance between
+/// the levels of a plane of 20.
 const SMALLEST: f64 = 0.02;
 
-/// Replaces spikes of more than `deviations` by the line between their neighbours, in place, and returns which samples were replaced.
+/// Replaces spikes of more than `deviations` by linear interpolation between their neighbours, in
+/// place. Returns the indices of the samples replaced.
 pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     let (low, high) = range(values);
     let sigma = noise(values);
     let floor = SMALLEST * (high - low);
-    // For each sample how far it is off, with its sign, if that is too far.
+    // For each sample its signed distance from the line, if that is too large.
     let mut off = vec![None; values.len()];
     for (place, window) in off[REACH.min(values.len())..]
         .iter_mut()
@@ -42,7 +46,8 @@ pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
         };
         let same = |place: &&Option<(f64, f64)>| place.is_some_and(|(other, _)| other == side);
         let end = start + off[start..].iter().take_while(same).count();
-        // The first and last REACH samples are never off, so there is one on either side.
+        // The first and last REACH samples are never spikes, so there is a neighbour on either
+        // side.
         let (before, after) = (values[start - 1], values[end]);
         let outer = if side > 0.0 {
             before.max(after)
@@ -63,7 +68,8 @@ pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     replaced
 }
 
-/// How far the sample in the middle is from the line through the others, and their deviation from it.
+/// The distance of the middle sample from the line through the others, and their deviation from
+/// that line.
 fn against_neighbours(window: &[f64]) -> (f64, f64) {
     let others = || {
         (0..window.len())
@@ -103,11 +109,11 @@ mod tests {
             spiked[n] = 0.0;
         }
         spiked[300] = 140.0;
-        // At 300 and 800 there are turning points of the triangle itself.
+        // The triangle itself has turning points at 300 and 800.
         let mut repaired = spiked.clone();
         assert_eq!(remove(&mut repaired, DEVIATIONS), at);
         for n in at {
-            // The line between neighbours, at a corner one step of 1 away from the truth, and the noise.
+            // Linear interpolation at a corner has an error of one step, 1, plus the noise.
             assert!((repaired[n] - clean[n]).abs() < 2.0, "{n}: {}", repaired[n]);
         }
         let untouched = |n: &usize| !at.contains(n);

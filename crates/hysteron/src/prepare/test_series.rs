@@ -1,4 +1,4 @@
-//! Series with known truth.
+//! Series with known truth, for tests.
 
 use crate::recording::Recording;
 use rand_chacha::ChaCha8Rng;
@@ -13,7 +13,8 @@ pub(super) fn gaussian(seed: u64, count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// What a first-order sensor reads that starts settled: exact for a truth that is linear between samples.
+/// The readings of a first-order sensor that starts settled; exact for a truth that is linear
+/// between samples.
 pub(super) fn behind_sensor(truth: &[f64], step: f64, tau: f64) -> Vec<f64> {
     let keep = (-step / tau).exp();
     let mut last = truth[0];
@@ -27,7 +28,8 @@ pub(super) fn behind_sensor(truth: &[f64], step: f64, tau: f64) -> Vec<f64> {
     readings.collect()
 }
 
-/// A rate-independent actuator (ten plays side by side) through the same loops, fast and then four times as slow.
+/// A rate-independent actuator (ten play operators in parallel) through the same loops, first fast
+/// and then at a quarter of the speed.
 pub(super) fn two_rates(step: f64) -> Recording {
     let targets = [80.0, 25.0, 60.0, 35.0, 75.0, 20.0];
     let mut input = vec![20.0_f64];

@@ -1,4 +1,4 @@
-//! The steps together.
+//! Tests of all steps together.
 
 use super::test_series::{gaussian, two_rates};
 use super::*;
@@ -48,7 +48,7 @@ fn noise_goes_and_its_reversals_with_it() {
     let noisy = with_noise(&truth, 0.3, 0.3);
     let (prepared, _) = prepare(&noisy, &PrepareOptions::default(), Progress::NONE).unwrap();
     let error = |r: &Recording| smooth::distance(&r.input, &truth.input);
-    // White noise over many samples a branch: the filter leaves a fraction.
+    // White noise over many samples per branch: the filter leaves only a fraction.
     assert!(
         error(&prepared) < 0.5 * error(&noisy),
         "{}",
@@ -59,7 +59,7 @@ fn noise_goes_and_its_reversals_with_it() {
         band::reversals(&truth.input)
     );
     assert!(band::reversals(&noisy.input) > 200);
-    // And once more: next to nothing is left to do.
+    // A second preparation changes next to nothing.
     let (again, _) = prepare(&prepared, &PrepareOptions::default(), Progress::NONE).unwrap();
     let first = smooth::distance(&noisy.input, &prepared.input);
     assert!(smooth::distance(&prepared.input, &again.input) < 0.05 * first);

@@ -1,6 +1,7 @@
-//! Gaps in time.
+//! Gaps in the time of a recording.
 
-/// The median time step, and the samples that come more than three times as long after the one before.
+/// The median time step, and the indices of samples that follow a gap: a step of more than three
+/// times the median.
 pub(crate) fn gaps(time: &[f64]) -> Option<(f64, Vec<usize>)> {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;

@@ -1,4 +1,7 @@
-//! Recordings: an input and the output it caused.
+//! Recordings: the input and the output of one experiment, with time and load if they are known.
+//!
+//! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
+//! time.
 
 mod gaps;
 
@@ -8,12 +11,12 @@ use crate::error::{Error, Result};
 use crate::series::range;
 use std::path::PathBuf;
 
-/// A physical quantity: its name and, where known, its unit.
+/// A physical quantity: its name and, if known, its unit.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Quantity {
     /// Name, for example `temperature`.
     pub name: String,
-    /// Unit, for example `degC`; `None` where the source does not say.
+    /// Unit, for example `degC`; `None` if it is not known.
     pub unit: Option<String>,
 }
 
@@ -73,48 +76,48 @@ impl Quantity {
 pub enum Origin {
     /// Read from a file.
     Measured,
-    /// Produced by a simulated plant; every surface must say so.
+    /// Produced by a simulated plant. Every surface must show this.
     Simulated,
 }
 
 /// The file that a recording was read from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
-    /// Its path as given.
+    /// Its path, as given by the caller.
     pub path: PathBuf,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
 }
 
-/// Values beyond this have squares that a sum of squares cannot hold.
+/// Largest absolute value that is accepted. A sum of squares of larger values could overflow.
 pub(crate) const LARGEST: f64 = 1e140;
 
-/// An input and the output it caused, sample by sample.
+/// The input and the output of an experiment, sample by sample.
 ///
-/// All samples are finite and both have the same length, at least one.
+/// All samples are finite. All series have the same length, at least one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Time of each sample in seconds, not decreasing, where the source has one.
+    /// Time of each sample in seconds, never decreasing; `None` if the source has no time.
     pub time: Option<Vec<f64>>,
     /// Input samples.
     pub input: Vec<f64>,
     /// Output samples, as many as `input`.
     pub output: Vec<f64>,
-    /// What the input is.
+    /// Name and unit of the input.
     pub input_quantity: Quantity,
-    /// What the output is.
+    /// Name and unit of the output.
     pub output_quantity: Quantity,
-    /// The load (or stress) at each sample, as many as `input`, where the recording has it.
+    /// The load (or stress) at each sample, as many as `input`, if it was recorded.
     pub load: Option<Vec<f64>>,
-    /// What the load is; of no meaning without it.
+    /// Name and unit of the load; without meaning if there is no load.
     pub load_quantity: Quantity,
-    /// Measured or simulated.
+    /// Whether the data are measured or simulated.
     pub origin: Origin,
-    /// The file it was read from.
+    /// The file that it was read from, if any.
     pub source: Option<Source>,
 }
 
-/// One recording where several could be.
+/// Lets one recording be passed where a slice of recordings is expected.
 impl AsRef<[Recording]> for Recording {
     fn as_ref(&self) -> &[Recording] {
         std::slice::from_ref(self)
@@ -122,7 +125,7 @@ impl AsRef<[Recording]> for Recording {
 }
 
 impl Recording {
-    /// A recording of two series of the same length.
+    /// A recording of two series of the same length, without time or load.
     ///
     /// # Errors
     /// [`Error::Recording`] where the lengths differ, there is no sample, or one is not finite.
@@ -142,13 +145,13 @@ impl Recording {
         Ok(recording)
     }
 
-    /// How many samples there are.
+    /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         self.input.len()
     }
 
-    /// Never true for a recording made by this crate; here because `len` is.
+    /// Whether there are no samples. Never true for a recording made by this crate.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.input.is_empty()
@@ -160,11 +163,11 @@ impl Recording {
         (range(&self.input), range(&self.output))
     }
 
-    /// That the samples can be worked with, as every function of this crate that takes a recording demands.
+    /// Checks the samples. Every function of this crate that takes a recording makes this check.
     ///
     /// # Errors
-    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite, or
-    /// time goes back.
+    /// [`Error::Recording`] where series differ in length, there is no sample, one is not finite,
+    /// or time goes back.
     pub fn check(&self) -> Result<()> {
         let fault = |column: &str, problem: String| Error::Recording {
             path: self.source.as_ref().map(|source| source.path.clone()),

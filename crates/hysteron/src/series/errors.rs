@@ -1,23 +1,24 @@
-//! Error measures.
+//! Error measures between a measured and a modelled series.
 
 use crate::series::spread::range;
 use serde::Serialize;
 
-/// How far a modelled series is from a measured one.
+/// The differences between a measured and a modelled series.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Errors {
     /// Root of the mean squared difference, in the unit of the series.
     pub rmse: f64,
     /// Largest absolute difference, in the unit of the series.
     pub max_abs: f64,
-    /// `rmse` in percent of the measured range of the whole series; `None` where that range is zero.
+    /// `rmse` in percent of the measured range of the whole series; `None` where that range is
+    /// zero.
     pub nrmse_percent: Option<f64>,
-    /// How many samples were compared.
+    /// Number of samples compared.
     pub samples: usize,
 }
 
 impl Errors {
-    /// Compares the samples at which `which` is true; `None` if there are none.
+    /// Compares the samples for which `which` is true. `None` if there are none.
     ///
     /// ```
     /// use hysteron::Errors;

@@ -1,13 +1,16 @@
-//! Low-pass filtering without phase shift, for recordings that are at hand as a whole.
+//! Low-pass filter without phase shift, for series that are complete before filtering starts.
 //!
-//! A Butterworth filter of order 2 runs over the samples forward and then backward (the method of `filtfilt` in SciPy and MATLAB): the
-//! delays cancel and the attenuation doubles, so the gain is 1 at rest and ½ at the cut-off. At both ends the
-//! samples are continued by reflection through the end point, which continues a ramp as a ramp, and each pass sets out
-//! settled on its first value.
+//! A Butterworth filter of order 2 runs over the samples forward and then backward (the method of
+//! `filtfilt` in SciPy and MATLAB). The two delays cancel and the attenuation doubles. So the gain
+//! is 1 at zero frequency and ½ at the cut-off.
+//!
+//! At both ends the series is extended by point reflection through its end sample, so that a ramp
+//! continues as a ramp. Each pass starts in the steady state for its first value.
 
 use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, Type};
 
-/// Reflected samples at each end, in periods of the cut-off; the settling has died down to 10⁻¹⁰ of itself over them.
+/// Number of reflected samples at each end, in periods of the cut-off. Over this length the
+/// transient decays to 10⁻¹⁰ of its size.
 const PADDING_PERIODS: f64 = 6.0;
 
 /// Why the low-pass filter refused its arguments.
@@ -19,10 +22,11 @@ pub enum FilterError {
     SampleRate(f64),
     /// The cut-off is not between 0 and half the sampling rate.
     #[error(
-        "the cut-off is {cutoff} Hz, but must lie above 0 and below half the sampling rate, {nyquist} Hz"
+        "the cut-off is {cutoff} Hz, but must lie above 0 and below half the sampling rate, \
+         {nyquist} Hz"
     )]
     Cutoff {
-        /// What was given, Hz.
+        /// The cut-off given, Hz.
         cutoff: f64,
         /// Half the sampling rate, Hz.
         nyquist: f64,
@@ -35,12 +39,13 @@ pub enum FilterError {
     NotFinite(usize),
 }
 
-/// `samples`, taken at `sample_rate` (Hz), without what moves faster than `cutoff` (Hz, below half the sampling rate).
+/// Removes everything faster than `cutoff` (Hz, below half the sampling rate) from `samples`, taken
+/// at `sample_rate` (Hz).
 ///
-/// The result has as many samples. A constant and a straight line come through unchanged.
+/// The result has as many samples as the input. Constants and straight lines are not changed.
 ///
 /// # Errors
-/// [`FilterError`] tells which argument does not fit.
+/// [`FilterError`] names the argument that does not fit.
 ///
 /// ```
 /// let ramp_and_ripple = |n: usize| n as f64 * 0.1 + if n % 2 == 0 { 0.5 } else { -0.5 };
@@ -73,12 +78,12 @@ pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f6
 
     let padding = (PADDING_PERIODS * sample_rate / cutoff).ceil() as usize;
     let padding = padding.min(samples.len() - 1);
-    // Only the distance from the line through the end points is filtered: in a recording too short for the settling to die
-    // down, a ramp would be bent otherwise.
+    // Filter only the distance from the line through the end points. Otherwise a ramp would be bent
+    // in a recording that is too short for the transient to decay.
     let rise = (last - first) / (samples.len() - 1) as f64;
     let line = |n: usize| first + rise * n as f64;
     let level: Vec<f64> = (0..).zip(samples).map(|(n, x)| x - line(n)).collect();
-    // Both end points lie on the line: reflection through them changes the sign.
+    // Both end points lie on the line, so reflection through them only changes the sign.
     let before = level[1..=padding].iter().rev().map(|x| -x);
     let after = level[level.len() - 1 - padding..level.len() - 1]
         .iter()
@@ -92,8 +97,8 @@ pub fn low_pass(samples: &[f64], sample_rate: f64, cutoff: f64) -> Result<Vec<f6
     Ok((0..).zip(filtered).map(|(n, x)| line(n) + x).collect())
 }
 
-/// One pass of the filter, in place. Its gain at rest is 1, so filtering the distance from the first sample from an empty
-/// state is the same as setting out settled on that sample.
+/// One pass of the filter, in place. The gain is 1 at zero frequency. So filtering the distance
+/// from the first sample, from an empty state, equals starting in the steady state for that sample.
 fn run<'a>(section: Coefficients<f64>, samples: impl Iterator<Item = &'a mut f64>) {
     let mut state = DirectForm2Transposed::<f64>::new(section);
     let mut origin = None;

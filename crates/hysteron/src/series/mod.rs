@@ -1,4 +1,7 @@
-//! Functions over slices of numbers: turning points, filters, ranges, measures of error.
+//! Functions over slices of numbers, without any model.
+//!
+//! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
+//! filter. `errors` compares two series. `spread` gives range, mean and standard deviation.
 
 mod errors;
 pub mod filter;

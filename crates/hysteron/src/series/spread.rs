@@ -1,6 +1,6 @@
-//! Where the values of a series lie.
+//! Range, mean and standard deviation of a series.
 
-/// Smallest and largest of finite values; of none, infinity and minus infinity.
+/// Smallest and largest value of finite `values`. For an empty slice, infinity and minus infinity.
 ///
 /// ```
 /// assert_eq!(hysteron::range(&[1.0, -2.0, 3.0]), (-2.0, 3.0));
@@ -13,7 +13,7 @@ pub fn range(values: &[f64]) -> (f64, f64) {
         .fold(start, |(low, high), &v| (low.min(v), high.max(v)))
 }
 
-/// Mean and standard deviation (of the values themselves, not an estimate); NaN of none.
+/// Mean and standard deviation of `values` (divided by `n`, not `n − 1`). NaN for an empty slice.
 ///
 /// ```
 /// assert_eq!(hysteron::mean_and_deviation(&[1.0, 3.0]), (2.0, 1.0));

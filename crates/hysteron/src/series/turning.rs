@@ -1,20 +1,20 @@
-//! Where a series turns, small wiggles apart.
+//! Turning points of a series, found while small reversals are ignored as noise.
 
 use hysteron_core::Direction;
 
-/// Reversals up to this part of a range are noise: neither counted nor followed by the inverse.
+/// The default tolerance as a share of a range. Smaller reversals are noise: they are not counted,
+/// and the inverse does not follow them.
 pub const NOISE: f64 = 0.01;
 
-/// Reversals of a series that count as noise if nothing else is said: [`NOISE`] of its range; 0 of
-/// an empty one.
+/// The default tolerance of a series: [`NOISE`] times its range; 0 for an empty series.
 #[must_use]
 pub fn usual_tolerance(series: &[f64]) -> f64 {
     let (low, high) = crate::series::spread::range(series);
     NOISE * (high - low).max(0.0)
 }
 
-/// Finds the turning points of a series as it comes: an extreme counts once the series has gone back
-/// from it by more than `tolerance`.
+/// Finds the turning points of a series, sample by sample. An extreme counts as a turning point
+/// once the series has moved back from it by more than `tolerance`.
 ///
 /// ```
 /// use hysteron::{Direction, Turning};
@@ -33,7 +33,7 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// A search that ignores reversals of up to `tolerance`.
+    /// A search that ignores reversals up to `tolerance`.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
@@ -45,8 +45,8 @@ impl Turning {
         }
     }
 
-    /// Takes the next sample. Returns an extreme that is now known, by its index, with the direction
-    /// the series takes from there; the start counts as one.
+    /// Takes the next sample. If it confirms a turning point, returns the index of that point and
+    /// the direction of the series from there. The start of the series counts as a turning point.
     pub fn push(&mut self, y: f64) -> Option<(usize, Direction)> {
         let n = self.count;
         self.count += 1;
@@ -65,13 +65,13 @@ impl Turning {
             return None;
         };
         let first = self.heading.replace(heading).is_none();
-        // The extremes of the new branch are looked for from here on.
+        // The search for the next extreme starts here.
         (self.low, self.high) = ((n, y), (n, y));
         Some((if first { 0 } else { turn }, heading))
     }
 
-    /// The direction of the branch that the series is on, once it is known, and the index of its
-    /// extreme so far: up to there the series is on this branch for certain.
+    /// The direction of the current branch, once it is known, and the index of its extreme so far.
+    /// Up to this index the series is certainly on this branch.
     #[must_use]
     pub fn branch(&self) -> Option<(Direction, usize)> {
         self.heading.map(|heading| match heading {
@@ -81,17 +81,18 @@ impl Turning {
     }
 }
 
-/// For each sample the branch that it lies on, counted from 0. A branch ends where the series turns by more than `tolerance`; the
-/// turning point belongs to the branch before it.
+/// The branch of each sample, counted from 0. A branch ends where the series turns by more than
+/// `tolerance`. The turning point belongs to the branch before it.
 ///
 /// ```
-/// assert_eq!(hysteron::branches(&[0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0], 0.5), [0, 0, 0, 1, 1, 1, 2]);
+/// let series = [0.0, 2.0, 4.0, 3.9, 4.0, 1.0, 3.0];
+/// assert_eq!(hysteron::branches(&series, 0.5), [0, 0, 0, 1, 1, 1, 2]);
 /// ```
 #[must_use]
 pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
     let mut turning = Turning::new(tolerance);
     let turns = series.iter().filter_map(|&x| turning.push(x));
-    // The start counts as a turn, and ends no branch.
+    // The start is reported as a turning point, but it ends no branch.
     let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
     let mut ended = turns.into_iter().peekable();
     let mut branch = 0;
@@ -105,9 +106,12 @@ pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
     (0..series.len()).map(of_sample).collect()
 }
 
-/// The samples of a series that a hysteresis operator still remembers at its end, ascending: from its largest or its smallest, whichever comes
-/// first, the extremes that none after them reach, and the last sample. These alone leave every operator where the whole series leaves
-/// it, from all off or all on (return-point memory: Mayergoyz 2003, section 1.2).
+/// The indices of the samples that hysteresis operators remember at the end of a series, ascending.
+///
+/// The first is the largest or the smallest sample of all, whichever comes first. Then follow, in
+/// turn, the extremes that no later sample reaches. The last sample is always among them. From all
+/// operators off or all on, these samples alone lead to the same operator states as the whole
+/// series (return-point memory: Mayergoyz 2003, section 1.2).
 ///
 /// ```
 /// assert_eq!(hysteron::remembered(&[0.0, 5.0, 2.0, 4.0, 1.0, 3.0, 2.5]), [0, 1, 4, 5, 6]);
@@ -132,11 +136,12 @@ pub fn remembered(series: &[f64]) -> Vec<usize> {
     found
 }
 
-/// For each sample of a series, the direction that the series takes next: up to an extreme and at it,
-/// that of the branch before it, and beyond it that of the branch after it.
+/// For each sample of a series, the direction that the series takes next. An extreme belongs to the
+/// branch before it.
 ///
-/// A sample's direction is known only once the series has moved on, so it comes out some samples
-/// later; of those that wait, at most `capacity`, the oldest comes out without a direction.
+/// The direction of a sample is known only after the series has moved on. So it is returned some
+/// samples later. At most `capacity` samples wait; beyond that, the oldest is returned without a
+/// direction.
 #[derive(Debug, Clone)]
 pub struct Headings {
     turning: Turning,
@@ -145,7 +150,7 @@ pub struct Headings {
 }
 
 impl Headings {
-    /// A look ahead of at most `capacity` samples that ignores reversals of up to `tolerance`.
+    /// Looks at most `capacity` samples ahead and ignores reversals up to `tolerance`.
     #[must_use]
     pub fn new(tolerance: f64, capacity: usize) -> Self {
         Self {
@@ -155,8 +160,8 @@ impl Headings {
         }
     }
 
-    /// Takes the next sample and returns directions of earlier ones, as many as are now known: in
-    /// order, `count` samples for each.
+    /// Takes the next sample and returns the directions that are now known, in order. Each pair is
+    /// a direction and the number of samples that it holds for.
     #[must_use]
     pub fn push(&mut self, y: f64) -> [(Option<Direction>, usize); 2] {
         let before = self.turning.branch().map(|(heading, _)| heading);
@@ -169,7 +174,8 @@ impl Headings {
             Some((heading, extreme)) => (Some(heading), self.release(extreme + 1)),
             None => (None, 0),
         };
-        // Only while the series keeps away from its extreme, so that nothing came out just above.
+        // The queue is full only while the series stays away from its extreme. Then nothing was
+        // released above.
         let waiting = self.turning.count - self.released;
         if waiting > self.capacity {
             result[1] = (None, self.release(self.released + waiting - self.capacity));
@@ -177,7 +183,7 @@ impl Headings {
         result
     }
 
-    /// The directions of the samples still waiting at the end of the series.
+    /// The direction of the samples that still wait at the end of the series, and their number.
     #[must_use]
     pub fn finish(mut self) -> (Option<Direction>, usize) {
         let count = self.release(self.turning.count);
@@ -205,7 +211,7 @@ impl Headings {
     }
 }
 
-/// [`Headings`] of a whole series.
+/// The direction of each sample of a whole series; see [`Headings`].
 #[must_use]
 pub fn headings(series: &[f64], tolerance: f64) -> Vec<Option<Direction>> {
     Headings::new(tolerance, series.len()).all(series)
@@ -227,7 +233,7 @@ mod tests {
         assert_eq!(headings(&[], 0.5), []);
     }
 
-    /// The definition: from an extreme on, look for the next one in the whole series.
+    /// Compares with the definition: from each extreme, look for the next one in the whole series.
     #[test]
     fn turning_points_of_a_long_series() {
         let legs = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0, 4.0, 3.5, 9.0];
@@ -242,7 +248,7 @@ mod tests {
         let mut turning = Turning::new(0.75);
         let found: Vec<_> = series.iter().filter_map(|&y| turning.push(y)).collect();
         let values: Vec<f64> = found.iter().map(|(n, _)| series[*n]).collect();
-        // The wiggle from 4.0 to 3.5 and back is within the band.
+        // The wiggle from 4.0 to 3.5 and back is within the tolerance.
         let expected = [0.0, 9.0, 2.0, 8.0, 1.0, 5.0, 3.0];
         assert_eq!(values.len(), expected.len(), "{values:?}");
         for (value, expected) in values.iter().zip(expected) {
@@ -267,7 +273,7 @@ mod tests {
                 let (mut whole, mut short) = (start.clone(), start);
                 model.run(&mut whole, &series, &mut vec![0.0; length])?;
                 model.run(&mut short, &kept, &mut vec![0.0; kept.len()])?;
-                for (i, j) in (1..=9).flat_map(|j| (1..=j).map(move |i| (i, j))) {
+                for (i, j) in hysteron_core::operators(9) {
                     assert_eq!(whole.gamma(i, j)?, short.gamma(i, j)?, "{series:?}");
                 }
             }
@@ -285,7 +291,8 @@ mod tests {
                 out.extend(std::iter::repeat_n(heading, count));
             }
         }
-        // Three plateau samples wait when the turn is known; the two before them had to go without.
+        // Three samples of the plateau wait when the turning point becomes known. The two before
+        // them were released without a direction.
         let known = [Some(Rising); 3]
             .into_iter()
             .chain([None; 2])

@@ -9,7 +9,7 @@ use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
-use hysteron::{Excitation, Plane, Quantity};
+use hysteron::{Excitation, Plane, Quantity, operators};
 
 const STEM: &str = "excitation-map";
 const WIDTH: f64 = 600.0;
@@ -83,8 +83,7 @@ fn draw(mut sheet: Sheet, plane: &Plane, classes: &[Excitation], input: &Labelle
     let labels = Labels { x: true, y: true };
     let panel = Panel::draw(&mut sheet.canvas, area, alpha, beta, labels);
     let mut cells = Excitation::ALL.map(|class| (class, String::new()));
-    let operators = (1..=plane.levels()).flat_map(|j| (1..=j).map(move |i| (i, j)));
-    for ((i, j), class) in operators.zip(classes) {
+    for ((i, j), class) in operators(plane.levels()).zip(classes) {
         let [x, y] = panel.point(plane.level(i) - half, plane.level(j) + half);
         let width = panel.px(plane.level(i) + half) - x;
         let cell = rect_data(Rect {

@@ -1,4 +1,4 @@
-//! Files written whole or not at all.
+//! Files that appear complete or not at all.
 
 use super::destination::{Claim, Destination, Own, folder_of};
 use super::unfinished::{file_in, finished};
@@ -8,14 +8,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A file that is written beside its place and takes its name when it is whole; dropped before, it
-/// leaves nothing.
+/// A file that is written under a temporary name and gets its real name when it is complete. If it
+/// is dropped before, nothing is left.
 ///
-/// A link is followed, and refused where it leads to no file; what is no regular file, such as a
-/// pipe or `/dev/null`, is written to as it is. The bytes are on the disk before the file takes its
-/// name.
+/// A link is followed; it is refused if it leads to no file. A target that is not a regular file,
+/// such as a pipe or `/dev/null`, is written to directly. The data are flushed to the disk before
+/// the file gets its name.
 pub struct AtomicFile {
-    /// As it was given, for errors.
+    /// The path as given, for error messages.
     path: PathBuf,
     to: Place,
 }
@@ -27,16 +27,18 @@ enum Place {
 
 struct Beside {
     file: NamedTempFile,
-    /// The place, at the end of any links.
+    /// The real path, after following links.
     place: PathBuf,
     claim: Claim,
 }
 
 impl AtomicFile {
-    /// Starts a file at `target`. `own` tells whether a file that is there is ours to replace.
+    /// Opens a file for `target`. `own` decides whether an existing file is ours and may be
+    /// replaced.
     ///
-    /// # Errors [`Error::File`]; its source is of the kind [`io::ErrorKind::AlreadyExists`] where a
-    /// file is kept that is not ours.
+    /// # Errors
+    /// [`Error::File`]. Its source has the kind [`io::ErrorKind::AlreadyExists`] if an existing
+    /// file is not ours and is kept.
     pub fn create<'a>(target: impl Into<Destination<'a>>, own: Own) -> Result<Self> {
         let target = target.into();
         let claim = target.claim(own)?;
@@ -116,10 +118,10 @@ impl Beside {
     }
 }
 
-/// Flushes the names in a folder to the disk, where a system has a way to.
+/// Flushes the names in a folder to the disk, on systems where this is possible.
 ///
-/// The file is in its place by then. So a file system without that way is no reason to report a
-/// failure.
+/// The file already has its name at this point. So a file system that cannot do this is not an
+/// error.
 pub(super) fn sync_folder(folder: &Path) {
     #[cfg(unix)]
     let _ = File::open(folder).and_then(|folder| folder.sync_all());

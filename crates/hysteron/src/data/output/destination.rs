@@ -1,4 +1,4 @@
-//! Where a result goes, and what it may replace there.
+//! The destination of a result, and the files that it may replace.
 
 use crate::error::{Error, Result};
 use std::fs::{File, Metadata};
@@ -6,26 +6,25 @@ use std::io::{self, BufReader, Read};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// How a file that is there is known to be a result of ours of one kind, unchanged as far as that
-/// can be told.
+/// How to recognise that an existing file is ours: a result of hysteron that nobody has changed.
 #[derive(Debug, Clone, Copy)]
 pub enum Own {
-    /// Every result of this kind carries a mark, which the function looks for.
+    /// Every result of this kind carries a mark. The function looks for it.
     Marked(fn(&Path) -> io::Result<bool>),
-    /// Some carry none. A file without a mark is ours where it holds the bytes that are to be
-    /// written.
+    /// Some results of this kind carry no mark. A file without a mark counts as ours if it already
+    /// holds the bytes to be written.
     Unmarked(fn(&Path) -> io::Result<bool>),
 }
 
 impl Own {
-    /// Results that never carry a mark.
+    /// For results that never carry a mark.
     pub const SAME_BYTES: Self = Self::Unmarked(|_| Ok(false));
 }
 
-/// A place for a result, with what it may replace.
+/// The path of a result, and the rules for replacing a file there.
 ///
-/// A path alone, as in `Destination::from(path)`, replaces whatever file is there, as a call of a
-/// library that names a file does.
+/// A path alone, as in `Destination::from(path)`, replaces any existing file. This is the usual
+/// behaviour of library functions that take a path.
 #[derive(Debug, Clone, Copy)]
 pub struct Destination<'a> {
     path: &'a Path,
@@ -44,8 +43,7 @@ impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
 }
 
 impl<'a> Destination<'a> {
-    /// A place whose file is replaced only where it is a result of ours, or with `force` whatever
-    /// it is.
+    /// A path where only a result of ours is replaced, or any file with `force`.
     #[must_use]
     pub fn keeping_foreign(path: &'a Path, force: bool) -> Self {
         Self {
@@ -54,14 +52,14 @@ impl<'a> Destination<'a> {
         }
     }
 
-    /// The files that are read. None of them is replaced, whatever its name here; `-` is standard
-    /// input.
+    /// Names the files that the result is computed from. None of them is replaced, even if `path`
+    /// reaches it under another name. `-` is standard input.
     #[must_use]
     pub fn made_from(self, inputs: &'a [&'a Path]) -> Self {
         Self { inputs, ..self }
     }
 
-    /// The path, as it was given.
+    /// The path as given.
     #[must_use]
     pub fn path(&self) -> &'a Path {
         self.path
@@ -75,8 +73,8 @@ impl<'a> Destination<'a> {
         self.keep_foreign
     }
 
-    /// Refuses a place that can be seen to be wrong before any work: one of the inputs, or a file
-    /// that is not replaced.
+    /// Refuses a wrong destination before any work is done: one of the inputs, or a file that must
+    /// be kept.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -120,13 +118,13 @@ impl<'a> Destination<'a> {
 
 pub(super) const FOREIGN: &str = "this file is not a result of hysteron, or it was changed since";
 
-/// A refusal to replace something. Its kind tells it from other faults, so that a surface can say
-/// how to insist.
+/// The error for a file that must be kept. Its kind differs from other errors, so that a surface
+/// can explain how to force it.
 pub(super) fn foreign(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, what)
 }
 
-/// Whether two paths lead to one regular file. What is no file, such as a pipe, is not opened.
+/// Whether two paths lead to the same regular file. Anything else, such as a pipe, is not opened.
 fn is_same(input: &Path, there: &Path) -> io::Result<bool> {
     if input == Path::new("-") {
         return Ok(same_file::Handle::stdin()? == same_file::Handle::from_path(there)?);
@@ -137,7 +135,7 @@ fn is_same(input: &Path, there: &Path) -> io::Result<bool> {
     }
 }
 
-/// Refuses two results that would be one file.
+/// Refuses two results with the same path.
 ///
 /// # Errors
 /// [`Error::File`] with the second path.
@@ -146,7 +144,7 @@ pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
         let name = path
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());
-        // Where names differ in nothing but case, these systems mean one file.
+        // On these systems, names that differ only in case mean the same file.
         name.map(|name| match cfg!(any(windows, target_os = "macos")) {
             true => name.to_lowercase(),
             false => name,
@@ -167,7 +165,7 @@ pub fn refuse_one_file(first: &Path, second: &Path) -> Result<()> {
     }
 }
 
-/// The folder that a path is in.
+/// The folder that contains a path.
 pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -175,22 +173,23 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// What stood at a place when it was claimed, and so what may be replaced when the result is whole.
+/// What was at the destination when the work began. It decides what may be replaced when the result
+/// is complete.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Claim {
-    /// There was nothing.
+    /// There was no file.
     Nothing,
-    /// A result of ours.
+    /// There was a result of ours.
     Ours(Stamp),
-    /// A file that only the same bytes replace.
+    /// There was a file that may be replaced by the same bytes only.
     Same,
-    /// Anything may be replaced, or it is no regular file.
+    /// Anything may be replaced, or the destination is not a regular file.
     Whatever,
 }
 
 impl Claim {
-    /// Whether `new` may take the place now; what stands there may have changed since it was
-    /// claimed.
+    /// Checks that `new` may take the place now. The file there may have changed since the work
+    /// began.
     pub(super) fn holds(self, new: &Path, place: &Path) -> io::Result<()> {
         let holds = match self {
             Self::Whatever => true,
@@ -208,7 +207,8 @@ impl Claim {
     }
 }
 
-/// Changes with every change of a file, but for one that keeps its length and time.
+/// Identifies the state of a file. It changes with every modification that changes the length or
+/// the time of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Stamp(u64, Option<SystemTime>);
 

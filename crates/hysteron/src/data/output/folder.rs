@@ -1,4 +1,4 @@
-//! Folders written whole or not at all.
+//! Folders that appear complete or not at all.
 
 use super::atomic::sync_folder;
 use super::destination::{Destination, Own, folder_of, foreign};
@@ -12,33 +12,37 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// In the workshop: what is new, and old files until all is done.
+/// Subfolders of the temporary folder: new files, and old files until all is done.
 const NEW: &str = "new";
 const OLD: &str = "old";
 
-/// A folder whose files are written beside its place and appear together; dropped before, it leaves
-/// nothing.
+/// A folder whose files are written under a temporary name and appear together. If it is dropped
+/// before, nothing is left.
 ///
-/// Files of others that are in the folder stay. One that is in the way is refused, unless the
-/// target says otherwise. Where every file of the folder is ours, and it is not where the program
-/// runs, the new folder takes the place of the old one at once. Otherwise one file after the other
-/// does, and a fault brings the old ones back.
+/// Files in the folder that are not ours are kept. If one of them has the name of a new file, the
+/// work is refused, unless the target allows replacing it.
+///
+/// If every file in the folder is ours and the program does not run in the folder, the new folder
+/// replaces the old one in a single step. Otherwise the files are replaced one after the other, and
+/// after an error the old files are restored.
 pub struct AtomicFolder {
     target: PathBuf,
     inputs: Vec<PathBuf>,
     keep_foreign: bool,
     own: Option<Own>,
-    /// The folder, or the first above it that is missing, and what is missing below that one.
+    /// `place` is the folder, or the first missing folder on the way to it. `below` is the rest of
+    /// the path.
     place: PathBuf,
     below: PathBuf,
     workshop: Workshop,
-    /// Relative to the folder.
+    /// Paths relative to the folder.
     files: Vec<PathBuf>,
 }
 
 impl AtomicFolder {
-    /// Starts a folder at `target`; folders above it are made with it. `own` tells which of the
-    /// files there are ours. Without it, a list of digests that is written with the files does.
+    /// Opens a folder for `target`. Missing folders above it are created. `own` decides which of
+    /// the existing files are ours. With `None`, a list of digests decides, which is written
+    /// together with the files.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -79,7 +83,7 @@ impl AtomicFolder {
         })
     }
 
-    /// Refuses files of these names before any work, where they would be refused in the end.
+    /// Refuses files with these names before any work, if they would be refused at the end.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -89,16 +93,16 @@ impl AtomicFolder {
             .try_for_each(|name| self.check(name.as_ref()))
     }
 
-    /// The folder's path, as it was given.
+    /// The path of the folder, as given.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.target
     }
 
-    /// Has a file written, by a function that is told where.
+    /// Lets `write` write one file. The function gets the path to write to.
     ///
     /// # Errors
-    /// What the function returns, with the place that the file was to have; [`Error::File`].
+    /// The error of the function, with the final path of the file; [`Error::File`].
     pub fn file<T>(
         &mut self,
         name: impl AsRef<Path>,
@@ -116,11 +120,11 @@ impl AtomicFolder {
         Ok(written)
     }
 
-    /// Gives the folder and its files their names. Files of ours that are not among the new ones
-    /// are removed.
+    /// Gives the folder and its files their names. Old files of ours that are not among the new
+    /// ones are removed.
     ///
     /// # Errors
-    /// [`Error::File`]; the folder is then as it was.
+    /// [`Error::File`]; then the folder is unchanged.
     pub fn commit(mut self) -> Result<()> {
         if self.own.is_none() {
             self.write_manifests()?;
@@ -169,7 +173,7 @@ impl AtomicFolder {
         Ok(())
     }
 
-    /// Refuses a file that would replace one of others.
+    /// Refuses a file that would replace one that is not ours.
     fn check(&self, name: &Path) -> Result<()> {
         let path = self.target.join(name);
         let refused = |source| self.fault(name, source);
@@ -211,7 +215,7 @@ impl AtomicFolder {
     fn take_places(&self) -> io::Result<()> {
         let new = self.workshop.path().join(NEW);
         sync_tree(&new)?;
-        // A signal that ends the program waits until all have their places.
+        // A signal that ends the program must wait until all files have their names.
         let _unfinished = unfinished();
         let mut moves = Moves::new(self.workshop.path().join(OLD))?;
         if let Err(error) = self.put(&mut moves, &new, &self.place) {
@@ -223,7 +227,7 @@ impl AtomicFolder {
         Ok(())
     }
 
-    /// Puts a new file or folder in its place.
+    /// Moves a new file or folder to its place.
     fn put(&self, moves: &mut Moves, new: &Path, place: &Path) -> io::Result<()> {
         if fs::symlink_metadata(place).is_err() {
             return moves.place(new, place);
@@ -251,8 +255,9 @@ impl AtomicFolder {
     }
 }
 
-/// Beside a folder that may be exchanged for a new one, otherwise in it. In it as well where
-/// nothing can be moved from one to the other, as where a disk is mounted here.
+/// Chooses where the temporary folder is. If the old folder may be exchanged for a new one, it is
+/// beside it. Otherwise it is inside, and also if files cannot be moved between the two (for
+/// example, if a disk is mounted at the folder).
 fn workshop_for(folder: &Path, listed: bool) -> io::Result<Workshop> {
     let exchanged = listed && may_be_exchanged(folder)?;
     let inside = Workshop::create_in(folder)?;
@@ -266,7 +271,7 @@ fn workshop_for(folder: &Path, listed: bool) -> io::Result<Workshop> {
     Ok(inside)
 }
 
-/// The first folder on the way to `path` that is missing, and the rest of the way.
+/// The first missing folder on the way to `path`, and the rest of the way.
 fn first_missing(path: &Path) -> (PathBuf, PathBuf) {
     let missing = path
         .ancestors()
@@ -276,8 +281,8 @@ fn first_missing(path: &Path) -> (PathBuf, PathBuf) {
     (first.to_owned(), rest.to_owned())
 }
 
-/// Whether another folder may take the place of this one: all in it is ours, and no program that
-/// runs in it, as far as this one can know, would find itself in a folder that is gone.
+/// Whether the folder may be exchanged for a new one. Everything in it must be ours, and no program
+/// may run in it (as far as can be known), because its working folder would disappear.
 fn may_be_exchanged(folder: &Path) -> io::Result<bool> {
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
     let runs_here = here.is_ok_and(|here| {
@@ -292,8 +297,8 @@ fn may_be_exchanged(folder: &Path) -> io::Result<bool> {
         && Manifest::owns_all(folder)?)
 }
 
-/// Flushes the names in a folder and in those below it; the files were flushed when they were
-/// written.
+/// Flushes the names in a folder and its subfolders. The files themselves were flushed when they
+/// were written.
 fn sync_tree(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;

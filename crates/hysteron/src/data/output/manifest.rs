@@ -1,7 +1,7 @@
-//! The list of what was written into a folder, with digests: which of its files are ours, and
-//! unchanged.
+//! The list of files that hysteron wrote into a folder, with their digests. It shows which files in
+//! the folder are ours and unchanged.
 //!
-//! `sha256sum -c` reads it as well.
+//! The format can also be read by `sha256sum -c`.
 
 use crate::data::table::file_sha256;
 use std::collections::BTreeMap;
@@ -9,19 +9,20 @@ use std::fmt::Write;
 use std::io;
 use std::path::Path;
 
-/// The name of the list in each folder.
+/// The file name of the list.
 pub(super) const NAME: &str = "hysteron.sha256";
 
 /// The first line of a list.
 const HEAD: &str =
     "# Files of hysteron. As long as one is as listed here, another run may replace it.";
 
-/// Names of files and their digests, of one folder without those below it.
+/// File names and digests of one folder, without its subfolders.
 #[derive(Default)]
 pub(super) struct Manifest(BTreeMap<String, String>);
 
 impl Manifest {
-    /// The list in a folder; empty where there is none, or something else of its name.
+    /// Reads the list of a folder; empty if there is none, or if a file of that name is something
+    /// else.
     pub(super) fn read(folder: &Path) -> Self {
         let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
         Self::parse(&text).unwrap_or_default()
@@ -43,11 +44,11 @@ impl Manifest {
         Ok(())
     }
 
-    /// The list as it stands in the file.
+    /// The text of the list.
     pub(super) fn text(&self) -> String {
         let mut text = format!("{HEAD}\n");
         for (name, digest) in &self.0 {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "{digest}  {name}");
         }
         text
@@ -57,7 +58,8 @@ impl Manifest {
         self.0.keys().map(String::as_str)
     }
 
-    /// Whether a file of the folder is the list itself, or is as listed. A link is not.
+    /// Whether a file of the folder is the list itself, or matches its digest in the list. A link
+    /// does not.
     pub(super) fn owns(&self, folder: &Path, name: &str) -> io::Result<bool> {
         let path = folder.join(name);
         if !std::fs::symlink_metadata(&path)?.is_file() {
@@ -72,8 +74,8 @@ impl Manifest {
         }
     }
 
-    /// Whether a folder holds nothing but files that are ours, and folders of which the same is
-    /// true. An empty folder in it is another's, because we make none.
+    /// Whether a folder contains only files that are ours, and subfolders of the same kind. An
+    /// empty subfolder is not ours, because we make none.
     pub(super) fn owns_all(folder: &Path) -> io::Result<bool> {
         let listed = Self::read(folder);
         for entry in std::fs::read_dir(folder)? {

@@ -1,21 +1,26 @@
-//! Files and folders that appear whole or not at all, and what they may replace.
+//! Writes files and folders that appear complete or not at all, and decides what they may replace.
 //!
-//! One policy for every command. What a command made itself is replaced. Anything else is kept,
-//! unless the user says otherwise. A file that is read is never replaced. How a command knows its
-//! own results:
+//! All commands use the same rule. A file is *ours* if hysteron wrote it as a result and nobody has
+//! changed it since. Such a file is replaced by a new result. Any other file is kept, unless the
+//! user forces it. A file that is an input is never replaced. This is how a file of ours is
+//! recognised:
 //!
-//! | result | it is ours where |
+//! | result | it is ours if |
 //! | --- | --- |
-//! | model | it is, byte for byte, what this library writes for the model in it, and tells of a fit |
-//! | table, CSV | its last columns are those that a command adds, and their numbers are written as here |
+//! | model | it records a fit and has exactly the bytes that this library would write |
+//! | table, CSV | its last columns are those that a command adds, written as we write them |
 //! | table, Parquet | its metadata name this library as the writer |
-//! | folder | each file is as its list of digests says ([`manifest`]) |
-//! | exported C | the digest in its first line is that of the lines below |
-//! | FMU | its description names this program, and no file was added or exchanged |
-//! | anything else | it holds the very bytes that are to be written |
+//! | folder | each file matches its digest in the list ([`manifest`]) |
+//! | exported C | the digest in its first line matches the lines below |
+//! | FMU | its description names this program, and no file was added or replaced |
+//! | anything else | it already holds the bytes that are to be written |
 //!
-//! A CSV file has no room for a mark. So an edit of other columns is not seen, and a table without
-//! columns of its own, such as a prepared recording, is replaced by the same bytes only.
+//! A CSV file has no room for a mark. So changes in its other columns are not detected. A CSV table
+//! without added columns, such as a prepared recording, may be replaced by the same bytes only.
+//!
+//! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
+//! write files and folders under temporary names (`unfinished`) and move them to their place
+//! (`moves`). `table` writes tables; `parquet`, `spool` and `splice` write them as Parquet.
 
 mod atomic;
 mod destination;

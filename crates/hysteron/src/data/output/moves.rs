@@ -1,27 +1,27 @@
-//! Files and folders taking their places, one after the other, so that all of it can be undone.
+//! Moves files and folders to their places, one after the other, so that all moves can be undone.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What was moved so far.
+/// The moves done so far.
 pub(super) struct Moves {
-    /// Where the old files are kept until all is done.
+    /// The folder where old files are kept until all moves are done.
     aside: PathBuf,
     done: Vec<Move>,
 }
 
 enum Move {
-    /// A new file or folder took a place where nothing was.
+    /// A new file or folder was moved to a free place.
     Placed { from: PathBuf, to: PathBuf },
-    /// Two folders changed places.
+    /// Two folders were exchanged.
     Exchanged { one: PathBuf, other: PathBuf },
-    /// The old file of a place is kept aside.
+    /// The old file of a place was stored in `kept`.
     Replaced { kept: PathBuf, place: PathBuf },
 }
 
 impl Moves {
-    /// Old files will be kept in the folder `aside`, which is made.
+    /// Creates the folder `aside`, where old files will be kept.
     pub(super) fn new(aside: PathBuf) -> io::Result<Self> {
         fs::create_dir(&aside)?;
         Ok(Self {
@@ -30,7 +30,7 @@ impl Moves {
         })
     }
 
-    /// Moves a file or folder to where nothing is.
+    /// Moves a file or folder to a free place.
     pub(super) fn place(&mut self, from: &Path, to: &Path) -> io::Result<()> {
         fs::rename(from, to)?;
         self.done.push(Move::Placed {
@@ -40,7 +40,7 @@ impl Moves {
         Ok(())
     }
 
-    /// Puts one folder in the place of another, at once; fails where the system cannot.
+    /// Exchanges two folders in a single step. Fails if the system cannot do this.
     pub(super) fn exchange(&mut self, one: &Path, other: &Path) -> io::Result<()> {
         exchange(one, other)?;
         self.done.push(Move::Exchanged {
@@ -50,19 +50,19 @@ impl Moves {
         Ok(())
     }
 
-    /// Replaces a file by another, at once.
+    /// Replaces a file by another in a single step.
     pub(super) fn replace(&mut self, new: &Path, place: &Path) -> io::Result<()> {
         self.keep(place)?;
         fs::rename(new, place)
     }
 
-    /// Takes a file away.
+    /// Removes a file, which is kept aside.
     pub(super) fn remove(&mut self, place: &Path) -> io::Result<()> {
         self.keep(place)?;
         fs::remove_file(place)
     }
 
-    /// Gives a file a second name, or a copy, aside.
+    /// Keeps the old file aside, by a second name (hard link) or as a copy.
     fn keep(&mut self, place: &Path) -> io::Result<()> {
         let kept = self.aside.join(self.done.len().to_string());
         if fs::hard_link(place, &kept).is_err() {
@@ -75,10 +75,10 @@ impl Moves {
         Ok(())
     }
 
-    /// Brings everything back to where it was, the last first.
+    /// Undoes all moves, the last one first.
     pub(super) fn undo(self) {
         for done in self.done.into_iter().rev() {
-            // The fault that led here is the one to be told of.
+            // Ignore errors here: the error that caused the undo is the one to report.
             let _ = match done {
                 Move::Placed { from, to } => fs::rename(to, from),
                 Move::Exchanged { one, other } => exchange(&one, &other),

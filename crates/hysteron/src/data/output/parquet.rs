@@ -1,4 +1,4 @@
-//! Columns of Parquet files: their types, and a group of their rows.
+//! Writes columns of Parquet files: types, and the cells of a row group.
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
@@ -10,10 +10,10 @@ use std::io;
 use std::io::Write;
 use std::sync::Arc;
 
-/// How the name of the writer begins that our files carry.
+/// Beginning of the writer's name in the metadata of our files.
 pub(super) const PROGRAM: &str = "hysteron ";
 
-/// How our files are written.
+/// The properties of our files.
 pub(super) fn properties() -> WriterPropertiesPtr {
     let properties = WriterProperties::builder()
         .set_created_by(format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION")))
@@ -21,16 +21,16 @@ pub(super) fn properties() -> WriterPropertiesPtr {
     Arc::new(properties.build())
 }
 
-/// What a column holds.
+/// Type of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Numbers,
     Text,
-    /// Text that is not UTF-8, as it stands.
+    /// Bytes that are not UTF-8, stored unchanged.
     Bytes,
 }
 
-/// A column whose cells may be empty.
+/// A column with optional cells.
 pub(super) fn field(name: &str, kind: Kind) -> Result<TypePtr> {
     let (physical, logical) = match kind {
         Kind::Numbers => (Physical::DOUBLE, None),
@@ -43,12 +43,12 @@ pub(super) fn field(name: &str, kind: Kind) -> Result<TypePtr> {
     Ok(Arc::new(field.build()?))
 }
 
-/// The cells of a column in a group of rows.
+/// The cells of a column in a row group.
 pub(super) struct Cells {
     kind: Kind,
     numbers: Vec<f64>,
     texts: Vec<ByteArray>,
-    /// 1 for each cell with a value, 0 for each without.
+    /// 1 for each cell with a value, 0 for each empty cell.
     defined: Vec<i16>,
 }
 
@@ -73,7 +73,7 @@ impl Cells {
             .extend(text.map(|text| ByteArray::from(text.to_vec())));
     }
 
-    /// Writes the cells as the next column of a group, and forgets them.
+    /// Writes the cells as the next column of a row group, and clears them.
     pub(super) fn write<W: Write + Send>(
         &mut self,
         group: &mut SerializedRowGroupWriter<'_, W>,
@@ -98,7 +98,7 @@ impl Cells {
     }
 }
 
-/// The system's error, where that is what it was.
+/// The error of the operating system, if that was the cause.
 pub(super) fn io_error(error: ParquetError) -> io::Error {
     match error {
         ParquetError::External(inner) => match inner.downcast::<io::Error>() {

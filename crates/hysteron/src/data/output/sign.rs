@@ -1,4 +1,4 @@
-//! How results of ours are known by their content.
+//! Recognises files that hysteron wrote, by their content.
 
 use super::parquet::PROGRAM;
 use crate::model::Model;
@@ -7,19 +7,19 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The columns that commands add to tables: in CSV they stand last. Those of words come with those
-/// of numbers.
+/// The columns that commands add to tables. In CSV they are the last ones. Columns of words come
+/// together with columns of numbers.
 const ADDED: [&[&str]; 4] = [
     &["output_model"],
     &["output_model", "output_low", "output_high"],
     &["input_model", "status"],
     &["output_model", "error", "outcome"],
 ];
-/// Those among them that hold words.
+/// Those columns that hold words.
 const WORDS: [&str; 2] = ["status", "outcome"];
 
-/// A model that was fitted or adapted, and is written exactly as it would be again. One written by
-/// hand tells of no fit, or has other spaces.
+/// Whether the file is a model that was fitted or adapted, with exactly the bytes that we would
+/// write. A model written by hand has no fit or other spacing.
 pub(crate) fn is_our_model(path: &Path) -> io::Result<bool> {
     if !begins_with(path, b"{")? {
         return Ok(false);
@@ -30,7 +30,7 @@ pub(crate) fn is_our_model(path: &Path) -> io::Result<bool> {
     Ok(Model::from_json(&text).is_ok_and(|model| model.fit.is_some() && model.to_json() == text))
 }
 
-/// A table that a command made.
+/// Whether the file is a table that a command made.
 pub(crate) fn is_our_table(path: &Path) -> io::Result<bool> {
     match begins_with(path, b"PAR1")? {
         true => parquet(path),
@@ -46,7 +46,7 @@ fn begins_with(path: &Path, mark: &[u8]) -> io::Result<bool> {
     Ok(head == mark)
 }
 
-/// Other tools put their own names in when they write a file again.
+/// Other tools put their own name into the metadata when they write a file again.
 fn parquet(path: &Path) -> io::Result<bool> {
     let file = File::open(path)?;
     let writer = crate::data::table::caught(|| {
@@ -60,8 +60,8 @@ fn parquet(path: &Path) -> io::Result<bool> {
     Ok(writer.is_ok_and(|writer| writer.is_some_and(|name| name.starts_with(PROGRAM))))
 }
 
-/// The last columns are ours, and every number in them is written as we write it, to the last line.
-/// Spreadsheets write numbers and ends of lines in ways of their own.
+/// The last columns are ours, and every number in them is written as we write it, down to the last
+/// line. Spreadsheets write numbers and line ends differently.
 fn csv(path: &Path) -> io::Result<bool> {
     let mut rows = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -119,7 +119,7 @@ mod tests {
             ("x,output_model,input_model,status\n1,1.50,2,ok\n", true),
             ("", false),
             ("x,y\n1,2\n", false),
-            // A column of the user's behind ours, and ours elsewhere.
+            // A user's column after ours, and ours in the middle.
             ("x,output_model,note\n1,0.25,mine\n", false),
             ("output_model,x\n0.25,1\n", false),
             ("x,status\n1,ok\n", false),

@@ -1,5 +1,5 @@
-//! A Parquet file with more columns: those of the source go over as they are stored, whatever they
-//! hold.
+//! Copies a Parquet file and adds columns. The stored columns of the source are copied as bytes,
+//! whatever their type.
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
@@ -17,7 +17,8 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What tools of Apache Arrow know of the columns, which is no longer all of them.
+/// Metadata of Apache Arrow about the columns. It would no longer describe all of them, so it is
+/// not copied.
 const ARROW_SCHEMA: &str = "ARROW:schema";
 
 /// A Parquet file that is copied column by column.
@@ -27,7 +28,7 @@ pub(super) struct Original {
 }
 
 impl Original {
-    /// `None` for a file of another format.
+    /// Opens the file; `None` for another format.
     pub(super) fn open(path: &Path) -> io::Result<Option<Self>> {
         if !path.is_file() {
             return Ok(None);
@@ -50,7 +51,7 @@ impl Original {
     }
 }
 
-/// The copy on its way, with the cells of the new columns in the present group of rows.
+/// The copy while it is written, with the new cells of the current row group.
 pub(super) struct Splice {
     original: Original,
     writer: SerializedFileWriter<AtomicFile>,
@@ -99,7 +100,7 @@ impl Splice {
         Ok(splice)
     }
 
-    /// The new cells of the next row.
+    /// Adds the new cells of the next row.
     pub(super) fn row(&mut self, cells: &[Cell<'_>]) -> io::Result<()> {
         for (column, cell) in self.added.iter_mut().zip(cells) {
             match cell {
@@ -111,7 +112,7 @@ impl Splice {
         self.end_groups()
     }
 
-    /// Writes the groups of rows that are full, which one without rows always is.
+    /// Writes the row groups that are complete. A row group without rows is always complete.
     fn end_groups(&mut self) -> io::Result<()> {
         while self.original.rows(self.group) == Some(self.rows) {
             caught(|| self.write_group()).map_err(io::Error::other)?;
@@ -140,12 +141,12 @@ impl Splice {
         group.close().map(|_| ())
     }
 
-    /// Once the last row was written.
+    /// Ends the copy, after the last row.
     pub(super) fn finish(self) -> io::Result<AtomicFile> {
         match self.original.rows(self.group) {
             None => self.writer.into_inner().map_err(io_error),
             Some(_) => Err(io::Error::other(
-                "the file that is read has changed meanwhile",
+                "the input file has changed while it was read",
             )),
         }
     }

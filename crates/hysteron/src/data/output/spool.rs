@@ -1,7 +1,8 @@
-//! Rows of cells on their way into a Parquet file.
+//! Stores the rows of a table until they can be written as a Parquet file.
 //!
-//! What a column holds is known only at its last cell. So the rows wait in a file without a name,
-//! which the system removes with the program, and memory does not grow with their number.
+//! The type of a column is known only after its last cell. So the rows are stored in a file without
+//! a name, which the system removes when the program ends. Memory does not grow with the number of
+//! rows.
 
 use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
@@ -16,10 +17,10 @@ use std::io::{self, BufReader, BufWriter, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A group of rows is written once its cells take so many bytes.
+/// A row group is written when its cells take this many bytes.
 const GROUP: usize = 1 << 24;
 
-/// The rows that wait; the first of them is the header.
+/// The stored rows. The first one is the header.
 pub(super) struct Spool {
     rows: csv::Writer<BufWriter<File>>,
     header: Option<Vec<String>>,
@@ -27,7 +28,7 @@ pub(super) struct Spool {
 }
 
 impl Spool {
-    /// In a folder that has the room.
+    /// Creates the store in a folder that has enough space.
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
         let file = BufWriter::new(tempfile::tempfile_in(folder).map_err(bare)?);
         Ok(Self {
@@ -124,7 +125,7 @@ fn write_group(
 }
 
 impl Kind {
-    /// What a column holds once this cell belongs to it. An empty cell has no value.
+    /// The type of a column after this cell is added. An empty cell has no value.
     fn with(self, cell: &[u8]) -> Self {
         match self {
             Self::Numbers if cell.is_empty() || number(cell).is_some() => Self::Numbers,
@@ -134,8 +135,8 @@ impl Kind {
     }
 }
 
-/// The number in a cell, where a `f64` holds all that is written there: numerals such as `007` and
-/// whole numbers beyond 2⁵³ that it would round are text.
+/// The number in a cell, if an `f64` can hold exactly what is written. Texts such as `007`, and
+/// whole numbers beyond 2⁵³ that would be rounded, are not numbers.
 fn number(cell: &[u8]) -> Option<f64> {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let text = std::str::from_utf8(cell).ok()?.trim();
@@ -147,7 +148,7 @@ fn number(cell: &[u8]) -> Option<f64> {
     (exact && !padded).then_some(value)
 }
 
-/// Refuses two columns of one name, which readers of Parquet do not tell apart.
+/// Refuses two columns with the same name, because readers of Parquet could not distinguish them.
 pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
     names: impl Iterator<Item = N>,
 ) -> io::Result<()> {

@@ -1,4 +1,4 @@
-//! Tables written row by row, as CSV or Parquet.
+//! Writes tables row by row, as CSV or Parquet.
 
 use super::destination::folder_of;
 use super::sign::is_our_table;
@@ -10,12 +10,12 @@ use crate::error::{Error, Result};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A column that is added to those of a table.
+/// A column that is added to a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Added {
-    /// One of numbers, with its name.
+    /// A column of numbers, with its name.
     Numbers(&'static str),
-    /// One of words, with its name.
+    /// A column of words, with its name.
     Words(&'static str),
 }
 
@@ -32,9 +32,9 @@ impl Added {
 /// A cell of an added column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cell<'a> {
-    /// In a column of numbers.
+    /// A cell in a column of numbers.
     Number(f64),
-    /// In a column of words.
+    /// A cell in a column of words.
     Word(&'a str),
 }
 
@@ -47,18 +47,20 @@ impl Cell<'_> {
     }
 }
 
-/// The path that errors name where standard output cannot be written to.
+/// The path in errors about standard output.
 pub const STANDARD_OUTPUT: &str = "standard output";
 
-/// Writes a table, to standard output or to a file that appears only when it is whole.
+/// Writes a table to standard output, or to a file that appears only when it is complete. Memory
+/// does not grow with the table.
 ///
-/// The end of the file's name tells the format: `.parquet` is Parquet; `.csv`, `.txt`, `.dat` or
-/// none is CSV; no other can be written. Memory does not grow with the table. In Parquet, the
-/// columns of a source that is Parquet too go over as they are stored, with all their types; what
-/// Apache Arrow notes beside these (the name of a time zone, dictionaries, durations) does not. Of
-/// other sources, a column whose cells are all numbers becomes one of doubles, any other one of
-/// text; an empty cell is null. A cell is a number where a double holds all of it: `007` and 2⁵³ +
-/// 1 are text.
+/// The ending of the file's name decides the format: `.parquet` is Parquet; `.csv`, `.txt`, `.dat`
+/// or no ending is CSV; other formats cannot be written.
+///
+/// If the output and its source are both Parquet, the columns of the source are copied as stored,
+/// with their types. Only the metadata of Apache Arrow (time zone names, dictionaries, durations)
+/// are not copied. From other sources, a column of numbers only becomes a column of doubles and any
+/// other column becomes text; an empty cell is null. A cell is a number if a double can hold all of
+/// it: `007` and 2⁵³ + 1 are text.
 pub struct TableWriter {
     path: PathBuf,
     to: Format,
@@ -91,12 +93,12 @@ impl Write for Sink {
     }
 }
 
-/// Whether a table of this name is Parquet.
+/// Whether a table with this name is Parquet.
 fn is_parquet(path: &Path) -> io::Result<bool> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
-    // The name of a pipe or of `/dev/null` says nothing.
+    // The name of a pipe or of `/dev/null` does not decide the format.
     if path.metadata().is_ok_and(|there| !there.is_file()) {
         return Ok(ending.as_deref() == Some("parquet"));
     }
@@ -110,17 +112,17 @@ fn is_parquet(path: &Path) -> io::Result<bool> {
 }
 
 impl TableWriter {
-    /// A table with columns that a command adds, to `target`, or to standard output without one or
-    /// with `-`.
+    /// A table with columns that a command adds. It goes to `target`, or to standard output if
+    /// `target` is `None` or `-`.
     ///
     /// # Errors
-    /// [`Error::File`], also for a name whose end is of a format that cannot be written.
+    /// [`Error::File`], also for a name with the ending of a format that cannot be written.
     pub fn create(target: Option<Destination<'_>>) -> Result<Self> {
         Self::start(target, Own::Marked(is_our_table))
     }
 
-    /// As [`TableWriter::create`], for a table without such columns: one in CSV is not known as
-    /// ours when it is there.
+    /// As [`TableWriter::create`], for a table without added columns. An existing CSV table of this
+    /// kind cannot be recognised as ours.
     ///
     /// # Errors
     /// As [`TableWriter::create`].
@@ -149,7 +151,7 @@ impl TableWriter {
         Ok(Self { path, to })
     }
 
-    /// Begins a table that has the columns of another, and more.
+    /// Begins a table with the columns of another one, followed by `added`.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -179,7 +181,7 @@ impl TableWriter {
         Ok(self)
     }
 
-    /// Writes a row as it was read, and further cells after it.
+    /// Writes a row of the source, followed by more cells.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -192,7 +194,7 @@ impl TableWriter {
         self.write(row.cells().chain(cells.iter().map(String::as_bytes)))
     }
 
-    /// Writes a row of cells; the first row holds the columns' names.
+    /// Writes a row of cells. The first row holds the names of the columns.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -204,7 +206,7 @@ impl TableWriter {
         let written = match &mut self.to {
             Format::Csv(csv) => csv.write_record(cells),
             Format::Parquet(spool, _) => spool.row(cells),
-            // Its rows come with those of the source.
+            // The stored columns already contain the source's header.
             Format::Spliced(_) => Ok(()),
         };
         written.map_err(|error| self.failed(io_error(error)))
@@ -217,10 +219,10 @@ impl TableWriter {
         }
     }
 
-    /// Ends the table; a file takes its name now.
+    /// Ends the table and gives a file its name.
     ///
     /// # Errors
-    /// [`Error::File`], the system's.
+    /// [`Error::File`].
     pub fn finish(self) -> Result<()> {
         let path = self.path;
         let ended = match self.to {
@@ -240,7 +242,7 @@ fn csv(to: Sink) -> csv::Writer<Sink> {
     csv::WriterBuilder::new().flexible(true).from_writer(to)
 }
 
-/// The system's error as it was, so that its kind can be asked for.
+/// The original error of the operating system, so that its kind can be tested.
 fn io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(source) => source,
@@ -248,7 +250,7 @@ fn io_error(error: csv::Error) -> io::Error {
     }
 }
 
-/// The file, where the table went to one.
+/// The file, if the table was written to one.
 fn end_csv(csv: csv::Writer<Sink>) -> io::Result<Option<AtomicFile>> {
     match csv.into_inner().map_err(|error| error.into_error())? {
         Sink::Stdout(mut out) => out.flush().map(|()| None),

@@ -1,7 +1,7 @@
-//! Files and folders that are written beside their places.
+//! Temporary files and folders, in which results are written until they are complete.
 //!
-//! Each has a name that nothing else has, and a lock while it is being written. One without a lock
-//! was left by a run that was killed, and the next run that writes there removes it.
+//! Each has a unique name, and a lock while it is being written. One without a lock was left by a
+//! program that was killed. The next program that writes to the same folder removes it.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
@@ -12,25 +12,25 @@ use tempfile::{NamedTempFile, TempDir};
 
 const PREFIX: &str = ".hysteron-";
 const SUFFIX: &str = ".part";
-/// Random letters and digits between the two.
+/// Number of random letters and digits between prefix and suffix.
 const RANDOM: usize = 12;
-/// In a folder, the file whose lock counts for all of it.
+/// The file in a temporary folder whose lock protects the whole folder.
 const LOCK: &str = "lock";
-/// How often another run may take what was just begun for left behind.
+/// Number of attempts. Another program may remove a new file before it is locked.
 const ATTEMPTS: usize = 100;
 
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// What is being written now. Whoever holds it keeps [`discard_unfinished`] waiting.
+/// The list of temporary files. While it is held, [`discard_unfinished`] waits.
 pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole whatever a thread that held it was doing.
+    // The list is valid even if a thread panicked while it held the lock.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every file and folder that is still being written, for a program that is told to end.
+/// Removes every temporary file and folder of this process. For a program that is told to end.
 pub fn discard_unfinished() {
     for path in unfinished().drain(..) {
-        // One that cannot be removed is no reason not to end.
+        // A file that cannot be removed must not keep the program from ending.
         let _ = match path.is_dir() {
             true => empty(&path).and_then(|()| fs::remove_dir_all(&path)),
             false => fs::remove_file(&path),
@@ -38,16 +38,16 @@ pub fn discard_unfinished() {
     }
 }
 
-/// Takes a path off the list, because it was given its name or removed.
+/// Removes a path from the list, because it got its final name or was removed.
 pub(super) fn finished(path: &Path) {
     unfinished().retain(|other| other != path);
 }
 
-/// A new file in `folder`, with these permissions or those of any new file.
+/// A new temporary file in `folder`, with the given permissions or the default ones.
 pub(super) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
     sweep(folder);
     let mut builder = builder();
-    // As a plain new file would have, not the private mode of temporary ones.
+    // The default of new files, not the private mode of temporary files.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     if let Some(permissions) = like {
@@ -63,7 +63,7 @@ pub(super) fn file_in(folder: &Path, like: Option<fs::Permissions>) -> io::Resul
     Err(taken_away())
 }
 
-/// A new folder in another, to prepare in.
+/// A new temporary folder inside another, to prepare results in.
 pub(super) struct Workshop {
     folder: TempDir,
     _lock: File,
@@ -100,14 +100,14 @@ impl Workshop {
 
 impl Drop for Workshop {
     fn drop(&mut self) {
-        // What cannot be removed now is left to the next run.
+        // The next program removes what cannot be removed now.
         let _ = empty(self.folder.path());
         finished(self.folder.path());
     }
 }
 
-/// Removes all but the lock of a folder. The lock goes last, so that a removal that is itself
-/// killed can be taken up again.
+/// Removes everything in a folder, the lock last. If the removal itself is killed, another program
+/// can continue it.
 fn empty(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)?.flatten() {
         match entry.file_type()?.is_dir() {
@@ -125,28 +125,28 @@ fn builder() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-/// An error without the name of what is beside, which says nothing to anyone.
+/// The error without the temporary path, which means nothing to the user.
 pub(super) fn bare(error: io::Error) -> io::Error {
     error.kind().into()
 }
 
 fn taken_away() -> io::Error {
-    io::Error::other("other runs keep removing what this one begins: try again")
+    io::Error::other("other programs keep removing the temporary files of this one: try again")
 }
 
-/// Locks what was just made; false where another run took it for left behind in the meantime.
+/// Locks a new file. Returns false if another program has taken it for a leftover and removed it.
 fn is_held(file: &File, path: &Path) -> bool {
     match file.try_lock() {
         Ok(()) => path.exists(),
         Err(TryLockError::WouldBlock) => false,
-        // Without locks no other run removes anything either.
+        // Without locks no other program removes anything either.
         Err(TryLockError::Error(_)) => true,
     }
 }
 
-/// Removes what runs that were killed left in a folder.
+/// Removes the leftovers of killed programs from a folder.
 fn sweep(folder: &Path) {
-    // What cannot be read or removed does no harm: it is hidden, and another run may remove it.
+    // Ignore what cannot be read or removed: it is hidden, and another program may remove it later.
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
         let path = entry.path();
@@ -167,11 +167,11 @@ fn sweep_folder(path: &Path) -> io::Result<()> {
         empty(path)?;
         fs::remove_file(&lock)?;
     }
-    // Only where it is empty: one that was just made has no lock yet.
+    // Only if it is empty: a new folder has no lock yet.
     fs::remove_dir(path)
 }
 
-/// A file whose lock nobody holds, locked.
+/// Opens and locks a file whose lock nobody holds.
 fn left_behind(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     file.try_lock()
@@ -179,7 +179,7 @@ fn left_behind(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// The whole pattern counts: a user's own hidden file may begin in the same way.
+/// Tests the whole pattern, because a hidden file of the user may begin in the same way.
 fn is_temporary(name: &OsStr) -> bool {
     let random = name
         .to_str()

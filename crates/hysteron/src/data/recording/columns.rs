@@ -1,4 +1,4 @@
-//! Which columns of a table make a recording.
+//! The names of the columns that make up a recording.
 
 /// Names of the columns to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -7,14 +7,14 @@ pub struct Columns<'a> {
     pub input: &'a str,
     /// The output.
     pub output: &'a str,
-    /// Time, if wanted: in seconds, or with another unit behind its name.
+    /// The time, if wanted: in seconds, or in another unit that follows its name.
     pub time: Option<&'a str>,
     /// The load or stress, if wanted.
     pub load: Option<&'a str>,
 }
 
 impl<'a> Columns<'a> {
-    /// An input and an output, and nothing else.
+    /// An input and an output, without time and load.
     #[must_use]
     pub fn new(input: &'a str, output: &'a str) -> Self {
         Self {

@@ -1,4 +1,8 @@
-//! Recordings from tables and into tables.
+//! Makes recordings from tables, and tables from recordings.
+//!
+//! `columns` names the columns and `read` is the entry point. `samples` collects the rows; `repair`
+//! says what is done about bad rows. `others` keeps the columns that a recording does not use, and
+//! `write` writes recordings.
 
 mod columns;
 mod others;

@@ -1,22 +1,23 @@
-//! The columns of a file that a recording does not use, kept beside it to be written again.
+//! Keeps the columns of a file that a recording does not use, so that they can be written again.
 
 use crate::data::output::TableWriter;
 use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 
-/// All columns of the file that a recording was read from, in their order and with their names; units
-/// that stood in a row below them stand behind them, and a time in another unit is in seconds.
+/// All columns of the file that a recording was read from, in their order and with their names. A
+/// unit from a row of units is appended to the name. A time in another unit has been converted to
+/// seconds.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
     header: Vec<String>,
-    /// Where the input, output, time and load are.
+    /// Index of the columns of input, output, time and load.
     places: [Option<usize>; 4],
     rows: Vec<Row>,
 }
 
 impl Others {
-    /// None yet, of a table of which these columns are the recording's input, output, time and load.
+    /// No rows yet. `columns` are the recording's input, output, time and load in the table.
     pub(super) fn of(table: &TableReader, columns: [Option<Column>; 4]) -> Self {
         Self {
             header: table.names_with_units(),
@@ -36,10 +37,10 @@ impl Others {
         }
     }
 
-    /// Writes `recording`, made of the one that was read with these columns by [`crate::prepare`]
-    /// from the times `before`: its series in their places, and the other columns beside them.
-    /// Where it was resampled, columns of numbers are interpolated, and others left out. Returns the
-    /// names of those.
+    /// Writes `recording` together with the other columns. `recording` is the one that was read
+    /// with these columns, after [`crate::prepare()`]; `before` are its times before that. Each
+    /// series goes to its own column. If the recording was resampled, columns of numbers are
+    /// interpolated and other columns are omitted. Returns the names of those omitted.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
@@ -90,7 +91,7 @@ impl Others {
         Ok(left_out)
     }
 
-    /// The series of the recording that belongs in a column, and the column's name.
+    /// The series of the recording that belongs in a column, and the name of that column.
     fn series<'r>(&self, recording: &'r Recording, column: usize) -> Option<(String, &'r [f64])> {
         let name = self.header[column].clone();
         let place = self
@@ -105,7 +106,7 @@ impl Others {
         }
     }
 
-    /// A column of numbers at the times of the recording; `None` where it is none.
+    /// A column of numbers at the times of the recording; `None` if it is not a column of numbers.
     fn at(&self, recording: &Recording, before: Option<&[f64]>, column: usize) -> Option<Cells> {
         let number = |n| {
             std::str::from_utf8(self.cell(n, column))

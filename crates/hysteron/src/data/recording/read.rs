@@ -1,4 +1,4 @@
-//! Recordings from files.
+//! Reads recordings from files.
 
 use crate::data::recording::columns::Columns;
 use crate::data::recording::others::Others;
@@ -12,29 +12,32 @@ use crate::remedy::{Remedy, Setting};
 use std::path::Path;
 
 impl Recording {
-    /// Reads a recording from a CSV, Parquet or MATLAB file; `-` is CSV from standard input.
+    /// Reads a recording from a CSV, Parquet or MATLAB file. The path `-` is CSV from standard
+    /// input.
     ///
-    /// CSV has cells between commas, semicolons or tabs, with a decimal point or, where commas do not
-    /// separate them, a decimal comma; a row of units may stand below the header, and lines beginning
-    /// with `#` or `%` are comments. What a logger or LabVIEW writes above the header is skipped;
-    /// without a header, columns go by number, from 1. The text is UTF-8, UTF-16 with a byte order
-    /// mark, or else Windows-1252.
+    /// **CSV.** Cells are separated by commas, semicolons or tabs. Numbers have a decimal point, or
+    /// a decimal comma if commas do not separate cells. A row of units may follow the header. Lines
+    /// that begin with `#` or `%` are comments. Lines that a data logger or LabVIEW writes above
+    /// the header are skipped. Without a header, columns are numbered from 1. The text is UTF-8,
+    /// UTF-16 with a byte order mark, or otherwise Windows-1252.
     ///
-    /// In a MATLAB file vectors have their variable's name, fields of structures are `name.field`, and
-    /// the columns of a matrix `M` are `M:1`, `M:2`; a matrix `[TimeValues DataValues]` asked for as
-    /// `M` is its data, and its times are used where no time is asked for.
+    /// **MATLAB.** A vector has the name of its variable. Fields of structures are `name.field`.
+    /// The columns of a matrix `M` are `M:1`, `M:2`. A matrix `[TimeValues DataValues]` can be
+    /// asked for as `M`, which means its data; its times are then used unless another time is asked
+    /// for.
     ///
-    /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, by its
-    /// name or the row of units, is turned into seconds.
+    /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, given by
+    /// its name or by the row of units, is converted to seconds.
     ///
-    /// The notes tell what was assumed and mended, and of gaps in time.
+    /// The notes tell what was assumed and repaired, and where the time has gaps.
     ///
     /// # Errors
-    /// [`crate::Error::File`]; [`crate::Error::Recording`] with row and column where a column is missing, a row is
-    /// ragged, or there are no rows; and, to be refused and not mended, where a cell is no finite
-    /// number, a row has more or fewer cells than the header, times go back or are repeated, or input
-    /// and output have different times; also where the file's contents take more memory than
-    /// [`ReadOptions::max_memory`].
+    /// - [`crate::Error::File`].
+    /// - [`crate::Error::Recording`] with row and column: a missing column, a ragged row, no rows,
+    ///   or more memory than [`ReadOptions::max_memory`].
+    /// - Also [`crate::Error::Recording`], unless rows are to be repaired: a cell that is not a
+    ///   finite number, a row with more or fewer cells than the header, times that go back or
+    ///   repeat, or different times of input and output.
     ///
     /// ```
     /// use hysteron::{Columns, Recording, Repair};
@@ -59,7 +62,7 @@ impl Recording {
         Ok((recording, notes))
     }
 
-    /// As [`Recording::read`], with the other columns of the file.
+    /// As [`Recording::read`], and also returns the other columns of the file.
     ///
     /// # Errors
     /// As [`Recording::read`].
@@ -89,7 +92,8 @@ impl Recording {
         for (n, name) in named.iter().enumerate() {
             if let (Some(name), true) = (name, named[..n].contains(name)) {
                 let problem = format!(
-                    "the column `{name}` is named twice: input, output, time and load are four things"
+                    "the column `{name}` is named twice: \
+                     input, output, time and load are four things"
                 );
                 return Err(table.fault(None, problem));
             }
@@ -120,7 +124,7 @@ impl Recording {
         };
         let input_at = table.column(columns.input)?;
         let output_at = match interpolated {
-            // Of no use, as the output stands elsewhere, but it has to be one.
+            // The output comes from elsewhere, so this column is not used. But there has to be one.
             Some(_) => input_at,
             None => table.column(columns.output)?,
         };
@@ -131,7 +135,8 @@ impl Recording {
             if at.is_some() && interpolated.is_none() && all[..n].contains(at) {
                 let names = [columns.input, columns.output, "the time", "the load"];
                 let problem = format!(
-                    "the column meant by `{}` is that of another series: input, output, time and load are four things",
+                    "the column meant by `{}` is that of another series: \
+                     input, output, time and load are four things",
                     names[n]
                 );
                 return Err(table.fault(*at, problem));
@@ -139,7 +144,7 @@ impl Recording {
         }
         let asked: Vec<Column> = all.into_iter().flatten().collect();
         let quantity = |asked: &str, at: Column| {
-            // The data of a matrix `[TimeValues DataValues]` have the matrix' name.
+            // The data of a matrix `[TimeValues DataValues]` have the name of the matrix.
             let own = match table.name(at) {
                 own if own.strip_suffix(":2") == Some(asked) => asked,
                 own => own,
@@ -165,7 +170,7 @@ impl Recording {
             of_rows.push((NoteKind::Interpolated, places));
         }
         if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
-            table.judge_time(at, time);
+            table.check_time_unit(at, time);
         }
         let remarks = table.remarks().cloned().map(Note::File);
         let of_rows = of_rows
@@ -194,7 +199,7 @@ impl Recording {
     }
 }
 
-/// Whether times are the same, those that are no numbers as well.
+/// Whether times are equal. NaN equals NaN here.
 fn same(a: &[f64], b: &[f64]) -> bool {
     a.iter()
         .map(|t| t.to_bits())

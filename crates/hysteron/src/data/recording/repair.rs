@@ -1,54 +1,57 @@
-//! Rows of a recording that cannot be used as they are, and what is done about them.
+//! Rows of a recording that cannot be used as they are: what is done about them, and how it is
+//! reported.
 
 use crate::data::table::Remark;
 use crate::error::Place;
 use std::fmt;
 
-/// What becomes of rows that cannot be used as they are.
+/// What to do with rows that cannot be used as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Repair {
-    /// They are refused, with their places.
+    /// Refuse them, with an error that lists their positions.
     #[default]
     Refuse,
-    /// Those without a number, or with more or fewer cells than the header, are dropped; those whose times go back are sorted; those at one time
-    /// become one, with the mean of their values.
+    /// Repair them. Rows without a number, or with more or fewer cells than the header, are
+    /// dropped. Rows whose time goes back are sorted. Rows with equal time are merged to their
+    /// mean.
     Mend,
 }
 
-/// What was noted about a recording: it was mended, or is worth knowing.
+/// A note about a recording: a repair, or a remark on how the file was understood.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Of its rows.
+    /// A note about rows.
     Rows {
-        /// What it is.
+        /// The kind of the note.
         kind: NoteKind,
         /// The rows.
         places: Places,
     },
-    /// Of how its file was understood.
+    /// A remark on how the file was understood.
     File(Remark),
 }
 
-/// What can be noted about rows.
+/// The kinds of notes about rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoteKind {
-    /// There are more or fewer cells than in the header: dropped.
+    /// More or fewer cells than in the header: dropped.
     Ragged,
-    /// There is no finite number in a column that was asked for: dropped.
+    /// No finite number in a column that was asked for: dropped.
     Dropped,
-    /// The time goes back: sorted.
+    /// Time goes back: sorted.
     Sorted,
-    /// The time is that of the row before: merged to the mean.
+    /// Time equal to that of the row before: merged to the mean.
     Merged,
-    /// Input and output have times of their own: the output was interpolated onto the input's.
+    /// Input and output have times of their own: the output was interpolated at the times of the
+    /// input.
     Interpolated,
-    /// More than three times the median step has passed since the row before: left as it is.
+    /// More than three times the median step since the row before: not changed.
     Gap,
 }
 
 impl NoteKind {
-    /// What is wrong with so many rows that were not mended.
+    /// What is wrong with rows of this kind, if they were not repaired.
     pub(super) fn fault(self) -> &'static str {
         match self {
             Self::Ragged => "with more or fewer cells than the header",
@@ -82,17 +85,17 @@ impl fmt::Display for Note {
     }
 }
 
-/// How many rows there are of a kind, and the first of them.
+/// Number of rows of a kind, and the positions of the first few.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Places {
-    /// How many.
+    /// Number of rows.
     pub count: u64,
-    /// The first few.
+    /// Positions of the first few rows.
     pub first: Vec<Place>,
 }
 
 impl Places {
-    /// How many are named.
+    /// Number of rows that are listed.
     const NAMED: usize = 3;
 
     pub(crate) fn push(&mut self, place: Place) {

@@ -1,4 +1,4 @@
-//! The samples of a recording on their way from a table: gathered, then mended or refused.
+//! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
@@ -7,27 +7,27 @@ use crate::error::{Error, Place, Result};
 use crate::recording::gaps;
 use crate::remedy::{Remedy, Setting};
 
-/// Where the time is among the series.
+/// Index of the time among the series.
 pub(super) const TIME: usize = 2;
 
 /// The rows that have a number in every column asked for.
 pub(super) struct Samples {
-    /// The columns in the order in which they were asked for.
+    /// The series in the order in which they were asked for.
     pub(super) series: Vec<Vec<f64>>,
-    /// Where each row is.
+    /// Position of each row.
     pub(super) places: Vec<Place>,
-    /// All cells of the rows, where they are wanted.
+    /// All cells of the rows, if they are wanted.
     pub(super) others: Option<Others>,
     /// The rows that have more or fewer cells than the header.
     ragged: Places,
-    /// The other rows, and what is wrong with the first of them.
+    /// The rows without a number, and what is wrong with the first of them.
     missing: Places,
     fault: Option<Error>,
 }
 
 impl Samples {
-    /// Reads the columns `asked`: input, output, then time and load where there are. With `output`,
-    /// that stands for the second; with `others`, these take whole rows.
+    /// Reads the columns `asked`: input, output, then time and load if any. `output`, if given,
+    /// replaces the column of the output. `others`, if given, collects whole rows.
     pub(super) fn gather(
         table: &mut TableReader,
         asked: &[Column],
@@ -71,7 +71,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Memory for another row, which the table's budget has to have. Sorting takes a copy.
+    /// Takes memory for another row from the table's budget. Sorting needs a copy.
     fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
         let count = self.places.len();
         let capacity = self.places.capacity();
@@ -96,11 +96,12 @@ impl Samples {
         Ok(())
     }
 
-    /// Mends what has to be, or refuses it, and says what there was; gaps are only told of.
+    /// Repairs rows that cannot be used, or refuses them, and notes what was found. Gaps in time
+    /// are only noted.
     ///
     /// # Errors
-    /// [`Error::Recording`] for what would have to be mended, if it is to be refused, or where
-    /// nothing is left.
+    /// [`Error::Recording`] for rows that need a repair if these are to be refused, or if no row is
+    /// left.
     pub(super) fn mend(
         &mut self,
         table: &TableReader,
@@ -146,7 +147,8 @@ impl Samples {
         Ok(notes)
     }
 
-    /// The rows between whose time and that of the row before something holds, and the first as a fault.
+    /// The rows whose time and that of the row before satisfy a condition, and the first of them as
+    /// an error.
     fn steps(
         &self,
         table: &TableReader,
@@ -165,7 +167,7 @@ impl Samples {
         (rows().map(|n| self.places[n]).collect(), fault)
     }
 
-    /// Rows in the order of their times; those at one time stay in theirs.
+    /// Sorts the rows by time. Rows with equal time stay in their order.
     fn sort(&mut self) {
         let time = &self.series[TIME];
         let mut order: Vec<usize> = (0..time.len()).collect();
@@ -176,7 +178,7 @@ impl Samples {
         self.pick(&order);
     }
 
-    /// Keeps the places and other cells of these rows, in this order.
+    /// Keeps the positions and other cells of these rows, in this order.
     fn pick(&mut self, order: &[usize]) {
         self.places = order.iter().map(|&n| self.places[n]).collect();
         if let Some(others) = &mut self.others {
@@ -184,7 +186,7 @@ impl Samples {
         }
     }
 
-    /// One row, with the mean of their values, for rows at one time.
+    /// Merges rows with equal time into one, with the mean of their values.
     fn merge(&mut self) {
         let time = &self.series[TIME];
         let mut starts: Vec<usize> = (0..time.len())
@@ -194,7 +196,7 @@ impl Samples {
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         for (n, series) in self.series.iter_mut().enumerate() {
             let groups = starts.windows(2).map(|pair| &series[pair[0]..pair[1]]);
-            // The mean of equal times need not be that time, to the last bit.
+            // The mean of equal times may differ from that time in the last bit.
             *series = groups
                 .map(|group| if n == TIME { group[0] } else { mean(group) })
                 .collect();
@@ -204,7 +206,7 @@ impl Samples {
     }
 }
 
-/// A fault with all the rows that have one.
+/// The error, with a list of all bad rows.
 fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
     let Error::Recording {
         path,
@@ -234,8 +236,8 @@ fn refusal(fault: Error, notes: &[(NoteKind, Places)]) -> Error {
     fault.remedied(Remedy::new(words, [Setting::on("repair")]))
 }
 
-/// A series at other times, along straight lines; NaN outside its own times. Only its finite samples
-/// count, in the order of their times, and of those at one time the last.
+/// Linear interpolation of a series at the times `wanted`; NaN outside its own times. Only finite
+/// samples count. They are sorted by time, and of several samples at one time the last counts.
 pub(super) fn interpolate(times: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
     let samples = times.iter().zip(values).map(|(t, y)| (*t, *y));
     let mut samples: Vec<_> = samples

@@ -1,4 +1,4 @@
-//! Recordings into files.
+//! Writes recordings as tables.
 
 use crate::data::output::TableWriter;
 use crate::error::Result;
@@ -6,8 +6,8 @@ use crate::recording::{Origin, Recording};
 use std::path::Path;
 
 impl Recording {
-    /// Writes a CSV file with a header row; units stand in brackets behind the names. A simulated
-    /// recording has a last column that says so. Whatever file is there is replaced.
+    /// Writes a CSV file with a header row; units follow the names in brackets. A simulated
+    /// recording has a last column that marks it as simulated. An existing file is replaced.
     ///
     /// # Errors
     /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
@@ -15,7 +15,7 @@ impl Recording {
         self.write_to(TableWriter::plain(Some(path.into()))?)
     }
 
-    /// As [`Recording::write_csv`], to a table that was begun before.
+    /// As [`Recording::write_csv`], to a table that is already open.
     ///
     /// # Errors
     /// As [`Recording::write_csv`].
@@ -23,7 +23,7 @@ impl Recording {
         self.write_with(table, &[], |_| [])
     }
 
-    /// As [`Recording::write_to`], with more columns.
+    /// As [`Recording::write_to`], with additional columns.
     pub(crate) fn write_with<const N: usize>(
         &self,
         mut table: TableWriter,

@@ -1,10 +1,11 @@
-//! How much memory reading a file may take. A file can claim any size; it is believed only within this.
+//! Limits the memory that reading a file may take. A damaged file can claim any size, so each size
+//! is checked before memory is allocated.
 
 use std::fmt;
 
-/// What is left of the memory that a read may take, in bytes.
+/// The memory in bytes that a read may still take.
 ///
-/// Readers ask before they allocate. Buffers of fixed size, some 10 MiB in all, are not counted.
+/// Readers ask before they allocate. Buffers of fixed size, about 10 MiB in all, are not counted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Budget {
     left: u128,
@@ -19,7 +20,7 @@ impl Budget {
         }
     }
 
-    /// What is left.
+    /// The number of bytes left.
     pub(crate) fn left(&self) -> u64 {
         u64::try_from(self.left).unwrap_or(u64::MAX)
     }
@@ -27,33 +28,34 @@ impl Budget {
     /// Takes `bytes` for `what`.
     ///
     /// # Errors
-    /// The problem, where they are not left: what is too large, and what to do.
+    /// The problem, if there is not enough left: what is too large, and what to do.
     pub(crate) fn take(&mut self, bytes: u128, what: impl fmt::Display) -> Result<(), String> {
         self.check(bytes, what)?;
         self.left -= bytes;
         Ok(())
     }
 
-    /// As [`Budget::take`], for what is given back at once.
+    /// As [`Budget::take`], for memory that is released at once.
     pub(crate) fn check(&self, bytes: u128, what: impl fmt::Display) -> Result<(), String> {
         if bytes <= self.left {
             return Ok(());
         }
         Err(format!(
-            "{what} needs {} of memory and {} of {} are left: if the file is not damaged, allow more with the option `max memory`",
+            "{what} needs {} of memory and {} of {} are left: if the file is not damaged, \
+             allow more with the option `max memory`",
             Size(bytes),
             Size(self.left),
             Size(u128::from(self.whole))
         ))
     }
 
-    /// Gives back what was taken.
+    /// Releases memory that was taken.
     pub(crate) fn give_back(&mut self, bytes: u128) {
         self.left = (self.left + bytes).min(u128::from(self.whole));
     }
 }
 
-/// A number of bytes in the largest unit that leaves it at one or more.
+/// A number of bytes, shown in the largest unit in which it is at least one.
 struct Size(u128);
 
 impl fmt::Display for Size {

@@ -1,4 +1,4 @@
-//! The columns of a table: by the names that are asked for, and with their units.
+//! Finds the columns of a table by name, and handles their units.
 
 use super::names::{self, Found, Missing};
 use super::time::TimeUnit;
@@ -7,17 +7,21 @@ use crate::error::Result;
 use crate::recording::Quantity;
 
 impl TableReader {
-    /// Finds a column: by its exact name; by its name without its unit, in upper or lower case; by
-    /// its number, from 1; or by a name that one column's alone begins with. What is found by a
-    /// number or a beginning is told in [`TableReader::remarks`].
+    /// Finds a column by the first of these rules that fits:
+    /// 1. its exact name;
+    /// 2. its name without unit, in upper or lower case;
+    /// 3. its number, from 1;
+    /// 4. the beginning of its name, if only one column begins so.
     ///
-    /// In a MATLAB file a matrix `[TimeValues DataValues]` of two columns is found under its own name
-    /// as well, and means its data; and the first column found decides how many rows there are:
-    /// shorter and longer ones are then left out.
+    /// A column found by rule 3 or 4 is reported in [`TableReader::remarks`].
+    ///
+    /// In a MATLAB file, a matrix `[TimeValues DataValues]` of two columns is also found under its
+    /// own name, which means its data. The first column found decides the number of rows; shorter
+    /// and longer columns are then left out.
     ///
     /// # Errors
-    /// [`Error::Recording`](crate::Error::Recording) where there is none of that name, naming those that there are, or two,
-    /// or where it is not as long as the first one.
+    /// [`Error::Recording`](crate::Error::Recording) if no column or more than one fits (the error
+    /// lists the candidates), or if the column does not have as many rows as the first one.
     pub fn column(&mut self, name: &str) -> Result<Column> {
         let place = self.find(name)?;
         match &mut self.source {
@@ -31,8 +35,8 @@ impl TableReader {
         }
     }
 
-    /// As [`TableReader::column`], for a column of time: its numbers are given in seconds, where its
-    /// name or unit says that it is in another unit.
+    /// As [`TableReader::column`], for a column of time. Its numbers are returned in seconds, also
+    /// if its name or unit says that they are stored in another unit.
     ///
     /// # Errors
     /// As [`TableReader::column`].
@@ -52,9 +56,10 @@ impl TableReader {
         TimeUnit::of(self.name(column), self.unit(column))
     }
 
-    /// Tells of a time without a unit that is odd as seconds.
-    pub(crate) fn judge_time(&mut self, column: Column, time: &[f64]) {
-        /// A step of over a minute, a recording of over six hours, a step below a microsecond.
+    /// Adds a remark if a time without a unit would be unusual in seconds.
+    pub(crate) fn check_time_unit(&mut self, column: Column, time: &[f64]) {
+        /// Unusual: a step of over a minute, a recording of over six hours, a step below a
+        /// microsecond.
         const LONGEST_STEP: f64 = 60.0;
         const LONGEST: f64 = 6.0 * 3600.0;
         const SHORTEST_STEP: f64 = 1e-6;
@@ -74,12 +79,12 @@ impl TableReader {
         }
     }
 
-    /// A column's own name.
+    /// The full name of a column.
     pub(crate) fn name(&self, column: Column) -> &str {
         &self.header[column.0]
     }
 
-    /// The columns' names with their units behind them, as numbers of this table are given.
+    /// The names of the columns with their units, for the numbers as this table returns them.
     pub(crate) fn names_with_units(&self) -> Vec<String> {
         let name = |n: usize| {
             let quantity = Quantity::from_column(&self.header[n]);
@@ -96,7 +101,7 @@ impl TableReader {
         (0..self.header.len()).map(name).collect()
     }
 
-    /// Where the column is that is meant by `name`.
+    /// Index of the column that is meant by `name`.
     fn find(&mut self, name: &str) -> Result<usize> {
         if let Some(place) = self.place(name)? {
             return Ok(place);
@@ -155,7 +160,7 @@ impl TableReader {
         )
     }
 
-    /// Where the two columns of a matrix `[TimeValues DataValues]` are.
+    /// Indices of the two columns of a matrix `[TimeValues DataValues]`.
     fn pair_at(&self, name: &str) -> Option<[usize; 2]> {
         let at = |n: usize| {
             let name = format!("{name}:{n}");
@@ -169,7 +174,7 @@ impl TableReader {
         }
     }
 
-    /// Times and data of a matrix `[TimeValues DataValues]` asked for by its name alone.
+    /// Times and data of a matrix `[TimeValues DataValues]` that is asked for by its name alone.
     pub(crate) fn pair(&self, name: &str) -> Option<[Vec<f64>; 2]> {
         let at = self.pair_at(name)?;
         match (&self.source, self.header.iter().any(|h| h == name)) {

@@ -1,4 +1,4 @@
-//! Which format a file is of, and how each is opened.
+//! Detects the format of a file and opens it with the reader for that format.
 
 use super::budget::Budget;
 use super::hashing::{Hash, Hashing};
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What the first bytes of a file, or else the end of its name, say it is.
+/// The format that the first bytes of a file show, or otherwise the ending of its name.
 enum Format {
     Csv,
     Parquet,
@@ -45,7 +45,7 @@ impl Format {
     }
 }
 
-/// Opens a file of any format: its columns' names and its rows.
+/// Opens a file of any format. Returns the names of its columns and its rows.
 pub(super) fn open(
     path: &Path,
     repair: Option<Repair>,

@@ -1,4 +1,4 @@
-//! The hash of a file that is read once only, and may be a pipe.
+//! Computes the hash of a file while it is read, because a pipe can be read only once.
 
 use sha2::{Digest, Sha256};
 use std::cell::RefCell;
@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::Path;
 use std::rc::Rc;
 
-/// The hash of what has passed through a [`Hashing`].
+/// The hash of the bytes that have passed through a [`Hashing`].
 #[derive(Clone, Default)]
 pub(super) struct Hash(Rc<RefCell<Sha256>>);
 
@@ -20,14 +20,14 @@ impl Hash {
         Ok(hash.finish())
     }
 
-    /// In hexadecimal; from here on it is that of nothing.
+    /// The hash in hexadecimal. After this call, the hash starts again from empty.
     pub(super) fn finish(&self) -> String {
         let bytes = self.0.take().finalize();
         bytes.iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
-/// Hashes what passes through, where asked to.
+/// A reader that hashes the bytes that pass through it, if asked to.
 pub(super) struct Hashing<R> {
     file: R,
     hash: Option<Hash>,

@@ -1,4 +1,4 @@
-//! Variables of a MATLAB file as the columns of a table.
+//! Presents the variables of a MATLAB file as the columns of a table.
 
 pub(super) mod v5;
 pub(super) mod v73;
@@ -6,10 +6,11 @@ pub(super) mod v73;
 use super::budget::Budget;
 use super::numbers::Numbers;
 
-/// How deep structures are looked into.
+/// Largest depth of nested structures that is read.
 const DEEPEST: usize = 16;
 
-/// A numeric variable with its values column by column. A field of a structure is `structure.field`.
+/// A numeric variable, with its values column by column. A field of a structure is named
+/// `structure.field`.
 pub(super) struct Variable {
     pub(super) name: String,
     pub(super) rows: usize,
@@ -17,7 +18,8 @@ pub(super) struct Variable {
     pub(super) values: Vec<f64>,
 }
 
-/// A vector, lying or standing, as a column of its name; a matrix `M` as `M:1`, `M:2` and so on.
+/// The columns of the variables. A row or column vector is a column under its own name. A matrix
+/// `M` gives `M:1`, `M:2` and so on.
 pub(super) fn table(
     variables: Vec<Variable>,
     budget: &mut Budget,
@@ -32,7 +34,7 @@ pub(super) fn table(
             columns.push(variable.values);
             continue;
         }
-        // The columns stand beside the matrix until it is gone.
+        // The columns and the matrix are in memory at the same time.
         let copy = 8 * variable.values.len() as u128;
         let name = (variable.name.len() as u128 + 100) * variable.columns as u128;
         budget.take(copy + name, format_args!("`{}`", variable.name))?;

@@ -1,4 +1,9 @@
-//! Tables as people have them: CSV in its dialects, Parquet and MATLAB files, row by row through one reader.
+//! Reads tables row by row through one reader: CSV in its dialects, Parquet and MATLAB files.
+//!
+//! `format` detects the format; `text`, `parquet` and `mat` read it. `columns` and `names` find
+//! columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
+//! limit of `budget`. `remark` reports assumptions, `options` are the settings, `hashing` computes
+//! the file's digest.
 
 mod budget;
 mod columns;
@@ -30,18 +35,18 @@ use time::TimeUnit;
 
 /// Reads a table with named columns, one row at a time.
 ///
-/// CSV is read as a stream and Parquet by row groups, so that memory does not grow with the file; a
-/// MATLAB file is held whole. In a MATLAB file a vector is a column under its own name, and a matrix
-/// `M` is the columns `M:1`, `M:2` and so on.
+/// CSV is read as a stream and Parquet by row groups, so memory does not grow with the file. A
+/// MATLAB file is held in memory as a whole. There a vector is a column under its own name, and a
+/// matrix `M` is the columns `M:1`, `M:2` and so on.
 pub struct TableReader {
     path: PathBuf,
     header: Vec<String>,
     source: Source,
     hash: Option<Hash>,
     budget: Budget,
-    /// What was assumed of the columns asked for.
+    /// What was assumed about the columns asked for.
     remarks: Vec<Remark>,
-    /// The column of time that is not in seconds.
+    /// The column of time, if it is not in seconds.
     time: Option<(usize, TimeUnit)>,
 }
 
@@ -50,12 +55,12 @@ enum Source {
     Numbers(Numbers),
 }
 
-/// A column found by its name.
+/// A column that was found by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column(usize);
 
 impl Column {
-    /// Its place in the header, from 0.
+    /// Its index in the header, from 0.
     pub(crate) fn place(self) -> usize {
         self.0
     }
@@ -71,24 +76,24 @@ impl Row {
         self.0.iter()
     }
 
-    /// About how many bytes of memory it takes.
+    /// The approximate memory that it takes, in bytes.
     pub(crate) fn size(&self) -> usize {
         self.0.as_slice().len() + (self.0.len() + 16) * size_of::<usize>()
     }
 }
 
 impl TableReader {
-    /// Opens a file and reads its header; `-` is standard input, for text only.
+    /// Opens a file and reads its header. The path `-` is standard input, for text only.
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::Recording`] for an empty file, a header that cannot be, a file
-    /// that is not of the format it seems to be of, or one that takes more memory than
+    /// [`Error::File`]; [`Error::Recording`] for an empty file, an invalid header, a file that is
+    /// not of the format that it seems to be, or one that needs more memory than
     /// [`ReadOptions::MAX_MEMORY`].
     pub fn open(path: &Path) -> Result<Self> {
         Self::open_with(path, ReadOptions::MAX_MEMORY)
     }
 
-    /// As [`TableReader::open`], where the file's contents may take `max_memory` bytes.
+    /// As [`TableReader::open`], with a limit of `max_memory` bytes for the contents of the file.
     ///
     /// # Errors
     /// As [`TableReader::open`].
@@ -96,8 +101,8 @@ impl TableReader {
         Self::open_as(path, max_memory, None, None)
     }
 
-    /// As [`TableReader::open`], to ask for [`TableReader::sha256`] at the end, and with what becomes
-    /// of rows that are cut short.
+    /// As [`TableReader::open`], for a recording: computes the hash for [`TableReader::sha256`],
+    /// and takes the options for bad rows.
     pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
         let (repair, hash) = (Some(options.repair), Some(Hash::default()));
         Self::open_as(path, options.max_memory, repair, hash)
@@ -122,12 +127,13 @@ impl TableReader {
         })
     }
 
-    /// The file, as it was named.
+    /// The path of the file, as given.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What was assumed in reading the file, for a message; all of it is known at the end of the table.
+    /// What was assumed while the file was read, for a message. The list is complete at the end of
+    /// the table.
     pub fn remarks(&self) -> impl Iterator<Item = &Remark> {
         let of_text: &[Remark] = match &self.source {
             Source::Text(text) => text.remarks(),
@@ -148,7 +154,8 @@ impl TableReader {
         }
     }
 
-    /// The columns' names. Asking for a column of a MATLAB file leaves those that are as long.
+    /// The names of the columns. In a MATLAB file, asking for a column removes all columns of
+    /// another length.
     #[must_use]
     pub fn header(&self) -> &[String] {
         &self.header
@@ -169,7 +176,7 @@ impl TableReader {
         }
     }
 
-    /// The present row's number in a column; `None` where there is none, or none that is finite.
+    /// The current row's number in a column; `None` if there is no finite number.
     #[must_use]
     pub fn value(&self, column: Column) -> Option<f64> {
         let value = match &self.source {
@@ -183,10 +190,10 @@ impl TableReader {
         value.filter(|value: &f64| value.is_finite())
     }
 
-    /// The present row's number in a column.
+    /// The current row's number in a column.
     ///
     /// # Errors
-    /// [`Error::Recording`] with its place and column where it is missing or no finite number.
+    /// [`Error::Recording`] with position and column if there is no finite number.
     pub fn number(&self, column: Column) -> Result<f64> {
         self.value(column).ok_or_else(|| {
             let problem = format!("{}: mend or remove the row", self.no_number(column));
@@ -194,7 +201,7 @@ impl TableReader {
         })
     }
 
-    /// What stands in the present row where a number is needed.
+    /// Describes the cell of the current row where a number is needed.
     pub(crate) fn no_number(&self, column: Column) -> String {
         let found = match &self.source {
             Source::Text(text) => {
@@ -211,7 +218,8 @@ impl TableReader {
         format!("{found} where a finite number is needed")
     }
 
-    /// Bytes read so far; of a file of another format than CSV, its size by the share of rows read.
+    /// Number of bytes read so far. For formats other than CSV, the file size times the share of
+    /// rows read.
     #[must_use]
     pub fn bytes_read(&self) -> u64 {
         match &self.source {
@@ -220,7 +228,7 @@ impl TableReader {
         }
     }
 
-    /// The present row, to be written out again.
+    /// The current row, to be written again.
     pub fn row(&mut self) -> &Row {
         match &mut self.source {
             Source::Text(text) => text.row(),
@@ -228,12 +236,12 @@ impl TableReader {
         }
     }
 
-    /// The columns in order, whatever their names.
+    /// All columns in order.
     pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
         (0..self.header.len()).map(Column)
     }
 
-    /// The unit that a row of units below the header gives a column.
+    /// The unit that a row of units below the header gives for a column.
     pub(crate) fn unit(&self, column: Column) -> Option<&str> {
         match &self.source {
             Source::Text(text) => text.unit(column.0),
@@ -241,7 +249,7 @@ impl TableReader {
         }
     }
 
-    /// Where the present row is.
+    /// Position of the current row.
     pub(crate) fn row_place(&self) -> Place {
         match &self.source {
             Source::Text(text) => Place::Line(text.line()),
@@ -249,7 +257,7 @@ impl TableReader {
         }
     }
 
-    /// SHA-256 in hexadecimal of the file; to be asked for at the end of the table.
+    /// SHA-256 of the file in hexadecimal. Valid at the end of the table.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -268,11 +276,11 @@ impl TableReader {
         }
     }
 
-    /// An error at the present row.
+    /// An error at the current row.
     #[must_use]
     pub fn fault(&self, column: Option<Column>, problem: String) -> Error {
         let row = match self.row_place() {
-            // Before the first row of a file without lines, it is the whole that is meant.
+            // Before the first row of a file without lines, the error concerns the whole file.
             Place::Row(0) => None,
             place => Some(place),
         };
@@ -300,7 +308,7 @@ pub(crate) fn file_sha256(path: &Path) -> std::io::Result<String> {
     Hash::file(path)
 }
 
-/// At most 40 characters of a text, for a message.
+/// A text shortened to at most 40 characters, for a message.
 fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     match text.char_indices().nth(MOST) {

@@ -1,8 +1,8 @@
-//! Columns by the names that people give them.
+//! Finds columns by the names that users type.
 //!
-//! A column is looked for, in this order, by its exact name; by its name without its unit, in upper
-//! or lower case; by its number, from 1; and by a name that is the beginning of its own, or ends one
-//! or two letters later, if that is so of one column only.
+//! The rules, in this order: the exact name; the name without unit, in upper or lower case; the
+//! number, from 1; a name that is the beginning of the column's name, or that is one or two letters
+//! longer than it, if this fits one column only.
 
 use super::shortened;
 use crate::recording::Quantity;
@@ -12,20 +12,20 @@ use crate::recording::Quantity;
 pub(super) enum Found {
     /// By its name.
     Named(usize),
-    /// By a number or a similar name, which is worth telling.
+    /// By its number or by a similar name. The user should be told.
     Taken(usize),
 }
 
 /// Why no column was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Missing {
-    /// Several would do.
+    /// Several columns fit.
     Ambiguous(Vec<usize>),
-    /// None would.
+    /// No column fits.
     Unknown,
 }
 
-/// Finds `asked` in a header in which it does not stand word by word.
+/// Finds `asked` in a header that does not contain it exactly.
 pub(super) fn find(header: &[String], asked: &str) -> Result<Found, Missing> {
     let wanted = plain(asked);
     let bare: Vec<String> = header.iter().map(|name| without_unit(name)).collect();
@@ -53,7 +53,7 @@ pub(super) fn find(header: &[String], asked: &str) -> Result<Found, Missing> {
     }
 }
 
-/// A name without regard to case and to blanks around it.
+/// A name in lower case, without blanks around it.
 fn plain(name: &str) -> String {
     name.trim().to_lowercase()
 }
@@ -62,8 +62,9 @@ fn without_unit(name: &str) -> String {
     plain(&Quantity::from_column(name).name)
 }
 
-/// Whether one name begins with the other: `temp` and `temperature_c`, or, with up to two letters
-/// more than the column has, `temperature` and `temperatur`. Numbers are not cut: `x1` is not `x10`.
+/// Whether one name begins with the other: `temp` and `temperature_c`, or `temperature` and
+/// `temperatur` (at most two letters more than the column has). Numbers must match completely: `x1`
+/// is not `x10`.
 fn begins(asked: &str, column: &str) -> bool {
     const SHORTEST: usize = 3;
     const LETTERS: usize = 2;
@@ -82,7 +83,7 @@ fn begins(asked: &str, column: &str) -> bool {
     }
 }
 
-/// Names, quoted for a message: the first of them, and how many more.
+/// The first few names, quoted, and how many more there are; for a message.
 pub(super) fn list<'n>(names: impl ExactSizeIterator<Item = &'n String>) -> String {
     const MOST: usize = 20;
     let count = names.len();
@@ -96,9 +97,9 @@ pub(super) fn list<'n>(names: impl ExactSizeIterator<Item = &'n String>) -> Stri
     }
 }
 
-/// The names of a header that `asked` may have been meant to be, the nearest first.
+/// The names of a header that are similar to `asked`, the nearest first.
 pub(super) fn near<'h>(header: &'h [String], asked: &str) -> Vec<&'h String> {
-    /// Beyond so many columns nobody types names from memory.
+    /// Nobody types names of such wide tables from memory, so no search is needed beyond this.
     const SEARCHED: usize = 1000;
     const ALIKE: f64 = 0.6;
     const MOST: usize = 3;
@@ -133,7 +134,7 @@ mod tests {
             ("Zeit,Temperatur (°C)", "temperature", Ok(Taken(1))),
             ("time_s,temperature_C,T2", "temp", Ok(Taken(1))),
             ("a,b,c", "2", Ok(Taken(1))),
-            // A named column wins over a number.
+            // A name wins over a number.
             ("a,b,1 [mm]", "1", Ok(Named(2))),
             ("x [mm],x [N]", "x", Err(Missing::Ambiguous(vec![0, 1]))),
             ("X [mm],x [N]", "X [n]", Ok(Named(1))),

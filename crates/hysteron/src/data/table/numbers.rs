@@ -1,8 +1,8 @@
-//! Columns of numbers in memory, one group of rows after another.
+//! Columns of numbers in memory, one row group after another.
 
 use super::Row;
 
-/// Columns of numbers; where one is missing it is not a number.
+/// Columns of numbers. A missing number is NaN.
 pub(super) type Group = Vec<Vec<f64>>;
 
 /// The rows of a table that is stored by columns.
@@ -10,21 +10,21 @@ pub(super) struct Numbers {
     group: Group,
     /// The groups after this one.
     rest: Box<dyn Iterator<Item = Result<Group, String>>>,
-    /// Rows of this group that were given out, and of those before it.
+    /// Number of rows returned from this group, and of those in the groups before it.
     at: usize,
     before: u64,
     rows: u64,
     bytes: u64,
     matrices: bool,
-    /// Columns that are times in seconds for certain.
+    /// Columns that are certainly times in seconds.
     times: Vec<usize>,
-    /// Names and lengths of the columns that are not as long as those asked for.
+    /// Names and lengths of the columns left out because of their length.
     left_out: Vec<(String, usize)>,
     row: Row,
 }
 
 impl Numbers {
-    /// Groups of `rows` rows in all, from a file of so many bytes.
+    /// Groups with `rows` rows in all, from a file of `bytes` bytes.
     pub(super) fn in_groups(
         rest: impl Iterator<Item = Result<Group, String>> + 'static,
         rows: u64,
@@ -44,7 +44,7 @@ impl Numbers {
         }
     }
 
-    /// Columns that are all there, and need not be of one length; some may be those of matrices.
+    /// Columns that are all in memory. Their lengths may differ, and some may belong to matrices.
     pub(super) fn held_whole(group: Group) -> Self {
         let bytes = group.iter().map(|column| 8 * column.len() as u64).sum();
         let rows = group.iter().map(Vec::len).max().unwrap_or(0) as u64;
@@ -55,12 +55,12 @@ impl Numbers {
         }
     }
 
-    /// The same with columns that are times in seconds.
+    /// Marks columns as times in seconds.
     pub(super) fn with_times(self, times: Vec<usize>) -> Self {
         Self { times, ..self }
     }
 
-    /// The unit of a column that is a time.
+    /// The unit of a column of time.
     pub(super) fn unit(&self, column: usize) -> Option<&str> {
         self.times.contains(&column).then_some("s")
     }
@@ -69,13 +69,13 @@ impl Numbers {
         self.matrices
     }
 
-    /// A column of a table that is held whole.
+    /// A column of a table that is in memory as a whole.
     pub(super) fn held(&self, column: usize) -> &[f64] {
         &self.group[column]
     }
 
-    /// Leaves the columns that are as long as one of them out of those held whole, and tells where
-    /// that one is now.
+    /// Leaves out all columns of another length than `column`, and returns the new index of
+    /// `column`.
     pub(super) fn keep_as_long_as(&mut self, column: usize, header: &mut Vec<String>) -> usize {
         let Some(length) = self.group.get(column).map(Vec::len) else {
             return column;
@@ -97,7 +97,7 @@ impl Numbers {
         keep[..column].iter().filter(|keep| **keep).count()
     }
 
-    /// The length of a column that was left out, and that of those kept.
+    /// The length of a column that was left out, and the length of those kept.
     pub(super) fn left_out(&self, name: &str) -> Option<(usize, usize)> {
         let data = format!("{name}:2");
         let found = self
@@ -123,7 +123,8 @@ impl Numbers {
         Ok(true)
     }
 
-    /// `None` beyond the end of a column that is shorter than others.
+    /// The number in the current row; `None` beyond the end of a column that is shorter than
+    /// others.
     pub(super) fn value(&self, column: usize) -> Option<f64> {
         let row = self.at.checked_sub(1)?;
         self.group.get(column)?.get(row).copied()
@@ -141,7 +142,7 @@ impl Numbers {
         &self.row
     }
 
-    /// Counted from 1; 0 before the first.
+    /// Counted from 1; 0 before the first row.
     pub(super) fn number_of_row(&self) -> u64 {
         self.before + self.at as u64
     }

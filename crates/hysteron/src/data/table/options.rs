@@ -1,21 +1,21 @@
-//! How a file is read.
+//! Options for reading a file.
 
 use crate::data::recording::Repair;
 
-/// How a recording or a table is read from a file.
+/// Options for reading a recording or a table from a file.
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `repair` | refuse | | what becomes of rows that cannot be used as they are |
-/// | `max_memory` | [`ReadOptions::MAX_MEMORY`], 4 GiB | any | most memory that the file's contents may take, in bytes |
+/// | `repair` | refuse | refuse, mend | what to do with rows that cannot be used |
+/// | `max_memory` | 4 GiB | any | largest memory for the contents of the file, bytes |
 ///
-/// A [`Repair`] alone stands for the options that differ in nothing else.
+/// A [`Repair`] converts into options with the defaults for all other fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// What becomes of rows that cannot be used as they are.
+    /// What to do with rows that cannot be used as they are.
     pub repair: Repair,
-    /// Most memory in bytes that the file's contents may take. A file that claims more is refused
-    /// before anything is allocated. Buffers of fixed size, some 10 MiB, come on top.
+    /// Largest memory in bytes for the contents of the file. A file that claims more is refused
+    /// before memory is allocated. Buffers of fixed size, about 10 MiB, are not counted.
     pub max_memory: u64,
 }
 

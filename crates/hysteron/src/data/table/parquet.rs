@@ -1,4 +1,4 @@
-//! Parquet files, one row group at a time.
+//! Reads Parquet files, one row group at a time.
 
 mod claims;
 mod thrift;
@@ -17,15 +17,15 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// What is read of a file.
+/// An open file: names, rows, times.
 pub(super) struct Opened {
     pub(super) header: Vec<String>,
-    /// Columns of times, which are in seconds.
+    /// Columns of times, converted to seconds.
     pub(super) times: Vec<usize>,
     pub(super) numbers: Numbers,
 }
 
-/// The numeric columns of a file: their names and rows. Times are in seconds.
+/// The numeric columns of a file: their names and rows. Times are converted to seconds.
 pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_or(0, |about| about.len());
@@ -48,7 +48,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
     let rows = reader.metadata().file_metadata().num_rows();
     let columns: Vec<usize> = numeric.iter().map(|(column, _)| *column).collect();
     let groups = (0..reader.num_row_groups()).map(move |n| {
-        // Negative sizes make the library panic here as well.
+        // Negative sizes make the library panic here too.
         let about = &reader.metadata().row_groups()[n];
         let fits = catch_unwind(AssertUnwindSafe(|| claims.check_group(about, &columns)));
         fits.map_err(|_| damaged("it contradicts itself"))?
@@ -74,7 +74,8 @@ fn refused(refusal: Refusal) -> String {
     }
 }
 
-/// What a use of the library gives. It panics where a damaged file contradicts itself.
+/// Calls the Parquet library. It panics if a damaged file contradicts itself; the panic becomes an
+/// error.
 pub(crate) fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
     match catch_unwind(AssertUnwindSafe(use_it)) {
         Ok(result) => result.map_err(damaged),
@@ -86,7 +87,7 @@ fn damaged(error: impl Display) -> String {
     format!("the Parquet file is damaged or cut off ({error}): write or copy it again")
 }
 
-/// What turns a stored number into the one that is meant.
+/// The conversion of a stored number to its meaning.
 #[derive(Clone, Copy)]
 struct Scale {
     factor: f64,
@@ -95,7 +96,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// `None` for a column that is no single number a row.
+    /// `None` for a column that does not have a single number per row.
     fn of(column: &ColumnDescriptor) -> Option<Self> {
         let stored = column.physical_type();
         if column.max_rep_level() > 0
@@ -110,7 +111,8 @@ impl Scale {
         let converted = column.converted_type();
         let nanoseconds = matches!(
             column.logical_type_ref(),
-            Some(LogicalType::Timestamp(time) | LogicalType::Time(time)) if time.unit == TimeUnit::NANOS
+            Some(LogicalType::Timestamp(time) | LogicalType::Time(time))
+                if time.unit == TimeUnit::NANOS
         );
         let factor = match converted {
             _ if nanoseconds || stored == Type::INT96 => 1e-9,
@@ -128,7 +130,7 @@ impl Scale {
     }
 
     fn apply(self, stored: f64) -> f64 {
-        // Dividing by a whole number is exact where its inverse is not.
+        // Dividing by a whole number is exact, multiplying by its inverse is not.
         match self.factor < 1.0 {
             true => stored / (1.0 / self.factor).round(),
             false => stored * self.factor,
@@ -162,14 +164,14 @@ fn read(group: &dyn RowGroupReader, column: usize, scale: Scale) -> Result<Vec<f
         }),
         R::FloatColumnReader(reader) => numbers(reader, rows, defined, |v| f64::from(*v)),
         R::DoubleColumnReader(reader) => numbers(reader, rows, defined, |v| *v),
-        // `Scale::of` lets none of these through.
+        // `Scale::of` accepts none of these types.
         R::ByteArrayColumnReader(_) | R::FixedLenByteArrayColumnReader(_) => {
             Ok(vec![f64::NAN; rows])
         }
     }
 }
 
-/// All values of a column, NaN for those that are null.
+/// All values of a column, NaN for null.
 fn numbers<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,

@@ -1,9 +1,9 @@
-//! What is worth knowing about how a file was understood.
+//! Remarks about how a file was understood.
 
 use crate::error::Place;
 use std::fmt;
 
-/// What was assumed in reading a file, for the reader of a message to judge.
+/// An assumption made while a file was read. The user can judge whether it is right.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Remark {
@@ -11,48 +11,48 @@ pub enum Remark {
     Encoding(&'static str),
     /// Lines above the header were skipped.
     Preamble {
-        /// How many.
+        /// Number of lines.
         lines: u64,
-        /// The names that were found below them, shortened.
+        /// The names in the header below them, shortened.
         header: String,
     },
-    /// There is no header row: columns go by their number, from 1.
+    /// There is no header row. Columns are numbered from 1.
     Unnamed {
-        /// Lines above the first row.
+        /// Number of lines above the first row.
         above: u64,
-        /// How many columns there are.
+        /// Number of columns.
         columns: usize,
     },
     /// A column was found by another name than its own.
     Found {
         /// The name that was asked for.
         asked: String,
-        /// Its own.
+        /// The name of the column.
         column: String,
     },
-    /// Commas that could stand between thousands were read as decimal.
+    /// Commas that could separate thousands were read as decimal commas.
     DecimalComma {
         /// The first such number as it was read.
         number: String,
         /// Its column.
         column: String,
-        /// Where it is.
+        /// Its position.
         place: Place,
     },
-    /// The time was turned into seconds.
+    /// The time was converted to seconds.
     Time {
         /// Its column.
         column: String,
-        /// Its unit.
+        /// Its unit in the file.
         unit: String,
     },
-    /// The time has no unit, and is odd as seconds.
+    /// The time has no unit and would be unusual in seconds.
     DoubtfulTime {
         /// Its column.
         column: String,
-        /// Median time between samples.
+        /// Median time between samples, if the unit is seconds.
         step: f64,
-        /// From the first to the last sample.
+        /// Time from the first to the last sample, if the unit is seconds.
         duration: f64,
     },
 }
@@ -69,7 +69,8 @@ impl fmt::Display for Remark {
             ),
             Self::Unnamed { above, columns } => write!(
                 f,
-                "no header row: the table begins in line {}, and its columns go by number, 1 to {columns}",
+                "no header row: the table begins in line {}, and its columns go by number, \
+                 1 to {columns}",
                 above + 1
             ),
             Self::Found { asked, column } => {
@@ -96,7 +97,8 @@ impl fmt::Display for Remark {
                 duration,
             } => write!(
                 f,
-                "the time in column `{column}` has no unit and is taken as seconds: a step of {step} s, {duration} s in all; \
+                "the time in column `{column}` has no unit and is taken as seconds: \
+                 a step of {step} s, {duration} s in all; \
                  if it is in another unit, say so in its name, as in `time [ms]`"
             ),
         }

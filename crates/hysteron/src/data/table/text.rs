@@ -1,4 +1,4 @@
-//! Text, line by line: CSV, and what measuring programs and loggers write.
+//! Reads text files line by line: CSV, and files written by measuring programs and data loggers.
 
 mod commas;
 mod dialect;
@@ -20,7 +20,8 @@ use split::Splitter;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// A line longer than this is none of a table of numbers, and a quoted cell that goes on for longer is not closed.
+/// Largest number of bytes in a line or a quoted cell. A longer line is not part of a table of
+/// numbers; a longer quoted cell has no closing quote.
 const LONGEST: u64 = 1 << 22;
 
 /// The rows of a text file.
@@ -30,25 +31,26 @@ pub(super) struct Text {
     dialect: Dialect,
     units: Vec<String>,
     row: Row,
-    /// A line as it stands in the file, and how many bytes of the row there were before it.
+    /// A line as it stands in the file, and the number of bytes of the row before it.
     raw: Vec<u8>,
     before: u64,
     splitter: Splitter,
-    /// The line that the row begins on, and how many it has.
+    /// The line on which the row begins, and the number of its lines.
     line: u64,
     height: u64,
     bytes: u64,
-    /// Whether the row is still to be given out, because it was read in search of the header.
+    /// Whether the current row is still to be returned, because it was read in search of the
+    /// header.
     held: bool,
-    /// What becomes of rows of another length than the header's; `None` where nothing can be mended.
+    /// What to do with rows of another length than the header; `None` if rows are never repaired.
     repair: Option<Repair>,
     ragged: Places,
-    /// The columns asked for, and what their commas say.
+    /// The columns asked for, and what is known about commas in their numbers.
     asked: Vec<(usize, Commas)>,
     remarks: Vec<Remark>,
 }
 
-/// A text that begins with `head`, which is all of it where `whole`.
+/// A text that begins with `head`. If `whole`, `head` is all of it.
 pub(super) struct Source<R> {
     pub(super) head: Vec<u8>,
     pub(super) whole: bool,
@@ -56,7 +58,7 @@ pub(super) struct Source<R> {
 }
 
 impl Text {
-    /// The header, and the rows below it.
+    /// Opens a text. Returns the header and the rows below it.
     pub(super) fn open(
         path: &Path,
         source: Source<impl Read + 'static>,
@@ -95,7 +97,7 @@ impl Text {
         let encoding = encoding.map(|encoding| Remark::Encoding(encoding.name()));
         text.remarks.extend(encoding);
         let header = text.read_header()?;
-        // A name, and the row's ends of cells.
+        // Memory for a name, and for the ends of its cells in a row.
         let names: usize = header.iter().map(|name| name.len() + 64).sum();
         let held = budget.take(names as u128, "the header");
         held.map_err(|problem| text.fault(problem))?;
@@ -103,7 +105,7 @@ impl Text {
     }
 
     fn read_header(&mut self) -> Result<Vec<String>> {
-        // Without a preamble these are comments, the last of which may be the header.
+        // Without a preamble these lines are comments. The last of them may be the header.
         let preamble = self.dialect.header.preamble;
         for _ in 0..self.dialect.header.above * u64::from(preamble) {
             self.raw.clear();
@@ -136,8 +138,8 @@ impl Text {
         Ok(header)
     }
 
-    /// Names for `columns` columns of numbers without a header: as NumPy writes it, the header is
-    /// the comment just above the numbers; otherwise they are numbered.
+    /// Names for `columns` columns of numbers without a header row. NumPy writes the header as a
+    /// comment just above the numbers; otherwise the columns are numbered.
     fn names_from(&mut self, comment: &[u8], columns: usize) -> Vec<String> {
         let cells = split::cells(comment, self.dialect.delimiter);
         let text = |cell: &Vec<u8>| String::from_utf8_lossy(cell).trim().to_owned();
@@ -150,8 +152,8 @@ impl Text {
         (1..=columns).map(|n| n.to_string()).collect()
     }
 
-    /// Reads the next row that is neither blank nor a comment; false at the end. The last comment
-    /// is left in `comment`, without its mark.
+    /// Reads the next row that is neither blank nor a comment. Returns false at the end. The last
+    /// comment is stored in `comment`, without its mark.
     fn read(&mut self, mut comment: Option<&mut Vec<u8>>) -> Result<bool> {
         loop {
             self.line += self.height;
@@ -163,7 +165,7 @@ impl Text {
                 return Ok(false);
             }
             if self.line == 1 && self.raw.starts_with(b"\xef\xbb\xbf") {
-                // A byte order mark would hide the first column's name.
+                // A byte order mark would become part of the first column's name.
                 self.raw.drain(..3);
             }
             if !dialect::is_skipped(&self.raw) {
@@ -185,7 +187,7 @@ impl Text {
         Ok(true)
     }
 
-    /// Reads a line into `raw`; false at the end of the file.
+    /// Reads a line into `raw`. Returns false at the end of the file.
     fn read_line(&mut self) -> Result<bool> {
         let mut lines = (&mut self.lines).take(LONGEST);
         let count = match lines.read_until(self.dialect.end, &mut self.raw) {
@@ -205,7 +207,7 @@ impl Text {
         Ok(count > 0)
     }
 
-    /// Splits the line in `raw` into `row`; whether the row ends in it.
+    /// Splits the line in `raw` into `row`. Returns whether the row ends in it.
     fn split(&mut self) -> bool {
         let (row, decimal_comma) = (&mut self.row.0, self.dialect.decimal_comma);
         self.splitter
@@ -215,7 +217,7 @@ impl Text {
             })
     }
 
-    /// The row's cells as text.
+    /// The cells of the row as text.
     fn names(&self) -> Result<Vec<String>> {
         let name = |cell: &[u8]| std::str::from_utf8(cell).map(|name| name.trim().to_owned());
         let names: std::result::Result<_, _> = self.row.cells().map(name).collect();
@@ -225,7 +227,7 @@ impl Text {
     pub(super) fn advance(&mut self, header: &[String]) -> Result<bool> {
         loop {
             if !std::mem::take(&mut self.held) && !self.read(None)? {
-                self.judge_commas(header)?;
+                self.check_commas(header)?;
                 return Ok(false);
             }
             let found = self.row.0.len();
@@ -270,9 +272,10 @@ impl Text {
         }
     }
 
-    /// At the end of the table: refuses commas that may stand between thousands, and tells of those
-    /// that could, unless any number says that they are decimal.
-    fn judge_commas(&mut self, header: &[String]) -> Result<()> {
+    /// At the end of the table, checks the commas that may separate thousands. They are no problem
+    /// if any number shows that commas are decimal. Otherwise, refuses columns that look like
+    /// thousands, and adds a remark about columns that could be.
+    fn check_commas(&mut self, header: &[String]) -> Result<()> {
         let asked = std::mem::take(&mut self.asked);
         if asked.iter().any(|(_, commas)| commas.is_decimal()) {
             return Ok(());
@@ -291,7 +294,8 @@ impl Text {
                     row: Some(place),
                     column: Some(column),
                     problem: format!(
-                        "`{written}` may be {number} or {whole}: write the numbers of this column with a decimal point, or without commas between thousands"
+                        "`{written}` may be {number} or {whole}: write the numbers of this column \
+                         with a decimal point, or without commas between thousands"
                     ),
                 });
             }
@@ -357,7 +361,7 @@ impl Text {
     }
 }
 
-/// A unit out of the brackets that it may stand in.
+/// A unit without brackets around it.
 fn without_brackets(unit: String) -> String {
     let inner = [('[', ']'), ('(', ')')]
         .into_iter()

@@ -1,8 +1,8 @@
-//! The unit of a column of time.
+//! The unit of a column of time, and its conversion to seconds.
 
 use crate::recording::Quantity;
 
-/// The units that are known: how they are written, and how many seconds they are.
+/// The known units: how they are written, and their length in seconds.
 const UNITS: [(&[&str], f64); 6] = [
     (
         &[
@@ -26,15 +26,15 @@ const UNITS: [(&[&str], f64); 6] = [
 /// The unit of a column of time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TimeUnit {
-    /// As it is written in the file.
+    /// As written in the file.
     pub(super) name: String,
-    /// How many seconds it is.
+    /// Length in seconds.
     seconds: f64,
 }
 
 impl TimeUnit {
-    /// The unit in brackets behind a name, of a row of units, or at the end of a name, as in
-    /// `time_ms`; `None` where there is none that is known.
+    /// Finds the unit: in brackets after the name, in the row of units (`below`), or at the end of
+    /// the name, as in `time_ms`. `None` if there is no known unit.
     pub(super) fn of(column: &str, below: Option<&str>) -> Option<Self> {
         let quantity = Quantity::from_column(column);
         match quantity.unit.as_deref().or(below) {
@@ -67,9 +67,9 @@ impl TimeUnit {
         bare.filter(|bare| !bare.is_empty()).unwrap_or(name)
     }
 
-    /// A time in seconds.
+    /// Converts a time to seconds.
     pub(super) fn in_seconds(&self, time: f64) -> f64 {
-        // Dividing by a whole number is exact where its inverse is not.
+        // Dividing by a whole number is exact, multiplying by its inverse is not.
         match self.seconds < 1.0 {
             true => time / (1.0 / self.seconds).round(),
             false => time * self.seconds,
@@ -91,7 +91,7 @@ mod tests {
             ("t [s]", Some("ms"), Some(1.0)),
             ("time ns", None, Some(1e-9)),
             ("Time [MS]", None, Some(1e-3)),
-            // What is no unit, or no suffix.
+            // Words that are not units or not suffixes.
             ("time_index", None, None),
             ("s", None, None),
             ("t [samples]", None, None),

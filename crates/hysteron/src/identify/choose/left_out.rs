@@ -1,4 +1,5 @@
-//! Errors on branches that were left out of the whole fit, choices included.
+//! Errors on branches that were left out of the whole fit, including the choice of levels and
+//! smoothness.
 
 use crate::error::Result;
 use crate::identify::choose::validate::{Candidates, choose};
@@ -8,31 +9,33 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 
-/// Groups of branches that are left out in turn.
+/// Largest number of groups of branches that are left out in turn.
 const FOLDS: usize = 5;
 
-/// Errors over branches that were left out, and over those that were not.
+/// Errors over the branches that were left out, and over those that were fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeftOut {
-    /// For each sample the group of branches it was left out with.
+    /// For each sample, the group of branches with which it was left out.
     pub fold: Vec<usize>,
-    /// Predicted output at each sample, when it was left out.
+    /// Output at each sample, from the fit that left it out.
     pub predicted: Vec<f64>,
-    /// Root mean squared error left out, in percent of the measured range.
+    /// Root mean squared error over samples left out, in percent of the measured range.
     pub nrmse_percent: f64,
-    /// The same over the samples that were fitted, all folds together.
+    /// Root mean squared error over the samples fitted, all folds together, in percent of the
+    /// measured range.
     pub training_nrmse_percent: f64,
-    /// Branches of the input.
+    /// Number of branches of the input.
     pub branches: usize,
     /// Levels and smoothness of each fold.
     pub chosen: Vec<(usize, f64)>,
 }
 
-/// Leaves out whole branches in turn and predicts them, with the options given, or with those that
-/// cross-validation of the remaining branches chooses from `candidates`.
+/// Leaves out whole branches in turn and compares them with a fit to the others. The fits use the
+/// `options`. With `candidates`, levels and smoothness are chosen by cross-validation of the
+/// branches that are not left out.
 ///
 /// # Errors
-/// As [`super::fit_weights`]; [`crate::Error::Fit`] for a single branch.
+/// As [`crate::Fit::run`]; [`crate::Error::Fit`] if there is only one branch.
 pub fn left_out(
     recordings: &[Recording],
     options: &FitOptions,

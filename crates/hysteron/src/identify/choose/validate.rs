@@ -1,5 +1,5 @@
-//! Cross-validation that leaves out whole branches: the samples of one branch are so alike that leaving
-//! out some of them would test nothing.
+//! Cross-validation over whole branches. Neighbouring samples of a branch are almost equal, so
+//! leaving out single samples would test nothing.
 
 use crate::error::Result;
 use crate::identify::options::FitOptions;
@@ -12,13 +12,13 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 
-/// Folds at most.
+/// Largest number of folds.
 const FOLDS: usize = 10;
 
-/// With fewer branches than this, parts of branches are left out instead.
+/// With fewer branches than this, parts of branches are left out instead of whole ones.
 const ENOUGH_BRANCHES: usize = 6;
 
-/// What to choose from.
+/// The candidates to choose from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidates {
     /// Numbers of levels, ascending.
@@ -28,9 +28,10 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// All that are worth trying; `None` where the choice is open.
+    /// The usual candidates, where the argument is `None`; otherwise only the value given.
     ///
-    /// Levels in steps of `√2` from 5 to 40; strengths in decades, and 0.
+    /// The usual numbers of levels are from 5 to 40 in steps of `√2`. The usual strengths are
+    /// decades, and 0.
     #[must_use]
     pub fn new(levels: Option<usize>, smooth: Option<f64>) -> Self {
         Self {
@@ -43,15 +44,16 @@ impl Candidates {
     }
 }
 
-/// Chooses levels and smoothness by the error on left-out branches. Returns the options with the choice
-/// made, and how it came about.
+/// Chooses levels and smoothness by the error on left-out branches. Returns the options with these
+/// values, and the record of the choice.
 ///
-/// Chosen is the smoothest candidate that is worse than the best by no more than one standard error over the folds. More
-/// levels are tried until two numbers in a row have not reduced the error by 1 %. With unknown starts in several recordings, the
-/// patterns of starts are all off and all on only.
+/// The choice is the smoothest candidate that is worse than the best by at most one standard error
+/// over the folds. More levels are tried until two numbers in a row have not reduced the error by 1
+/// %. If the starts of several recordings are unknown, only two patterns of starts are tried: all
+/// off and all on.
 ///
 /// # Errors
-/// As [`super::fit_weights`].
+/// As [`crate::Fit::run`].
 pub fn cross_validate(
     recordings: &[Recording],
     options: &FitOptions,
@@ -79,7 +81,7 @@ pub(crate) fn choose(
     }
     let (folds, whole_branches) = folds(&problem, kept);
     let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
-    // The strongest first: each solution is a start for the next.
+    // The strongest first, because each solution is the starting point of the next.
     let mut smooth = candidates.smooth.clone();
     smooth.sort_by(|a, b| b.total_cmp(a));
     let mut scores: Vec<Score> = Vec::new();
@@ -138,9 +140,9 @@ pub(crate) fn choose(
     Ok((options, validation))
 }
 
-/// Of the candidates that are worse than the best by no more than one standard error of that
-/// difference over the folds, the smoothest, and of these the best: the one-standard-error rule of Breiman
-/// et al. (1984), which keeps the noise of the folds from choosing too little.
+/// The one-standard-error rule of Breiman et al. (1984). Among the candidates that are worse than
+/// the best by at most one standard error of that difference over the folds, take the smoothest,
+/// and of these the best. Otherwise the noise of the folds could choose too little smoothness.
 fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
     let best = (0..scores.len()).min_by(|a, b| scores[*a].rmse.total_cmp(&scores[*b].rmse))?;
     let as_good = |n: &usize| {
@@ -160,8 +162,8 @@ fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
     chosen.map(|n| scores[n])
 }
 
-/// For each sample the fold that leaves it out, `None` for samples not kept at all; and whether the folds
-/// are of whole branches.
+/// For each sample the fold that leaves it out, `None` for samples that are not kept at all. Also
+/// whether the folds are of whole branches.
 fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) {
     let (unit, units, whole) = problem.experiment.units(kept, ENOUGH_BRANCHES);
     let count = units.min(FOLDS);
@@ -169,7 +171,7 @@ fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) 
     (folds, whole)
 }
 
-/// Squared errors on what a fold leaves out, for each strength of the smoothness.
+/// Squared errors on the samples that a fold leaves out, for each strength of the smoothness.
 fn squares_left_out(
     problem: &Problem,
     folds: &[Option<usize>],
@@ -203,7 +205,7 @@ fn squares_left_out(
             smooth,
             gram.clone(),
         )?;
-        // Without smoothness most weights are zero: to begin with none is nearer.
+        // Without smoothness most weights are zero. Then zero is a better starting point.
         let start_here = start.as_deref().filter(|_| smooth > 0.0);
         let solution = equations.solve(&target, problem.options.solver, start_here, 1, quiet)?;
         let predicted = problem.predict(&solution)?;

@@ -1,4 +1,4 @@
-//! The bootstrap over branches: how far the weights would have come out otherwise.
+//! The bootstrap over branches: how much the weights would differ with other errors in the data.
 
 use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
@@ -14,21 +14,23 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// With fewer branches than this, parts of branches take their place.
+/// With fewer branches than this, parts of branches are the units instead.
 const ENOUGH_BRANCHES: usize = 16;
 
-/// Most fits that leave something out: of more units, several are left out together.
+/// Largest number of fits that leave something out. With more units than this, several are left out
+/// together.
 const GROUPS: usize = 40;
 
-/// Part of the variance that factors keep, and how many there are at most.
+/// Share of the variance that the factors keep, and the largest number of factors.
 const KEPT: f64 = 0.99;
 const FACTORS: usize = 12;
 
-/// Offsets and weights of fits to data that might have been.
+/// Offsets and weights of fits to replicates of the data.
 ///
-/// A wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008): what a fit without them leaves of branches is put back with the
-/// sign of whole branches turned at random, and fitted again. Errors that are alike along a branch, as those of
-/// a model are, then count as what they are.
+/// A wild bootstrap over branches (Wu 1986; Cameron, Gelbach and Miller 2008). The residuals of a
+/// fit that left a branch out are added to the fitted output, with a random sign for each whole
+/// branch. Then the model is fitted again. Errors of a model are similar along a branch, and a
+/// common sign for the branch preserves that.
 pub(crate) fn replicates(
     problem: &Problem,
     fitted: &Fitted,
@@ -58,7 +60,8 @@ pub(crate) fn replicates(
             .collect();
         let moved = free.take_off(&mut noise);
         let x = replicate(equations, factor.as_ref(), problem, &solution.x, &noise)?;
-        // The free columns follow: those of the noise, and what the columns leave to them.
+        // The free columns have two parts: those of the noise, and the change caused by the new
+        // weights.
         let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
         let mut left = problem.regressor.forward(experiment, &difference)?;
         let taken = free.take_off(&mut left);
@@ -69,8 +72,9 @@ pub(crate) fn replicates(
     })
 }
 
-/// The error at each sample of a fit without its unit. A fit bends towards each branch, the more the fewer others
-/// speak of the same weights; these errors do not (the residuals of MacKinnon, Nielsen and Webb 2023).
+/// For each sample, the error of a fit without its unit. A fit bends towards each branch, more so
+/// if few other branches determine the same weights. These residuals are free of that (MacKinnon,
+/// Nielsen and Webb 2023).
 fn left_out_errors(
     problem: &Problem,
     fitted: &Fitted,
@@ -110,7 +114,8 @@ fn left_out_errors(
     Ok(errors)
 }
 
-/// Columns for the fitted output with `noise` on it, free columns taken off.
+/// The weights fitted to the fitted output plus `noise`, from which the free columns have been
+/// removed.
 fn replicate(
     equations: &NormalEquations<'_>,
     factor: Option<&Llt<f64>>,
@@ -120,14 +125,16 @@ fn replicate(
 ) -> Result<Vec<f64>> {
     let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
     let mut right = equations.times(x);
-    // The penalty shrinks what is fitted again; taking it off here keeps the replicates around the fit.
+    // The penalty shrinks the solution again. Subtract that effect, so that the replicates stay
+    // around the fit.
     right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
     equations.minimum(&right, x, factor, Progress::NONE)
 }
 
-/// Root mean squared deviations of the replicates from the fit, and their main joint ones (principal components).
+/// Root mean squared deviations of the replicates from the fit, and their principal components.
 ///
-/// From the fit, not from the replicates' mean: where a weight is zero, all of them lie on one side.
+/// The deviations are from the fit, not from the mean of the replicates: where a weight is zero,
+/// all replicates are on one side of it.
 pub(crate) fn spread(replicates: &[LoadPart], fit: &LoadPart) -> (LoadPart, Vec<LoadPart>) {
     let count = fit.weights.len() + 1;
     let value = |part: &LoadPart, n: usize| match n {
@@ -160,7 +167,8 @@ pub(crate) fn spread(replicates: &[LoadPart], fit: &LoadPart) -> (LoadPart, Vec<
         kept += size * size;
         factors.push(part(&|n| size * svd.U()[(n, k)]));
     }
-    // What is left out is spread over those that are kept, so that the band is not too narrow.
+    // The variance of the omitted factors is spread over the factors kept, so that the band is not
+    // too narrow.
     let stretch = if kept > 0.0 {
         (total / kept).sqrt()
     } else {

@@ -1,5 +1,4 @@
-//! What the data say of the weights, and what not: excitation, rank, standard errors, and a band around
-//! the output.
+//! Confidence in the weights of a fit: excitation, rank, standard errors, and factors for the band.
 
 use crate::error::Result;
 use crate::identify::doubt::bootstrap;
@@ -13,10 +12,10 @@ use crate::progress::Progress;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-/// Eigenvalues below this part of the largest are what rounding leaves of zero.
+/// Eigenvalues below this share of the largest one are zero up to rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// `None` without replicates.
+/// The confidence of a fit; `None` without bootstrap replicates.
 pub(crate) fn of(
     problem: &Problem,
     fitted: &Fitted,
@@ -37,7 +36,7 @@ pub(crate) fn of(
         options.smooth,
         progress,
     )?;
-    // What the data say without the penalty.
+    // The matrix without the penalty: what the data alone determine.
     let plain = match options.smooth > 0.0 {
         true => Some(NormalEquations::new(
             &problem.regressor,
@@ -53,7 +52,8 @@ pub(crate) fn of(
     let free_count = fitted.solution.free.len() as f64;
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
-    // Fitted residuals are smaller than the errors behind them.
+    // Fitted residuals are smaller than the errors themselves, so correct for the degrees of
+    // freedom.
     let used = degrees_of_freedom(&solution.x, &equations, plain.as_ref()) + free_count;
     let left = (samples - used).max(1.0);
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
@@ -68,7 +68,8 @@ pub(crate) fn of(
         .iter()
         .map(|range| &experiment.input[range.clone()])
         .collect();
-    // Where it is not known, the classes are those from off; what is open then counts among the unknowns.
+    // With an unknown start, the classes are those from off. Undetermined initial states count
+    // among the unknowns.
     let start = match options.start {
         Start::On => Initial::On,
         Start::Off | Start::Unknown => Initial::Off,
@@ -88,8 +89,9 @@ pub(crate) fn of(
     }))
 }
 
-/// How many parameters the fit has: one for each weight above zero, less as far as the penalty ties them together,
-/// `tr (G + P)⁻¹ G` over these (Hastie, Tibshirani and Friedman 2009, 7.6).
+/// Effective number of parameters: one for each weight above zero, fewer where the penalty ties
+/// weights together. `tr (G + P)⁻¹ G` over these weights (Hastie, Tibshirani and Friedman 2009,
+/// 7.6).
 fn degrees_of_freedom(
     x: &[f64],
     equations: &NormalEquations<'_>,
@@ -112,7 +114,8 @@ fn degrees_of_freedom(
     }
 }
 
-/// Rank of the centred regressor, and the ratio of its largest to its smallest singular value.
+/// Rank of the centred regressor, and the ratio of its largest to its smallest non-zero singular
+/// value.
 fn rank(equations: &NormalEquations<'_>) -> Result<(usize, f64)> {
     let count = equations.matrix.len().isqrt();
     let element = |i: usize, j: usize| equations.matrix[i * count + j];

@@ -1,9 +1,11 @@
-//! What recorded inputs can say about each operator, whatever the output was.
+//! How well recorded inputs determine each operator's weight. This depends on the input only, not
+//! on the output.
 //!
-//! The offset is free, so what counts is the regressor matrix with its column means taken off. An operator's weight is
-//! determined where its unit vector lies in that matrix' row space; this is read off the resolution matrix
-//! `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), `G` being the centred Gram matrix: a diagonal element of 1 says that the weight
-//! is found, less than 1 that a part of it can be shifted to other operators and the output stays the same.
+//! The offset is free, so the relevant matrix is the regressor with its column means subtracted. A
+//! weight is determined if its unit vector lies in the row space of that matrix. The test uses the
+//! resolution matrix `R = (G + εI)⁻¹ G` (Backus and Gilbert 1968), where `G` is the centred Gram
+//! matrix. A diagonal element of 1 means that the weight is determined. Less than 1 means that a
+//! part of the weight can be moved to other operators without a change of the output.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::sparse::{Initial, SparseForm};
@@ -16,23 +18,24 @@ use faer::{Mat, Side};
 use hysteron_core::Operator;
 use hysteron_core::{Definition, operator_index};
 
-/// Ridge `ε`. The centred Gram matrix counts samples: an operator that alone swings fully, for a few samples, has an
-/// element of about 1 there, and a spiral of [`crate::design()`] with ten samples a level no eigenvalue below 0.1.
-/// Swings of 1 % in a single sample leave 1e-4, and count as none.
+/// Ridge `ε`. The centred Gram matrix counts samples. An operator that swings fully on its own for
+/// a few samples has an element of about 1. A spiral of [`crate::design()`] with ten samples per
+/// level has no eigenvalue below 0.1. Swings of 1 % in a single sample give 1e-4 and count as none.
 const RIDGE: f64 = 1e-4;
 
-/// Rounding of the Gram matrix relative to its trace, which bounds every eigenvalue.
+/// Rounding of the Gram matrix relative to its trace. The trace bounds every eigenvalue.
 const ROUNDING: f64 = 1e-12;
 
-/// Largest unresolved part of what counts as determined. The ridge leaves up to `RIDGE / 0.1`; one missing
-/// equation among weights leaves 1/4, its weights being `+1, −1, −1, +1` around a corner, and 1/K if a whole row is seen as a sum.
+/// A weight counts as determined if its unresolved part is at most this. The ridge alone leaves up
+/// to `RIDGE / 0.1`. One missing equation among weights leaves 1/4, because its coefficients are
+/// `+1, −1, −1, +1` around a corner. If a whole row is seen only as a sum, 1/K is left.
 pub(crate) const UNRESOLVED: f64 = 5e-3;
 
-/// The class of every operator, in the order of the weights, after the recorded `inputs`: each sets out with every
-/// operator off, and one offset is common to all.
+/// The class of every operator, in the order of the weights, for recorded `inputs`. Each input
+/// starts with every operator off. One offset is common to all.
 ///
-/// A branch ends at a reversal of more than 1 % of the recording's range. Noise on an input counts as movement: prepare the
-/// input before. `O(n + N³)` time and `O(N²)` memory.
+/// A branch ends at a reversal of more than 1 % of the recording's range. Noise on an input counts
+/// as movement, so prepare a noisy input first. `O(n + N³)` time and `O(N²)` memory.
 ///
 /// ```
 /// use hysteron::{Excitation, Operator, Plane, excitation};
@@ -46,12 +49,14 @@ pub(crate) const UNRESOLVED: f64 = 5e-3;
 /// ```
 ///
 /// # Errors
-/// [`Error::Core`] for an input that is not finite; [`Error::Fit`] where the plane has too many operators for their Gram matrix.
+/// [`Error::Core`] for an input that is not finite; [`Error::Fit`] if the Gram matrix of the
+/// plane's operators would be too large.
 pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result<Vec<Excitation>> {
     Unresolved::of(inputs, plane, operator, Initial::Off)?.classes(inputs)
 }
 
-/// What recorded inputs leave open: `I − R = ε (G + εI)⁻¹`, the part of a unit prior variance that data of unit noise leave.
+/// What recorded inputs leave unresolved: `I − R = ε (G + εI)⁻¹`, the share of a unit prior
+/// variance that remains after data of unit noise.
 pub(crate) struct Unresolved {
     plane: Plane,
     operator: Operator,
@@ -77,7 +82,7 @@ impl Unresolved {
         let factor = Mat::from_fn(count, count, |a, b| gram[a * count + b])
             .llt(Side::Lower)
             .map_err(|_| {
-                Error::Fit("the Gram matrix is not definite: the input has no use".into())
+                Error::Fit("the Gram matrix is not definite: the input cannot be used".into())
             })?;
         let mut matrix = factor.inverse();
         matrix *= faer::Scale(ridge);
@@ -100,9 +105,10 @@ impl Unresolved {
         Ok(moves.into_iter().enumerate().map(class).collect())
     }
 
-    /// Which Everett corners `C[p][q]`, `q < p`, are determined, each at the place of weight `(q + 1, p)`.
+    /// Which Everett corners `C[p][q]`, `q < p`, are determined. Each is at the index of the weight
+    /// `(q + 1, p)`.
     ///
-    /// A corner is a sum of weights: `S (I − R) Sᵀ` has on its diagonal what is open of each.
+    /// A corner is a sum of weights, so its unresolved part is on the diagonal of `S (I − R) Sᵀ`.
     pub(crate) fn corners_known(&self) -> Vec<bool> {
         let levels = self.plane.levels();
         let count = self.plane.operators();
@@ -137,7 +143,7 @@ fn prefix_sums(levels: usize, mu: &mut [f64]) {
     }
 }
 
-/// `Φᵀ Φ` of all recordings together, the mean over them taken off every column.
+/// `Φᵀ Φ` of all recordings together, with the common mean subtracted from every column.
 fn centred_gram(
     inputs: &[&[f64]],
     plane: Plane,
@@ -163,7 +169,7 @@ fn centred_gram(
     Ok(gram)
 }
 
-/// On how many branches each operator moves by more than 1 % of its swing.
+/// The number of branches on which each operator moves by more than 1 % of its swing.
 fn branches_moved(
     inputs: &[&[f64]],
     plane: Plane,
@@ -181,7 +187,7 @@ fn branches_moved(
         if start == Initial::On {
             plain.step(plane.max())?;
         }
-        // From there to the first sample nobody saw it move.
+        // The movement before the first sample was not recorded, so it does not count.
         plain.step(first)?;
         let mut before = plain.states().to_vec();
         for end in branch_ends(input) {
@@ -199,7 +205,7 @@ fn branches_moved(
 fn branch_ends(input: &[f64]) -> Vec<f64> {
     let mut turning = Turning::new(usual_tolerance(input));
     let turns = input.iter().filter_map(|&t| turning.push(t));
-    // The start counts as a turn, and begins the first branch.
+    // The start is reported as a turning point; it begins the first branch.
     let mut ends: Vec<f64> = turns.skip(1).map(|(n, _)| input[n]).collect();
     ends.extend(turning.branch().map(|(_, n)| input[n]));
     ends
@@ -212,7 +218,8 @@ mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
 
-    /// Whether each unit vector lies in the span of the rows, by elimination on the dense matrix.
+    /// Whether each unit vector lies in the span of the rows, by Gaussian elimination on the dense
+    /// matrix.
     fn in_row_space(rows: &[Vec<f64>], count: usize) -> Vec<bool> {
         let mut rows: Vec<Vec<f64>> = rows.to_vec();
         let mut pivots = 0;
@@ -234,7 +241,7 @@ mod tests {
             }
             pivots += 1;
         }
-        // Reduced: a unit vector in the span is a row of its own.
+        // In reduced form, a unit vector in the span is itself a row.
         (0..count)
             .map(|n| {
                 rows[..pivots].iter().any(|row| {
@@ -252,7 +259,8 @@ mod tests {
                 let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
                 let levels = 2 + seed as usize % 4;
                 let plane = Plane::new(1.0, levels as f64, levels).unwrap();
-                // Turning points on a quarter grid: what is determined, is so at full strength.
+                // With turning points on a quarter grid, every determined weight is determined well
+                // above the ridge.
                 let turns = 2 + seed % 7;
                 let mut input = vec![0.0];
                 for _ in 0..turns {

@@ -1,4 +1,4 @@
-//! What the data determined, and how well: excitation, bootstrap, confidence.
+//! How well the data determine the weights: excitation, bootstrap, confidence.
 
 pub(super) mod bootstrap;
 pub(super) mod confidence;

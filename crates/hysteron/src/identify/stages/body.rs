@@ -1,4 +1,4 @@
-//! Identification of a thermal body together with the weights behind it.
+//! Identifies a thermal body together with the weights behind it.
 
 use crate::error::{Error, Result};
 use crate::identify::fit_weights;
@@ -11,36 +11,43 @@ use crate::recording::Recording;
 use crate::series::range;
 use serde_json::json;
 
-/// Samples that the search looks at, or up to three times as many; the last fit sees all.
+/// Number of samples that the search uses (up to three times as many). The last fit uses all
+/// samples.
 const SEARCHED: usize = 2000;
 
-/// Time constants that the longest recording must last: after four of them a body has settled to 2 %. A slower one
-/// cannot be told from a drift.
+/// The longest recording must last at least this many time constants: after four, a body has
+/// settled to 2 %. A slower body cannot be distinguished from drift.
 const SETTLED: f64 = 4.0;
 
-/// Neighbours on the first grid of time constants differ by this factor.
+/// Ratio of neighbouring time constants on the first grid.
 const GRID: f64 = 2.0;
 
-/// Time constants are resolved where one of half or twice the size fits this much worse (RMSE), whatever
-/// the other one. Much less can be had by chance, for the weights make up for a wrong body.
+/// A time constant is resolved if half or twice its value fits worse by this ratio of RMSE,
+/// whatever the other time constant is. Smaller ratios occur by chance, because the weights can
+/// compensate for a wrong body.
 const RESOLVED: f64 = 1.25;
 
-/// Where the simplex is this small the time constants are known to a thousandth: far below what data can tell.
+/// At this size of the simplex the time constants are known to a thousandth, far better than data
+/// can determine.
 const TOLERANCE: f64 = 1e-3;
 
-/// Steps of the simplex, several times what it takes.
+/// Largest number of simplex steps, several times the number that is needed.
 const STEPS: usize = 200;
 
-/// Identifies a thermal body and the weights behind it, from recordings of a drive (current, voltage, duty) with time.
+/// Identifies a thermal body and the weights behind it, from recordings of a drive (squared
+/// current, squared voltage, duty cycle) with time.
 ///
-/// For given time constants the weights are a closed problem, that of [`fit_weights`]; the search is over the time
-/// constants only (separable least squares, Golub and Pereyra 1973), on a logarithmic grid and from its best
-/// point by the simplex of Nelder and Mead. They lie between the sampling step and a quarter of the longest recording: a faster body is
-/// always at rest, a slower one never comes near it. The plane is by default that of the temperature.
+/// For given time constants, finding the weights is the problem of [`fit_weights`]. So the search
+/// is over the time constants only (separable least squares, Golub and Pereyra 1973): on a
+/// logarithmic grid, then from its best point by the simplex of Nelder and Mead. The time constants
+/// lie between the sampling step and a quarter of the longest recording. A faster body is always at
+/// rest, and a slower one never comes near it. By default the plane covers the range of the
+/// temperature.
 ///
-/// The weights can make up for a wrong body as long as each branch is driven in one way only. Where the two time constants are not
-/// resolved for that reason, one for both is identified, as a body in unchanging surroundings has; `fit.other["thermal"]` of the model
-/// says which. Drives of different shape, a ramp and a step, tell them apart.
+/// If each branch is driven in one way only, the weights can compensate for a wrong body, and the
+/// two time constants are not resolved. Then a common one is identified, which is what a body in
+/// constant surroundings has. `fit.other["thermal"]` of the model records which of the two was
+/// done. Drives of different shape, for example a ramp and a step, resolve both.
 ///
 /// # Errors
 /// As [`fit_weights`]; [`Error::Thermal`] for recordings without time.
@@ -78,7 +85,7 @@ struct Search<'a> {
     progress: Progress<'a>,
     /// Logarithms of the shortest and the longest time constant searched.
     bounds: (f64, f64),
-    /// Of so many samples three at most are looked at.
+    /// Of each run of this many samples, at most three are used.
     stride: usize,
 }
 
@@ -101,7 +108,7 @@ impl<'a> Search<'a> {
         }
         if shortest <= 0.0 {
             return Err(Error::Thermal(
-                "time does not pass in a recording: nothing can be learned of its body".into(),
+                "time does not pass in a recording, so its body cannot be identified".into(),
             ));
         }
         let samples: usize = recordings.iter().map(Recording::len).sum();
@@ -117,7 +124,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// RMSE with the weights that are best behind a body with these logarithms of time constants.
+    /// RMSE with the best weights behind a body with these logarithms of its time constants.
     fn rmse(&self, logarithms: [f64; 2]) -> Result<f64> {
         self.progress.tell("time constants", f64::NAN)?;
         let [tau_heating, tau_cooling] = logarithms.map(f64::exp);
@@ -130,13 +137,15 @@ impl<'a> Search<'a> {
         let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();
         match fit_weights(&heated?, &self.options, Progress::NONE) {
             Ok(model) => Ok(model.fit.map_or(f64::INFINITY, |fit| fit.rmse)),
-            // A body too slow to reach the plane, or options that the last fit refuses as well.
+            // The body is too slow to reach the plane. Other invalid options are refused by the
+            // last fit as well.
             Err(error) if matches!(error.parts().0, Error::Fit(_)) => Ok(f64::INFINITY),
             Err(error) => Err(error),
         }
     }
 
-    /// The best time constants, as far as `N` free logarithms let them be chosen, and their RMSE.
+    /// The best time constants with `N` free logarithms (1: a common time constant, 2: both), and
+    /// their RMSE.
     fn best<const N: usize>(
         &self,
         logarithms: impl Fn(&[f64; N]) -> [f64; 2],
@@ -160,7 +169,7 @@ impl<'a> Search<'a> {
         Ok((logarithms(&point).map(f64::exp), rmse))
     }
 
-    /// The smallest RMSE with either time constant half or twice as long, and the other one free.
+    /// The smallest RMSE with either time constant halved or doubled, and the other one free.
     fn least_beside(&self, taus: &[f64; 2]) -> Result<f64> {
         let mut least = f64::INFINITY;
         for factor in [0.5, 2.0] {
@@ -173,8 +182,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Of each run of `stride` samples the first and those with the extreme temperatures: without these the turning points,
-/// and with them the memory, would be others.
+/// Keeps of each run of `stride` samples the first one and those with extreme temperatures. Without
+/// the extremes the turning points would change, and with them the memory of the operators.
 fn thin(recording: Recording, stride: usize) -> Recording {
     let theta = &recording.input;
     let starts = (0..theta.len()).step_by(stride);

@@ -1,10 +1,12 @@
-//! The simplex search of Nelder and Mead (1965), for a few parameters without derivatives.
+//! The simplex search of Nelder and Mead (1965): minimises a function of a few parameters without
+//! derivatives.
 
 use crate::error::Result;
 
-/// The point of the smallest value that is found from `start`, with that value.
+/// Searches for a minimum from `start`. Returns the best point and its value.
 ///
-/// The first simplex has edges of `edge`; the search ends when it is smaller than `tolerance` everywhere, or after `steps`.
+/// The edges of the first simplex have the length `edge`. The search ends when the simplex is
+/// smaller than `tolerance` in every direction, or after `steps`.
 pub(crate) fn minimise<const N: usize>(
     start: [f64; N],
     edge: f64,
@@ -79,7 +81,8 @@ mod tests {
     fn the_valley_of_rosenbrock_is_followed_to_its_end() {
         let valley = |x: &[f64; 2]| Ok((1.0 - x[0]).powi(2) + 100.0 * (x[1] - x[0] * x[0]).powi(2));
         let (found, least) = minimise([-1.2, 1.0], 0.5, 1e-7, 500, valley).unwrap();
-        // The simplex is smaller than 1e-7 at the end; along the valley it may be ten times that away.
+        // At the end the simplex is smaller than 1e-7. Along the valley the minimum may be ten
+        // times that away.
         assert!(
             (found[0] - 1.0).abs() < 1e-6 && (found[1] - 1.0).abs() < 2e-6,
             "{found:?}"

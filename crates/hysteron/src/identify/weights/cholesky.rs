@@ -1,18 +1,18 @@
-//! A Cholesky factor that grows and shrinks by one variable at a time, `O(p²)` each.
+//! A Cholesky factor that is updated when one variable is added or removed, in `O(p²)` time.
 
 use faer::{Mat, Side};
 
-/// `L` with `L Lᵀ` the matrix of the variables taken in so far, in that order; rows packed.
+/// `L` with `L Lᵀ` the matrix of the variables added so far, in that order. The rows are packed.
 #[derive(Default)]
 pub(crate) struct Cholesky {
     rows: Vec<f64>,
     size: usize,
 }
 
-/// A pivot this small beside its diagonal is what rounding leaves of zero over a thousand terms.
+/// A pivot below this share of its diagonal element is zero up to the rounding of a thousand terms.
 const ROUNDING: f64 = 1e-13;
 
-/// Place of row `i`'s first element.
+/// Index of the first element of row `i`.
 fn start(i: usize) -> usize {
     i * (i + 1) / 2
 }
@@ -22,7 +22,7 @@ impl Cholesky {
         &self.rows[start(i)..=start(i) + i]
     }
 
-    /// The factor of a whole matrix; `None` where that is not definite enough to tell from rounding.
+    /// The factor of a whole matrix; `None` if the matrix is not positive definite up to rounding.
     pub(crate) fn of(size: usize, element: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let factor = Mat::from_fn(size, size, &element).llt(Side::Lower).ok()?;
         let l = factor.L();
@@ -34,8 +34,9 @@ impl Cholesky {
         })
     }
 
-    /// Takes a variable in: `column` holds its matrix elements with those taken in before, `diagonal`
-    /// that with itself. False, and nothing changed, where it depends on the others up to rounding.
+    /// Adds a variable. `column` holds its matrix elements with the variables added before,
+    /// `diagonal` the one with itself. Returns false and changes nothing if the variable depends
+    /// linearly on the others, up to rounding.
     pub(crate) fn append(&mut self, mut column: Vec<f64>, diagonal: f64) -> bool {
         self.forward(&mut column);
         let pivot = diagonal - column.iter().map(|l| l * l).sum::<f64>();
@@ -48,8 +49,9 @@ impl Cholesky {
         true
     }
 
-    /// Takes the variable at place `k` out. Without its row, the rows below reach one element past the
-    /// diagonal; plane rotations of neighbouring columns take that element away again (Golub and Van Loan 2013, 6.5).
+    /// Removes the variable at index `k`. Without its row, the rows below have one element to the
+    /// right of the diagonal. Plane rotations of neighbouring columns remove that element (Golub
+    /// and Van Loan 2013, 6.5).
     pub(crate) fn remove(&mut self, k: usize) {
         let mut to = start(k);
         let rest: Vec<f64> = self.rows.split_off(start(k + 1));
@@ -125,7 +127,7 @@ mod tests {
                 None => {
                     let column = chosen.iter().map(|&m| a(n, m)).collect();
                     assert!(factor.append(column, a(n, n)));
-                    // The same variable once more depends on itself.
+                    // The same variable again depends on itself.
                     let again = chosen.iter().chain([&n]).map(|&m| a(n, m)).collect();
                     assert!(!factor.append(again, a(n, n)));
                     chosen.push(n);
@@ -135,7 +137,7 @@ mod tests {
             let whole = whole.map(|whole| whole.rows).unwrap_or_default();
             assert_eq!(whole.len(), factor.rows.len());
             for (a, b) in whole.iter().zip(&factor.rows) {
-                // Condition numbers of some thousands on rounding of 1e-16.
+                // Condition numbers of some thousands, times a rounding of 1e-16.
                 assert!((a.abs() - b.abs()).abs() < 1e-9, "{a} for {b}");
             }
             let x = factor.solve(chosen.iter().map(|&m| m as f64).collect());

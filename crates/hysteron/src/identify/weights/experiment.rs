@@ -1,4 +1,4 @@
-//! Recordings put together into one experiment: their samples one after the other, their branches, and
+//! Several recordings joined into one experiment: all samples in one series, their branches, and
 //! the functions of the load.
 
 use crate::error::{Error, Result};
@@ -15,13 +15,13 @@ use std::ops::Range;
 pub(crate) struct Experiment {
     pub(crate) input: Vec<f64>,
     pub(crate) output: Vec<f64>,
-    /// Samples of each recording.
+    /// The range of samples of each recording.
     pub(crate) recordings: Vec<Range<usize>>,
-    /// For each sample the branch it lies on, counted through all recordings.
+    /// For each sample, the number of its branch, counted through all recordings.
     pub(crate) branch: Vec<usize>,
-    /// Smallest and largest load, where there is one.
+    /// Smallest and largest load, if there is a load.
     pub(crate) load_range: Option<(f64, f64)>,
-    /// Functions of the load at each sample, a single 1 where there is none.
+    /// Functions of the load at each sample; a single constant 1 without a load.
     pub(crate) parts: Vec<Vec<f64>>,
 }
 
@@ -32,7 +32,7 @@ impl Experiment {
         };
         if recordings.len() > MOST_RECORDINGS {
             return Err(Error::Fit(format!(
-                "{} recordings, where one experiment has {MOST_RECORDINGS} at most",
+                "{} recordings are too many: one experiment has at most {MOST_RECORDINGS}",
                 recordings.len()
             )));
         }
@@ -66,10 +66,11 @@ impl Experiment {
             None => experiment.parts = vec![vec![1.0; experiment.input.len()]],
             Some(load) => {
                 let (low, high) = range(&load);
-                // A load that differs by rounding is one load.
+                // Loads that differ only by rounding are one load.
                 if high - low <= 1e-9 * high.abs().max(low.abs()) {
                     return Err(Error::Fit(format!(
-                        "the load is {low} throughout: nothing can be learned of its effect, fit without it"
+                        "the load is {low} throughout, so its effect cannot be identified: \
+                         fit without it"
                     )));
                 }
                 let (loads, degree) = (different(&load), options.load_degree);
@@ -97,7 +98,7 @@ impl Experiment {
         Ok(experiment)
     }
 
-    /// A branch ends where the input turns by more than noise.
+    /// A branch ends where the input turns by more than the noise.
     fn find_branches(&mut self) {
         let band = usual_tolerance(&self.input);
         for range in &self.recordings {
@@ -111,8 +112,11 @@ impl Experiment {
         self.branch.last().map_or(0, |last| last + 1)
     }
 
-    /// For each sample kept the unit that it stands or falls with: its branch, or, where there are fewer
-    /// than `enough` branches, a part of one, twice as many at least; how many units there are; and whether they are whole branches.
+    /// Groups the samples that are kept into units, which are left out or drawn as a whole. A unit
+    /// is a branch. With fewer than `enough` branches it is a part of one, and there are at least
+    /// twice as many units.
+    ///
+    /// Returns the unit of each sample, the number of units, and whether they are whole branches.
     pub(crate) fn units(
         &self,
         kept: Option<&[f64]>,
@@ -132,7 +136,8 @@ impl Experiment {
             return (unit, units, true);
         }
         let parts = (2 * enough).div_ceil(units.max(1));
-        // By travel of the input, not by samples: these may rest.
+        // Divide by the path of the input, not by the number of samples, because the input may
+        // rest.
         let mut travel = vec![0.0; units];
         let mut at = vec![0.0; unit.len()];
         for n in 0..unit.len() {
@@ -152,7 +157,7 @@ impl Experiment {
         (unit, units * parts, false)
     }
 
-    /// The plane of the options, from the range of all inputs where they leave it open.
+    /// The plane of the options; by default the one for the range of all inputs.
     pub(crate) fn plane(&self, recordings: &[Recording], options: &FitOptions) -> Result<Plane> {
         check_range(recordings, &self.output, |r| &r.output_quantity.name)?;
         check_range(recordings, &self.input, |r| &r.input_quantity.name)?;
@@ -163,14 +168,15 @@ impl Experiment {
         let plane = Plane::new(min, max, options.levels)?;
         if plane.normalise(low) >= plane.normalise(high) {
             return Err(Error::Fit(format!(
-                "the input, from {low} to {high}, moves no operator of a plane from {min} to {max}: take another range"
+                "the input, from {low} to {high}, moves no operator of a plane from {min} to \
+                 {max}: take another range"
             )));
         }
         Ok(plane)
     }
 }
 
-/// How many loads there are that differ by more than a thousandth of their range.
+/// Number of loads that differ by more than a thousandth of their range.
 fn different(load: &[f64]) -> usize {
     let mut sorted = load.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -186,7 +192,7 @@ fn different(load: &[f64]) -> usize {
     count
 }
 
-/// Ranges below this have squares of zero.
+/// The square of a range below this is zero in floating point.
 const SMALLEST: f64 = 1e-140;
 
 fn check_range(
@@ -209,11 +215,11 @@ fn check_range(
     })
 }
 
-/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is that of the recording's
-/// input: the lowest ridge starts one step below the lowest level.
+/// The plane of `levels` levels whose active range `[T_min − ΔT, T_max]` is the range of the
+/// recording's input. The lowest ridge starts one step below the lowest level.
 ///
 /// # Errors
-/// [`Error::Core`] for a number of levels that cannot be, [`Error::Recording`] for an input that never changes.
+/// [`Error::Core`] for an invalid number of levels; [`Error::Recording`] for a constant input.
 pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
     check_range(std::slice::from_ref(recording), &recording.input, |r| {
         &r.input_quantity.name
@@ -225,7 +231,7 @@ pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
 fn active_plane(low: f64, high: f64, levels: usize) -> Result<Plane> {
     let step = (high - low) / levels.max(1) as f64;
     let mut plane = Plane::new(low + step, high, levels)?;
-    // Rounding must not leave the lowest input outside.
+    // Rounding must not place the lowest input outside the active range.
     for _ in 0..4 {
         if plane.bottom() > low {
             plane = Plane::new(plane.min().next_down(), high, levels)?;

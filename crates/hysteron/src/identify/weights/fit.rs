@@ -1,4 +1,4 @@
-//! Weights, offset and sign of a model, and the summary of its fit.
+//! Fits weights, offset and sign of a model with fixed options, and summarises the fit.
 
 use crate::error::{Error, Result};
 use crate::identify::doubt::confidence;
@@ -9,8 +9,8 @@ use crate::progress::Progress;
 use crate::recording::{Origin, Recording};
 use crate::series::Errors;
 
-/// Identifies a model from recordings, each of which starts from its own initial state; with a load
-/// in them, weights that depend on it.
+/// Identifies a model from recordings, each with its own initial state. If they have a load, the
+/// weights depend on it.
 pub(crate) fn fit_weights(
     recordings: &[Recording],
     options: &FitOptions,

@@ -1,5 +1,6 @@
-//! Columns whose values may have any sign: the output with every operator off, for each function of
-//! the load. They are eliminated: for every choice of weights the best ones follow at once.
+//! Free columns: regressor columns whose coefficients may have any sign. They model the output with
+//! every operator off, for each function of the load. They are eliminated, because for given
+//! weights their best coefficients follow directly.
 
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
@@ -14,7 +15,7 @@ pub(crate) struct FreeColumns {
 }
 
 impl FreeColumns {
-    /// None at all.
+    /// No free columns.
     pub(crate) fn none() -> Self {
         Self {
             columns: Vec::new(),
@@ -22,7 +23,7 @@ impl FreeColumns {
         }
     }
 
-    /// `parts` are the functions of the load; `kept` is 1 at samples that count and 0 at others.
+    /// `parts` are the functions of the load. `kept` is 1 for samples that count and 0 for others.
     pub(crate) fn new(parts: &[Vec<f64>], kept: Option<&[f64]>) -> Result<Self> {
         let columns: Vec<Vec<f64>> = parts
             .iter()
@@ -34,7 +35,8 @@ impl FreeColumns {
         let count = columns.len();
         let product = |a: usize, b: usize| dot(&columns[a], &columns[b]);
         let mut gram = Mat::from_fn(count, count, product);
-        // Few loads may not tell the functions apart: a little ridge takes the smallest ones then.
+        // With few different loads the functions may be linearly dependent. A small ridge makes the
+        // matrix definite.
         for n in 0..count {
             gram[(n, n)] = gram[(n, n)] * (1.0 + 1e-14) + f64::MIN_POSITIVE;
         }
@@ -48,7 +50,7 @@ impl FreeColumns {
         Ok(Self { columns, inverse })
     }
 
-    /// The best values for `residual`, and takes them off it.
+    /// Fits the free columns to `residual`, subtracts them from it, and returns their coefficients.
     pub(crate) fn take_off(&self, residual: &mut [f64]) -> Vec<f64> {
         let products: Vec<f64> = self.columns.iter().map(|z| dot(z, residual)).collect();
         let values: Vec<f64> = self.inverse.iter().map(|row| dot(row, &products)).collect();
@@ -60,7 +62,7 @@ impl FreeColumns {
         values
     }
 
-    /// Takes `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` off the Gram matrix.
+    /// Subtracts `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` from the Gram matrix.
     pub(crate) fn eliminate_from(
         &self,
         gram: &mut [f64],

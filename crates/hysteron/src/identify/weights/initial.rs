@@ -1,4 +1,5 @@
-//! The start of a recording, with a model that is known: how much of each operator is on before the first sample.
+//! Estimates the state before a recording with a known model: how far each operator is on before
+//! the first sample.
 
 use crate::error::Result;
 use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
@@ -7,20 +8,23 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 
-/// Sweeps end when none moves the output by more than this part of the model's range, and at the latest after so many.
+/// The iteration ends when no coordinate step moves the output by more than this share of the
+/// model's range, or after this number of sweeps.
 const ENOUGH: f64 = 1e-9;
 const SWEEPS: usize = 10_000;
 
-/// The outputs of `model` for the recording's input, from the start that explains its output best.
+/// The outputs of `model` for the recording's input, from the initial state that explains its
+/// output best.
 ///
-/// Every operator that the first sample leaves open contributes `ν (γ_on − γ_off)` more than from off, with
-/// `ν` between 0 and its weight: bounded least squares, one coordinate at a time (Hildreth 1957). With weights of either sign
-/// `ν` is free, as it is where such weights are identified.
+/// An operator that the first sample does not determine contributes `ν (γ_on − γ_off)` more than
+/// from off, with `ν` between 0 and its weight. These `ν` are found by bounded least squares, one
+/// coordinate at a time (Hildreth 1957). For weights of either sign `ν` is not bounded, as in their
+/// identification.
 pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Result<Vec<f64>> {
     let form = SparseForm::new(*model.plane(), model.operator())?;
     let (count, input) = (form.operators(), &recording.input);
     super::problem::check_gram(count)?;
-    // To states in [0, 1]: μ (2γ − 1) = 2μ γ − μ.
+    // Converts to states in [0, 1]: μ (2γ − 1) = 2μ γ − μ.
     let factor = if model.operator() == Operator::Mkp {
         1.0
     } else {
@@ -40,7 +44,7 @@ pub(crate) fn simulate_from_unknown(model: &Model, recording: &Recording) -> Res
         .filter(|(n, open)| *open > OPEN && weights[*n] != 0.0)
         .map(|(n, _)| n)
         .collect();
-    // Dᵀ D and Dᵀ y of D = Φ_on − Φ_off, of the operators that are open.
+    // DᵀD and Dᵀy of D = Φ_on − Φ_off, for the operators that are not determined.
     let mut gram = vec![0.0; count * count];
     for (left, right, part) in [
         (Initial::On, Initial::On, 1.0),

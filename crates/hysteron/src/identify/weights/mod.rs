@@ -1,4 +1,10 @@
-//! Weights from samples: regressor, Gram matrix, smoothness, least squares.
+//! The least-squares problem for the weights.
+//!
+//! `experiment` joins the recordings and `problem` sets up the fit. `sparse` and `rows` apply the
+//! regressor of one recording without forming it; `regressor` combines recordings, starts and
+//! loads. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
+//! equations with `nnls`, `pivoting` and `cholesky`. `initial` estimates the start state for a
+//! known model.
 
 pub(super) mod cholesky;
 pub(super) mod experiment;

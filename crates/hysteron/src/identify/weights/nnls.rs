@@ -1,21 +1,22 @@
-//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson (1974),
-//! in the form of Bro and de Jong (1997) that needs the Gram matrix only, several variables at a time
-//! and with a factor that is updated, not made anew.
+//! Non-negative least squares on normal equations: the active set method of Lawson and Hanson
+//! (1974). The form of Bro and de Jong (1997) needs only the Gram matrix. Here several variables
+//! enter at a time, and the factor is updated instead of computed anew.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::cholesky::Cholesky;
 use crate::progress::Progress;
 
-/// Of the variables above zero, the part by which a step may increase them: more at once save
-/// gradients, but many of them leave again.
+/// One step may add one variable, and one more for each group of this many variables above zero.
+/// Adding more at once saves gradients, but many of them leave again.
 const STRIDE: usize = 8;
 
-/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and positive
-/// definite, `N × N`, row by row. The objective never rises; where rounding keeps it from falling, the number of steps ends it.
+/// Minimises `½ xᵀ A x − bᵀ x` over `x ≥ 0`, from the feasible `x` given. `A` is symmetric and
+/// positive definite, `N × N`, row by row. The objective never rises. If rounding stops its
+/// progress, the limit on the number of steps ends the loop.
 pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
-    // Rounding of sums of `count` products: below this a gradient is zero.
+    // Rounding of sums of `count` products. A gradient below this is zero.
     let slack = 1e-13 * size;
     let row = |n: usize| &a[n * count..(n + 1) * count];
     let mut set = FreeSet::default();
@@ -25,7 +26,8 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
             set.factor = factor;
             set.members = above;
         }
-        // What depends on the others has to go: it would never be looked at again.
+        // A variable that depends on the others must leave, because it would never be examined
+        // again.
         None => {
             for n in above {
                 if !set.take(n, row(n)) {
@@ -35,7 +37,7 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
         }
     }
     set.descend(b, x);
-    // Variables that did not help are left alone until others have.
+    // Variables that did not help are not tried again until others have helped.
     let mut tried = vec![false; count];
     for _ in 0..30 * count + 100 {
         progress.tell("weights", set.members.len() as f64 / count as f64)?;
@@ -66,11 +68,13 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
         }
     }
     Err(Error::Fit(
-        "the non-negative solution was not found: the problem is too badly conditioned, take fewer levels".into(),
+        "the non-negative solution was not found, because the problem is too badly conditioned: \
+         take fewer levels"
+            .into(),
     ))
 }
 
-/// The variables that are free to be above zero, and the factor of their part of the matrix.
+/// The variables that may be above zero, and the factor of their part of the matrix.
 #[derive(Default)]
 struct FreeSet {
     members: Vec<usize>,
@@ -78,7 +82,7 @@ struct FreeSet {
 }
 
 impl FreeSet {
-    /// Takes a variable in, unless it depends on those that are in already; says whether it did.
+    /// Adds a variable unless it depends on those in the set. Returns whether it was added.
     fn take(&mut self, n: usize, row: &[f64]) -> bool {
         let column = self.members.iter().map(|&m| row[m]).collect();
         let taken = self.factor.append(column, row[n]);
@@ -88,8 +92,8 @@ impl FreeSet {
         taken
     }
 
-    /// Goes to the minimum over the free variables, dropping those that meet zero on the way. Says
-    /// whether any variable moved.
+    /// Moves to the minimum over the free variables, and drops those that reach zero on the way.
+    /// Returns whether any variable moved.
     fn descend(&mut self, b: &[f64], x: &mut [f64]) -> bool {
         let mut moved = false;
         while !self.members.is_empty() {
@@ -97,7 +101,7 @@ impl FreeSet {
                 .factor
                 .solve(self.members.iter().map(|&n| b[n]).collect());
             let towards = || self.members.iter().zip(&minimum);
-            // How far until the first variable meets zero.
+            // Step length until the first variable reaches zero.
             let reach = |x: f64, z: f64| if x > 0.0 { x / (x - z) } else { 0.0 };
             let limit = towards()
                 .filter(|(_, z)| **z <= 0.0)
@@ -112,7 +116,8 @@ impl FreeSet {
             }
             for k in (0..self.members.len()).rev() {
                 let (n, z) = (self.members[k], minimum[k]);
-                // The same number as above, so that one at least is dropped, whatever the rounding.
+                // The same number as above, so that at least one variable is dropped in spite of
+                // rounding.
                 let meets_zero = z <= 0.0 && reach(x[n], z) <= limit;
                 x[n] += limit * (z - x[n]);
                 if meets_zero {
@@ -135,7 +140,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// `Bᵀ B` with `rows` random rows and a ridge; of lower rank where there are fewer rows than columns.
+    /// `Bᵀ B` with `rows` random rows, plus a ridge. The rank is lower if there are fewer rows than
+    /// columns.
     fn system(rng: &mut ChaCha8Rng, count: usize, rows: usize, ridge: f64) -> (Vec<f64>, Vec<f64>) {
         let b: Vec<Vec<f64>> = (0..rows)
             .map(|_| (0..count).map(|_| rng.random_range(0.0..1.0)).collect())
@@ -152,7 +158,7 @@ mod tests {
         (a, right.collect())
     }
 
-    /// The largest breach of the conditions of Karush, Kuhn and Tucker, relative to `b`.
+    /// The largest violation of the Karush-Kuhn-Tucker conditions, relative to `b`.
     fn breach(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
         let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
         let each = a.chunks(b.len()).zip(b).zip(x).map(|((row, b), &own)| {
@@ -174,16 +180,17 @@ mod tests {
         for round in 0..200 {
             let count = rng.random_range(1..60);
             let rows = rng.random_range(1..80);
-            // From well conditioned to what rounding alone makes definite.
+            // From well conditioned to definite only by rounding.
             let ridge = [1e-1, 1e-5, 1e-9][round % 3];
             let (a, b) = system(&mut rng, count, rows, ridge);
-            // Starts with zeros, tiny numbers and large ones: at the boundary a step may have no length.
+            // Starts with zeros, tiny and large numbers: at the boundary a step can have length
+            // zero.
             let start: Vec<f64> = (0..count)
                 .map(|_| [0.0, 0.0, 1e-300, 1e-12, 1.0][rng.random_range(0..5)])
                 .collect();
             let mut x = start.clone();
             solve(&a, &b, &mut x, Progress::NONE).unwrap();
-            // Rounding of 80 products, amplified by factors of the free part.
+            // Rounding of 80 products, amplified by the factors of the free part.
             assert!(breach(&a, &b, &x) < 1e-6, "round {round}");
             let (other, exact) = pivoting::minimum(&a, &b, &start);
             if exact {

@@ -1,19 +1,21 @@
-//! Block principal pivoting for non-negative least squares (Portugal, Júdice and Vicente 1994; Kim and Park
-//! 2011): a whole block of variables changes sides at once, each time with a new factor. Where most
-//! variables end above zero, as with smooth weights, this takes some ten factors, where an active set
-//! takes the variables in one by one.
+//! Block principal pivoting for non-negative least squares (Portugal, Júdice and Vicente 1994; Kim
+//! and Park 2011). In each step a whole block of variables enters or leaves the set above zero, and
+//! the factor is computed anew. If most variables end above zero, as with smooth weights, about ten
+//! factors are enough. An active set method would add the variables one by one.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-/// Exchanges of whole blocks that may fail to reduce the infeasible variables before it gives up.
+/// Number of block exchanges that may fail to reduce the number of infeasible variables before the
+/// method gives up.
 const PATIENCE: usize = 5;
 
-/// Most factors.
+/// Largest number of factors.
 const MOST: usize = 50;
 
-/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, beginning with the variables above zero in `x`; or, and then it says
-/// false, a point near it where rounding or cycling stopped it.
+/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, starting with the variables that are above zero
+/// in `x`. Returns true with the minimum. Returns false with a point near it if rounding or cycling
+/// stopped the method.
 pub(crate) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
     let count = b.len();
     let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();
@@ -59,7 +61,7 @@ pub(crate) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
     (best.1, best.0 == 0)
 }
 
-/// The minimum over the members alone, of either sign.
+/// The minimum over the members alone, without sign constraint.
 fn free_minimum(a: &[f64], b: &[f64], members: &[usize]) -> Option<Vec<f64>> {
     if members.is_empty() {
         return Some(Vec::new());

@@ -1,4 +1,4 @@
-//! A fit put as a linear problem: checked options, regressor, target, and the choice of the sign.
+//! The linear problem of a fit: checked options, regressor, target, and the choice of the sign.
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 
-/// Most memory that the Gram matrix may take.
+/// Largest size of the Gram matrix, in bytes.
 const GRAM_BYTES: u128 = 4 << 30;
 
 pub(crate) struct Problem {
@@ -21,7 +21,7 @@ pub(crate) struct Problem {
     pub(crate) options: FitOptions,
 }
 
-/// The best weights, with the sign that they are best with.
+/// The best weights, and the sign that belongs to them.
 pub(crate) struct Fitted {
     pub(crate) solution: Solution,
     pub(crate) sign: Sign,
@@ -33,7 +33,7 @@ impl Problem {
         let experiment = Experiment::new(recordings, options)?;
         if options.offset.is_some() && experiment.load_range.is_some() {
             return Err(Error::Fit(
-                "an offset that is given cannot depend on the load: leave one of them out".into(),
+                "a fixed offset cannot depend on the load: leave one of them out".into(),
             ));
         }
         let plane = experiment.plane(recordings, options)?;
@@ -51,7 +51,8 @@ impl Problem {
         })
     }
 
-    /// The output with the sign turned so that weights from zero on fit it, without a known offset.
+    /// The right-hand side of the fit: the output minus a known offset, with the sign turned so
+    /// that non-negative weights fit it.
     pub(crate) fn target(&self, sign: Sign) -> Vec<f64> {
         let offset = self.options.offset.unwrap_or(0.0);
         let turned = |y: &f64| sign.factor() * (y - offset);
@@ -65,7 +66,7 @@ impl Problem {
         }
     }
 
-    /// `A x` and the free columns at every sample, whether it was kept or not.
+    /// `A x` plus the free columns at every sample, whether it was kept or not.
     pub(crate) fn predict(&self, solution: &Solution) -> Result<Vec<f64>> {
         let mut output = self.regressor.forward(&self.experiment, &solution.x)?;
         for (part, value) in self.experiment.parts.iter().zip(&solution.free) {
@@ -77,7 +78,8 @@ impl Problem {
         Ok(output)
     }
 
-    /// Offset and weights for each function of the load, from states in `[0, 1]` to the operator's own outputs.
+    /// Offset and weights for each function of the load, converted from states in `[0, 1]` to the
+    /// operator's own outputs.
     pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
         let weights = self.regressor.weights(x).into_iter().enumerate();
         let part = |(part, mut weights): (usize, Vec<f64>)| {
@@ -93,12 +95,12 @@ impl Problem {
         weights.map(part).collect()
     }
 
-    /// Offset and weights, with a load those at the middle of its range.
+    /// Offset and weights; with a load, those at the middle of its range.
     pub(crate) fn at_middle(&self, x: &[f64], free: &[f64], sign: Sign) -> LoadPart {
         LoadPart::at_middle(&self.load_parts(x, free, sign))
     }
 
-    /// The best weights over the samples kept (all where `None`).
+    /// The best weights over the samples kept (all if `None`).
     pub(crate) fn solve(&mut self, kept: Option<&[f64]>, progress: Progress<'_>) -> Result<Fitted> {
         let free = self.free(kept)?;
         loop {
@@ -116,7 +118,7 @@ impl Problem {
                 let slopes = equations.slopes(&fitted.solution.x);
                 (fitted, slopes)
             };
-            // Rounding of a gradient: what the solver takes for zero.
+            // Rounding of a gradient: the solver takes smaller values for zero.
             let residual = &fitted.solution.residual;
             let slack = 1e-9 * residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             if self.options.solver == Solver::Ols
@@ -132,7 +134,7 @@ impl Problem {
     fn best_sign(&self, equations: &NormalEquations<'_>, progress: Progress<'_>) -> Result<Fitted> {
         let signs = match self.options.sign {
             Some(sign) => vec![sign],
-            // Without a constraint both signs give the same output.
+            // Without the constraint both signs give the same output.
             None if self.options.solver == Solver::Ols => vec![Sign::Positive],
             None => vec![Sign::Positive, Sign::Negative],
         };
@@ -153,7 +155,7 @@ impl Problem {
             }
         }
         let mut fitted = best.ok_or_else(|| Error::Fit("no sign to try".into()))?;
-        // Weights mostly below zero say that the output falls: turn both round.
+        // If the weights are mostly negative, the output falls: turn sign and weights.
         if self.options.sign.is_none() && fitted.solution.x.iter().sum::<f64>() < 0.0 {
             let Solution {
                 x, free, residual, ..
@@ -167,14 +169,15 @@ impl Problem {
     }
 }
 
-/// That the Gram matrix of so many columns can be had.
+/// Checks that the Gram matrix of this many columns is not too large.
 pub(crate) fn check_gram(columns: usize) -> Result<()> {
     let bytes = 8 * (columns as u128).pow(2);
     if bytes <= GRAM_BYTES {
         return Ok(());
     }
     Err(Error::Fit(format!(
-        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB allowed: take fewer levels",
+        "the Gram matrix of {columns} unknown weights takes {:.1} GiB, more than the {} GiB \
+         allowed: take fewer levels",
         bytes as f64 / f64::from(1 << 30),
         GRAM_BYTES >> 30
     )))
@@ -190,7 +193,7 @@ fn check(options: &FitOptions) -> Result<()> {
     } = options;
     if let Some(offset) = offset.filter(|offset| offset.is_nan() || offset.abs() > 1e140) {
         return Err(Error::Fit(format!(
-            "the offset {offset} is not a number to work with"
+            "the offset {offset} is not a number, or is too large to be squared"
         )));
     }
     if !(*smooth >= 0.0 && *smooth <= 1e6) {

@@ -1,12 +1,15 @@
-//! The whole linear problem of an experiment: several recordings, each from its own start, and weights
+//! The regressor of a whole experiment: several recordings, each with its own start, and weights
 //! that may depend on the load.
 //!
-//! A **column** is one operator with a share of its weight that starts on in some recordings and off in
-//! the others. With a known start there is one column an operator. With an unknown one, an operator
-//! that the first sample leaves undetermined has weight times initial state `ν` between 0 and `μ`;
-//! since `Φ_off μ + (Φ_on − Φ_off) ν = Φ_off (μ − ν) + Φ_on ν`, that is a column starting off and one
-//! starting on, both with weights from zero on. Over several recordings the set `0 ≤ ν_s ≤ μ` is the
-//! cone of all patterns of on and off, and [`Regressor::take_missing`] finds those that are worth having.
+//! A **column** belongs to one operator. It is the part of the operator's weight that starts on in
+//! certain recordings and off in the others. With a known start there is one column per operator.
+//!
+//! With an unknown start, consider an operator whose state the first sample does not determine. The
+//! product `ν` of weight and initial state is between 0 and `μ`. Since
+//! `Φ_off μ + (Φ_on − Φ_off) ν = Φ_off (μ − ν) + Φ_on ν`, this is a column that starts off and one
+//! that starts on, both with non-negative weights. Over several recordings the set `0 ≤ ν_s ≤ μ` is
+//! the cone of all patterns of on and off. [`Regressor::take_missing`] finds the patterns that
+//! reduce the error.
 
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
@@ -17,16 +20,16 @@ use crate::progress::Progress;
 use hysteron_core::Operator;
 use std::ops::Range;
 
-/// Most recordings in one experiment: a pattern of starts has a bit for each.
+/// Largest number of recordings in one experiment: a pattern of starts has one bit for each.
 pub(crate) const MOST_RECORDINGS: usize = 64;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Column {
-    /// Which of the functions of the load it is multiplied with.
+    /// Index of the function of the load that the column is multiplied by.
     pub(crate) part: usize,
-    /// Which operator, in the order of the weights.
+    /// Index of the operator, in the order of the weights.
     pub(crate) operator: usize,
-    /// Bit `s`: it starts on in recording `s`.
+    /// Bit `s` is set if the column starts on in recording `s`.
     on: u64,
 }
 
@@ -47,14 +50,14 @@ impl Column {
     }
 }
 
-/// The columns; what is asked of them is asked for the samples of an experiment.
+/// The columns of the regressor. Its products are computed from the samples of an experiment.
 pub(crate) struct Regressor {
     form: SparseForm,
-    /// For each operator, bit `s`: the first sample of recording `s` leaves its state open. Empty where
-    /// the start is known.
+    /// For each operator, bit `s` is set if the first sample of recording `s` does not determine
+    /// its state. Empty if the start is known.
     open: Vec<u64>,
     columns: Vec<Column>,
-    /// Operators whose state the first sample of some recording leaves open.
+    /// Number of operators whose state the first sample of some recording does not determine.
     pub(crate) open_at_start: usize,
 }
 
@@ -91,7 +94,7 @@ impl Regressor {
         Ok(regressor)
     }
 
-    /// For each operator, in which recordings the first sample leaves its state open.
+    /// For each operator, the recordings whose first sample does not determine its state.
     fn undetermined(&self, experiment: &Experiment) -> Result<Vec<u64>> {
         let mut open = vec![0; self.form.operators()];
         for (s, range) in experiment.recordings.iter().enumerate() {
@@ -115,12 +118,12 @@ impl Regressor {
         &self.columns
     }
 
-    /// Functions of the load.
+    /// Number of functions of the load.
     pub(crate) fn parts(&self) -> usize {
         self.columns.iter().map(|c| c.part + 1).max().unwrap_or(0)
     }
 
-    /// The weights of each part, all starts together.
+    /// The weights for each function of the load, summed over all patterns of starts.
     pub(crate) fn weights(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let mut weights = vec![vec![0.0; self.form.operators()]; self.parts()];
         for (column, x) in self.columns.iter().zip(x) {
@@ -160,7 +163,7 @@ impl Regressor {
     /// `Aᵀ r`.
     pub(crate) fn adjoint(&self, experiment: &Experiment, residual: &[f64]) -> Result<Vec<f64>> {
         let mut result = vec![0.0; self.columns.len()];
-        // Recordings that all columns start alike in share their sums.
+        // Recordings in which all columns start in the same way share their sums.
         for recordings in self.alike(experiment) {
             let products = self.products(experiment, recordings.clone(), residual)?;
             for (result, column) in result.iter_mut().zip(&self.columns) {
@@ -177,7 +180,7 @@ impl Regressor {
     /// Runs of recordings in which no column changes its start.
     fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
         let count = experiment.recordings.len();
-        // One recording a run, or all in one.
+        // One recording per run, or all recordings in one run.
         let length = if self.unknown_start() {
             1
         } else {
@@ -186,7 +189,7 @@ impl Regressor {
         (0..count).step_by(length).map(|s| s..s + length).collect()
     }
 
-    /// Starts that columns have in the recording.
+    /// The starts that columns have in the recording.
     fn starts(&self, recording: usize) -> Vec<Initial> {
         let has = |from: &Initial| {
             self.columns
@@ -280,10 +283,12 @@ impl Regressor {
         Ok(gram)
     }
 
-    /// Takes in the columns whose pattern of starts would reduce the error most, one an operator and
-    /// part, where that is by more than `slack`; says whether there were any.
+    /// For each operator and each function of the load, finds the pattern of starts that reduces
+    /// the error most. Adds its column if the descent is more than `slack`. Returns whether any
+    /// column was added.
     ///
-    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns; `slopes` is `P x`, a value a column.
+    /// `Σ_s max(Φ_offᵀ r, Φ_onᵀ r)_s − (P x)` is the steepest descent over all patterns. `slopes`
+    /// is `P x`, one value per column.
     pub(crate) fn take_missing(
         &mut self,
         experiment: &Experiment,
@@ -302,7 +307,8 @@ impl Regressor {
         let before = self.columns.len();
         for part in 0..experiment.parts.len() {
             for operator in 0..self.form.operators() {
-                // The first columns are those that start off, in this order; the penalty does not know of starts.
+                // The first columns are those that start off, in this order. The penalty does not
+                // depend on starts.
                 let first = part * self.form.operators() + operator;
                 let (mut on, mut descent) = (0, -slopes[first]);
                 for (s, products) in all.iter().enumerate() {
@@ -322,7 +328,7 @@ impl Regressor {
     }
 }
 
-/// `Φᵀ r` for each part and start.
+/// `Φᵀ r` for each function of the load and each start.
 struct Products {
     starts: Vec<Initial>,
     sums: Vec<Vec<f64>>,

@@ -1,5 +1,5 @@
-//! The rows of `W`, sample by sample: the factors of the turning points before the branch, which stay
-//! the same along it, and the three of the branch itself.
+//! The rows of `W`, sample by sample. A row has the factors of the turning points before the
+//! current branch, which are constant along it, and three factors of the branch itself.
 
 use crate::error::Result;
 use crate::identify::weights::sparse::Initial;
@@ -14,16 +14,16 @@ pub(crate) struct Term {
 }
 
 impl Term {
-    /// The place of an Everett corner that is always zero.
+    /// Marks an Everett corner that is always zero and so has no column.
     pub(crate) const NOWHERE: u32 = u32::MAX;
 }
 
-/// Walks an input and knows the row of the present sample.
+/// Steps through an input and gives the row of the current sample.
 pub(crate) struct Rows<'a> {
     blank: &'a Model<f64, Vec<f64>>,
     place: &'a [u32],
     state: OperatorState,
-    /// Turning points that `memory` was made of.
+    /// Number of turning points that `memory` was computed from.
     held: usize,
     memory: Vec<Term>,
 }
@@ -46,15 +46,15 @@ impl<'a> Rows<'a> {
         Ok(rows)
     }
 
-    /// Moves to the next sample; says whether that is on another branch, so that [`Rows::memory`],
-    /// still that of the branch before, has to be made anew.
+    /// Moves to the next sample. Returns true if this sample is on another branch. Then
+    /// [`Rows::memory`] still belongs to the branch before, and [`Rows::remember`] must follow.
     #[inline]
     pub(crate) fn leaves_branch(&mut self, input: f64) -> Result<bool> {
         self.blank.step(&mut self.state, input)?;
         Ok(self.state.held() != self.held)
     }
 
-    /// Makes [`Rows::memory`] that of the present branch.
+    /// Computes [`Rows::memory`] for the current branch.
     pub(crate) fn remember(&mut self) {
         self.held = self.state.held();
         self.memory.clear();
@@ -70,17 +70,17 @@ impl<'a> Rows<'a> {
         &self.state
     }
 
-    /// The factors of the turning points before the branch. A place may come more than once.
+    /// The factors of the turning points before the branch. A column may occur more than once.
     pub(crate) fn memory(&self) -> &[Term] {
         &self.memory
     }
 
-    /// The factors of the branch itself, at the present sample.
+    /// The factors of the branch itself, at the current sample.
     #[inline]
     pub(crate) fn branch(&self) -> [Term; 3] {
         self.state.branch_terms().map(|(index, factor)| {
             match self.place[index] {
-                // Zero times anything.
+                // Any column will do, because the factor is zero.
                 Term::NOWHERE => Term {
                     place: 0,
                     factor: 0.0,
@@ -90,7 +90,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Adds the factors of the turning points, `sum` times, to `sums`.
+    /// Adds the factors of the turning points, times `sum`, to `sums`.
     pub(crate) fn add_memory(&self, sum: f64, sums: &mut [f64]) {
         for term in &self.memory {
             sums[term.place as usize] += term.factor * sum;

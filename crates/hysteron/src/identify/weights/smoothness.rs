@@ -1,22 +1,23 @@
-//! Smoothness of the weights across the plane, in such units that its strength means the same whatever
-//! the number of levels.
+//! The smoothness penalty on the weights across the plane. It is scaled so that a given strength
+//! means the same for any number of levels.
 //!
-//! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the plane, and a
-//! line density `ρ = K μ` on the diagonal, where operators have no memory. Penalised are the squares of
-//! both densities' slopes (Tikhonov 1963), `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over neighbours inside and
-//! `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along the diagonal, against the mean squared error.
+//! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the
+//! plane. On the diagonal, where operators have no memory, they are a line density `ρ = K μ`. The
+//! penalty is on the squared slopes of both densities (Tikhonov 1963):
+//! `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over neighbours inside, and `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along
+//! the diagonal. It is added to the mean squared error.
 
 use crate::identify::weights::regressor::Column;
 use hysteron_core::operator_index;
 
 pub(crate) struct Smoothness {
-    /// Neighbours and the factor of their squared difference.
+    /// Pairs of neighbours, and the factor of their squared difference.
     edges: Vec<(usize, usize, f64)>,
     operators: usize,
 }
 
 impl Smoothness {
-    /// Of strength `lambda`, for the sum of squared errors of `samples`.
+    /// A penalty of strength `lambda`, to be added to the sum of squared errors of `samples`.
     pub(crate) fn new(levels: usize, lambda: f64, samples: f64) -> Self {
         let k = levels as f64;
         let (inside, diagonal) = (lambda * samples * k.powi(4), lambda * samples * k.powi(3));
@@ -47,7 +48,7 @@ impl Smoothness {
         !self.edges.is_empty()
     }
 
-    /// Adds the penalty's matrix to that of the columns.
+    /// Adds the penalty's matrix to the Gram matrix of the columns.
     pub(crate) fn add_to(&self, gram: &mut [f64], columns: &[Column]) {
         if self.edges.is_empty() {
             return;
@@ -148,7 +149,7 @@ mod tests {
             let penalty = Smoothness::new(levels, 1.0, 1.0);
             let slopes = penalty.times(&weights, &columns);
             let value: f64 = weights.iter().zip(&slopes).map(|(w, s)| w * s).sum();
-            // The sum leaves out a strip of one step along the edges: 5 ΔT of the integral at most.
+            // The sum omits a strip of one step along the edges: at most 5 ΔT of the integral.
             assert!((value / 2.5 - 1.0).abs() < 5.0 / k, "K = {levels}: {value}");
             let mut gram = vec![0.0; weights.len().pow(2)];
             penalty.add_to(&mut gram, &columns);

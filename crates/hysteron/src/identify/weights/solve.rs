@@ -1,9 +1,10 @@
-//! Least squares on the normal equations, made exact by refinement against the sparse form.
+//! Least squares on the normal equations, refined to full accuracy with the sparse form.
 //!
-//! The Gram matrix is singular as a rule: operators that were never excited, or always together. A
-//! small ridge makes it definite, and proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar 1976)
-//! take the ridge's effect away again: the residual of each step is computed by a run of the model,
-//! not from the Gram matrix. From zero on they lead to the solution of smallest norm.
+//! The Gram matrix is usually singular: some operators are never excited, or always move together.
+//! A small ridge makes it definite. Proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar
+//! 1976) then remove the effect of the ridge. The residual of each step is computed by a run of the
+//! model, not from the Gram matrix. Started from zero, the steps converge to the solution of
+//! smallest norm.
 
 use crate::error::{Error, Result};
 use crate::identify::weights::experiment::Experiment;
@@ -16,50 +17,52 @@ use crate::progress::Progress;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-/// Ridge relative to the mean of the Gram matrix' diagonal: small beside singular values that matter,
-/// large beside its rounding.
+/// Ridge relative to the mean diagonal element of the Gram matrix. It is small compared with the
+/// singular values that matter, and large compared with the rounding.
 const RIDGE: f64 = 1e-11;
 
-/// Rounding that centring leaves, relative to the diagonal before it: what cancels there stays here.
+/// Rounding error left after centring, relative to the diagonal before it, because large numbers
+/// cancel.
 const ROUNDING: f64 = 1e-13;
 
-/// Proximal steps end when one improves the objective by less than this part of it.
+/// Proximal steps end when one improves the objective by less than this share of it.
 const ENOUGH: f64 = 1e-12;
 
-/// Or when the error is this small beside the data: nothing but rounding is left.
+/// Proximal steps also end when the error is this small relative to the data. The rest is rounding.
 const NOTHING_LEFT: f64 = 1e-26;
 
-/// Most proximal steps of a fit.
+/// Largest number of proximal steps of a fit.
 pub(crate) const STEPS: usize = 200;
 
-/// Column values and what they leave.
+/// A solution and its residual.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
-    /// One value a column of the regressor.
+    /// Coefficient of each column of the regressor.
     pub(crate) x: Vec<f64>,
-    /// Values of the free columns.
+    /// Coefficients of the free columns.
     pub(crate) free: Vec<f64>,
-    /// What is left at every sample, zero where it was not kept.
+    /// Residual at every sample; zero for samples that were not kept.
     pub(crate) residual: Vec<f64>,
-    /// Sum of squared residuals and penalty.
+    /// Sum of squared residuals plus penalty.
     pub(crate) objective: f64,
 }
 
-/// `Aᵀ A` of the samples kept, free columns eliminated, with penalty and ridge.
+/// `Aᵀ A` of the samples kept, with the free columns eliminated, plus penalty and ridge.
 pub(crate) struct NormalEquations<'a> {
     regressor: &'a Regressor,
     experiment: &'a Experiment,
     free: &'a FreeColumns,
     kept: Option<&'a [f64]>,
     smoothness: Smoothness,
-    /// With ridge, `C × C`, row by row.
+    /// The matrix with ridge, `C × C`, row by row.
     pub(crate) matrix: Vec<f64>,
     /// The ridge.
     pub(crate) ridge: f64,
 }
 
 impl<'a> NormalEquations<'a> {
-    /// `kept` is 1 at samples that count and 0 at others; `smooth` the strength of the penalty.
+    /// `kept` is 1 for samples that count and 0 for others. `smooth` is the strength of the
+    /// penalty.
     pub(crate) fn new(
         regressor: &'a Regressor,
         experiment: &'a Experiment,
@@ -72,7 +75,7 @@ impl<'a> NormalEquations<'a> {
         Self::of_gram(regressor, experiment, free, kept, smooth, gram)
     }
 
-    /// As [`NormalEquations::new`], from the Gram matrix of the samples kept.
+    /// As [`NormalEquations::new`], from a Gram matrix of the samples kept.
     pub(crate) fn of_gram(
         regressor: &'a Regressor,
         experiment: &'a Experiment,
@@ -105,7 +108,8 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// The values that bring `A x`, with the best free columns, closest to `target`, from `start` on, in `steps` proximal steps at most.
+    /// Finds `x` for which `A x`, with the best free columns, is closest to `target`. Starts from
+    /// `start` and takes at most `steps` proximal steps.
     pub(crate) fn solve(
         &self,
         target: &[f64],
@@ -148,8 +152,8 @@ impl<'a> NormalEquations<'a> {
         Ok(best)
     }
 
-    /// The minimum of `½ xᵀ M x − bᵀ x`: with a factor of `M` over all `x`, without one over those from zero on,
-    /// beginning at `start`.
+    /// The minimum of `½ xᵀ M x − bᵀ x`. With a `factor` of `M` it is over all `x`. Without a
+    /// factor it is over `x ≥ 0`, starting from `start`.
     pub(crate) fn minimum(
         &self,
         right: &[f64],
@@ -161,7 +165,7 @@ impl<'a> NormalEquations<'a> {
             let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
             return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
         }
-        // Smooth weights are not zero as a rule.
+        // With smoothness most weights are not zero, so try block pivoting first.
         let (mut x, exact) = match self.smoothness.is_any() {
             true => pivoting::minimum(&self.matrix, right, start),
             false => (start.to_vec(), false),
@@ -180,7 +184,8 @@ impl<'a> NormalEquations<'a> {
         matrix.llt(Side::Lower).map_err(|_| not_definite())
     }
 
-    /// What `x` leaves of `target`, with the best free columns taken off.
+    /// The solution `x` with its residual from `target`, after the best free columns are
+    /// subtracted.
     fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
         let modelled = self.regressor.forward(self.experiment, &x)?;
         let mut residual: Vec<f64> = target.iter().zip(&modelled).map(|(y, h)| y - h).collect();
@@ -202,12 +207,12 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// `P x`, half the slope of the penalty.
+    /// `P x`, half the gradient of the penalty.
     pub(crate) fn slopes(&self, x: &[f64]) -> Vec<f64> {
         self.smoothness.times(x, self.regressor.columns())
     }
 
-    /// Half the descent of the objective: `Aᵀ r − P x`.
+    /// Half the negative gradient of the objective: `Aᵀ r − P x`.
     pub(crate) fn descent(&self, at: &Solution) -> Result<Vec<f64>> {
         let mut descent = self.regressor.adjoint(self.experiment, &at.residual)?;
         let slopes = self.slopes(&at.x);
@@ -226,7 +231,8 @@ impl<'a> NormalEquations<'a> {
 
 pub(crate) fn not_definite() -> Error {
     Error::Fit(
-        "the normal equations cannot be factorised: the data hold values too large or too small to work with"
+        "the normal equations cannot be factorised, because values in the data are too large or \
+         too small: use another unit"
             .into(),
     )
 }

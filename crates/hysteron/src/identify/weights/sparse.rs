@@ -1,37 +1,40 @@
-//! The sparse form of the regressor matrix, `Φ = W S`: `S` the prefix sums of the Everett table, a row
-//! of `W` the few triangle factors of a sample's turning points. `Φ` itself is never formed.
+//! The sparse form of the regressor matrix, `Φ = W S`. `S` is the prefix sum of the Everett table.
+//! A row of `W` holds the few triangle factors of a sample's turning points. `Φ` itself is never
+//! formed.
 //!
-//! Along a branch only three factors of a row change; those of the turning points before it stay. So
-//! sums over samples are taken branch by branch: `O(1)` a sample, and the turning points once a branch.
+//! Along a branch only three factors of a row change. The factors of the turning points before the
+//! branch stay the same. So sums over samples are taken branch by branch: `O(1)` per sample, and
+//! the turning points once per branch.
 
 use crate::error::Result;
 use crate::identify::weights::rows::{Rows, Term};
 use crate::model::Plane;
 use crate::progress::Progress;
 use hysteron_core::Operator;
-use hysteron_core::{Model, operator_index, table_index, table_len};
+use hysteron_core::{Model, operator_index, operators, table_index, table_len};
 
-/// Where the operators stand before the first sample.
+/// State of the operators before the first sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Initial {
     Off,
     On,
 }
 
-/// Part of an operator that counts as open: less is the rounding of a first sample at the plane's edge.
+/// An operator is undetermined if more than this share of it is. Smaller shares are rounding of a
+/// first sample at the edge of the plane.
 pub(crate) const OPEN: f64 = 1e-9;
 
-/// How often a long pass tells how far it is, in samples.
+/// Number of samples between two progress reports of a long loop.
 const REPORT: usize = 1 << 16;
 
 /// The regressor of a plane: `N` operators with states in `[0, 1]`, for any input.
 pub(crate) struct SparseForm {
     plane: Plane,
     operator: Operator,
-    /// A model without weights, that moves states.
+    /// A model without weights, which only moves states.
     blank: Model<f64, Vec<f64>>,
-    /// From a place in the Everett table to the place of `C[p][q]` among the `N` with `q < p`;
-    /// [`Term::NOWHERE`] for those with `q = p`, which are zero.
+    /// Maps an index in the Everett table to the index of `C[p][q]` among the `N` corners with
+    /// `q < p`; [`Term::NOWHERE`] for the corners with `q = p`, which are zero.
     place: Vec<u32>,
 }
 
@@ -43,7 +46,7 @@ impl SparseForm {
         let mut place = vec![Term::NOWHERE; table_len(levels)];
         for p in 1..=levels {
             for q in 0..p {
-                // C[p][q] has the place of weight (i, j) = (q + 1, p).
+                // C[p][q] has the index of the weight (i, j) = (q + 1, p).
                 place[table_index(p, q)] = operator_index(q + 1, p) as u32;
             }
         }
@@ -67,14 +70,14 @@ impl SparseForm {
         Rows::new(&self.blank, &self.place, from)
     }
 
-    /// How much of each operator the first sample leaves open: its state from on less that from off.
+    /// The share of each operator that the first sample does not determine: its state from on minus
+    /// its state from off.
     pub(crate) fn open(&self, first: f64) -> Result<Vec<f64>> {
         let levels = self.plane.levels();
         let (mut off, mut on) = (self.rows(Initial::Off)?, self.rows(Initial::On)?);
         off.leaves_branch(first)?;
         on.leaves_branch(first)?;
-        let operators = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
-        operators
+        operators(levels)
             .map(|(i, j)| Ok(on.state().gamma(i, j)? - off.state().gamma(i, j)?))
             .collect()
     }
@@ -87,7 +90,7 @@ impl SparseForm {
         from: Initial,
     ) -> Result<Vec<f64>> {
         let table = vec![0.0; table_len(self.plane.levels())];
-        // A relay's states come doubled and shifted by its output of ±1; KP states are those of MKP.
+        // A relay's output is ±1: scale and shift it to [0, 1]. KP states are those of MKP already.
         let relay = self.operator == Operator::Relay;
         let operator = if relay {
             Operator::Relay
@@ -107,7 +110,7 @@ impl SparseForm {
         Ok(output)
     }
 
-    /// Adds `Wᵀ r` to `sums`; [`SparseForm::operators_of`] makes `Φᵀ r` of it.
+    /// Adds `Wᵀ r` to `sums`. [`SparseForm::operators_of`] turns the result into `Φᵀ r`.
     pub(crate) fn add_adjoint(
         &self,
         input: &[f64],
@@ -138,8 +141,8 @@ impl SparseForm {
         transpose_sums(self.plane.levels(), w);
     }
 
-    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, `W` and `W'` being the rows of the two
-    /// starts; [`SparseForm::gram_of`] makes `Φᵀ diag(scale) Φ'` of it.
+    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, where `W` and `W'` are the rows for
+    /// the two starts. [`SparseForm::gram_of`] turns the result into `Φᵀ diag(scale) Φ'`.
     pub(crate) fn add_outer(
         &self,
         input: &[f64],
@@ -150,7 +153,7 @@ impl SparseForm {
     ) -> Result<()> {
         let count = self.operators();
         let mut a = self.rows(left)?;
-        // The same rows on both sides are walked once.
+        // If both sides have the same rows, compute them once.
         let mut other = (left != right).then(|| self.rows(right)).transpose()?;
         let mut sums = BranchSums::default();
         for (n, &x) in input.iter().enumerate() {
@@ -191,7 +194,7 @@ impl SparseForm {
     /// `Sᵀ A S` in place.
     pub(crate) fn gram_of(&self, gram: &mut [f64]) {
         let (count, levels) = (self.operators(), self.plane.levels());
-        // Sᵀ from the left: the same sums with whole rows as elements; then from the right.
+        // Sᵀ from the left: the same sums with whole rows as elements. Then S from the right.
         let row = |i: usize, j: usize| operator_index(i, j) * count;
         for j in 1..=levels {
             for i in 2..=j {
@@ -209,8 +212,8 @@ impl SparseForm {
     }
 }
 
-/// What the samples of one branch sum up to: with `f`, `g` the factors of the turning points and `t`, `u`
-/// those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
+/// Sums over the samples of one branch. With `f`, `g` the factors of the turning points and `t`,
+/// `u` those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
 #[derive(Default)]
 struct BranchSums {
     scale: f64,
@@ -223,7 +226,8 @@ impl BranchSums {
         self.scale += s;
         for (sums, terms) in [(&mut self.left, t), (&mut self.right, u)] {
             for term in terms {
-                // A branch passes its triangles in order: the same ones are the last ones.
+                // A branch passes its triangles in order, so a triangle seen before is among the
+                // last ones.
                 let recent = sums.len().saturating_sub(4);
                 match sums[recent..]
                     .iter_mut()
@@ -258,7 +262,7 @@ impl BranchSums {
 }
 
 fn transpose_sums(levels: usize, w: &mut [f64]) {
-    // Row `j` holds the places of operators `(1, j)` to `(j, j)`.
+    // Row `j` holds the elements of operators `(1, j)` to `(j, j)`.
     let mut rest = &mut w[..];
     for j in 1..=levels {
         let (row, below) = rest.split_at_mut(j);
@@ -297,7 +301,7 @@ mod tests {
     use hysteron_core::{Definition, operator_count};
     use rand::{RngExt, SeedableRng};
 
-    /// `Φ` from the definition, column by column of each row.
+    /// `Φ` from the definition, one row per sample.
     fn dense(plane: Plane, operator: Operator, input: &[f64], from: Initial) -> Vec<Vec<f64>> {
         let weights = vec![1.0; plane.operators()];
         let mut states = weights.clone();
@@ -330,7 +334,7 @@ mod tests {
     fn agrees(seed: u64, levels: usize, operator: Operator, (left, right): (Initial, Initial)) {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
         let plane = Plane::new(-1.0, 4.0, levels).unwrap();
-        // Runs of small steps, so that branches have many samples, and jumps between.
+        // Runs of small steps, so that branches have many samples, with jumps between them.
         let mut x = 0.0;
         let input: Vec<f64> = (0..400)
             .map(|_| {

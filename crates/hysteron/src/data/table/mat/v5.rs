@@ -1,4 +1,4 @@
-//! MATLAB files of versions 5 and 7 ("Level 5 MAT-file format", The MathWorks).
+//! Reads MATLAB files of versions 5 and 7 ("Level 5 MAT-file format", The MathWorks).
 
 mod elements;
 
@@ -9,11 +9,11 @@ use std::io::Read;
 
 const DAMAGED: &str = "the MATLAB file is damaged or cut off: save or copy it again";
 
-/// The class of structures, and the first and last of full numeric arrays.
+/// The class of structures, and the first and last class of full numeric arrays.
 const STRUCTURE: u32 = 2;
 const NUMERIC: std::ops::RangeInclusive<u32> = 6..=15;
 
-/// The real numeric arrays of a file with at most two dimensions, those in structures too.
+/// The real numeric arrays of a file with at most two dimensions, including those in structures.
 pub(in crate::data::table) fn read(
     bytes: &[u8],
     budget: &mut Budget,
@@ -44,14 +44,14 @@ pub(in crate::data::table) fn read(
     Ok(variables)
 }
 
-/// A compressed element, no longer than its own tag says. The budget is charged with it.
+/// Unpacks a compressed element, up to the size in its own tag. The budget pays for it.
 fn unpacked(compressed: Elements<'_>, budget: &mut Budget) -> Result<Vec<u8>, String> {
     const TAG: usize = 8;
     let mut decoder = flate2::read::ZlibDecoder::new(compressed.bytes);
     let mut tag = [0; TAG];
     decoder.read_exact(&mut tag).map_err(|_| DAMAGED)?;
     let size = compressed.of(&tag).size().ok_or(DAMAGED)?;
-    // What deflate can make of so many bytes at most; a size beyond is none.
+    // The largest size that deflate can expand this many bytes to. A claim beyond it is false.
     let most = compressed.bytes.len().saturating_mul(1032) + TAG;
     let length = TAG + size;
     if length > most {
@@ -65,15 +65,15 @@ fn unpacked(compressed: Elements<'_>, budget: &mut Budget) -> Result<Vec<u8>, St
     Ok(unpacked)
 }
 
-/// The variables found so far, and the memory for more.
+/// The variables found so far, and the memory left.
 struct Found<'f> {
     variables: &'f mut Vec<Variable>,
     budget: &'f mut Budget,
 }
 
 impl Found<'_> {
-    /// Adds the variable in an element, or those in its fields; anything else is left out. `name` is
-    /// that of a field, which the element itself does not have.
+    /// Adds the variable in an element, or those in its fields; anything else is ignored. `name` is
+    /// the name of a field, which the element itself does not contain.
     fn matrix(
         &mut self,
         name: Option<String>,
@@ -123,7 +123,8 @@ impl Found<'_> {
         Ok(())
     }
 
-    /// The fields of a structure as `name.field`; of an array of structures as `name(1).field`.
+    /// The fields of a structure are named `name.field`, those of an array of structures
+    /// `name(1).field`.
     fn structure(
         &mut self,
         name: &str,

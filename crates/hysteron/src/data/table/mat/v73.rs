@@ -1,4 +1,4 @@
-//! MATLAB files of version 7.3, which are HDF5 files.
+//! Reads MATLAB files of version 7.3, which are HDF5 files.
 
 use super::{DEEPEST, Variable};
 use crate::data::table::budget::Budget;
@@ -6,17 +6,17 @@ use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Layout};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// Most groups that are looked into: links may go round in circles.
+/// Largest number of groups that are read. Links between groups can form circles.
 const MOST_GROUPS: usize = 10_000;
 
-/// The real numeric arrays of a file with at most two dimensions. Those in a group, which is a
-/// structure of MATLAB, are `group.name`.
+/// The real numeric arrays of a file with at most two dimensions. A group is a MATLAB structure;
+/// arrays in it are named `group.name`.
 pub(in crate::data::table) fn read(
     path: &Path,
     budget: &mut Budget,
 ) -> Result<Vec<Variable>, String> {
     let size = std::fs::metadata(path).map_or(0, |about| about.len());
-    // The library holds the file, and as much again of what it finds in it.
+    // The library keeps the file in memory, and the same amount again for what it finds in it.
     budget.take(2 * u128::from(size), "the file")?;
     let mut found = Found {
         variables: Vec::new(),
@@ -27,7 +27,7 @@ pub(in crate::data::table) fn read(
         let file = File::open(path).map_err(damaged)?;
         found.group(&file.root(), "", 0)
     };
-    // The library panics where a damaged file contradicts itself.
+    // The library panics if a damaged file contradicts itself.
     match catch_unwind(AssertUnwindSafe(read)) {
         Ok(done) => done?,
         Err(_) => return Err(damaged("it contradicts itself")),
@@ -40,7 +40,7 @@ fn damaged(error: impl std::fmt::Display) -> String {
     format!("the MATLAB 7.3 file is damaged or cut off ({error}): save or copy it again")
 }
 
-/// What was found so far, and the memory for more.
+/// The variables found so far, and the memory left.
 struct Found<'f> {
     variables: Vec<Variable>,
     groups: usize,
@@ -48,7 +48,7 @@ struct Found<'f> {
 }
 
 impl Found<'_> {
-    /// The arrays of a group, their names beginning with `prefix`, and those of the groups in it.
+    /// Reads the arrays of a group, with `prefix` before their names, and those of its subgroups.
     fn group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<(), String> {
         self.groups += 1;
         if self.groups > MOST_GROUPS {
@@ -63,7 +63,7 @@ impl Found<'_> {
             return Ok(());
         }
         for (name, inner) in group.iter_groups().map_err(damaged)? {
-            // What MATLAB keeps cells and objects in.
+            // MATLAB stores cells and objects in groups whose names begin with `#`.
             if !name.starts_with('#') {
                 self.group(&inner, &format!("{prefix}{name}."), depth + 1)?;
             }
@@ -80,7 +80,8 @@ impl Found<'_> {
         if !numeric || is_text_or_empty(data).map_err(damaged)? {
             return Ok(());
         }
-        // HDF5 counts dimensions the other way round; the numbers lie column by column all the same.
+        // HDF5 lists dimensions in reverse order. The numbers are stored column by column all the
+        // same.
         let shape = data.shape().map_err(damaged)?;
         let (rows, columns) = match shape[..] {
             [] => (1, 1),
@@ -99,12 +100,12 @@ impl Found<'_> {
             .chunks()
             .is_ok_and(|listed| listed.len() as u128 > chunks(&layout, &shape))
         {
-            return Err(damaged("an array has more parts than it says"));
+            return Err(damaged("an array has more chunks than it claims"));
         }
         self.budget.take(held, format_args!("`{name}`"))?;
         let values = data.read_f64().map_err(damaged)?;
         if values.len() as u128 != count {
-            return Err(damaged("an array is not of the size it says"));
+            return Err(damaged("an array is not of the size that it claims"));
         }
         self.variables.push(Variable {
             name,
@@ -116,7 +117,7 @@ impl Found<'_> {
     }
 }
 
-/// The stored numbers of an empty array are its sizes.
+/// An empty array stores its sizes instead of numbers.
 fn is_text_or_empty(data: &Dataset) -> Result<bool, Error> {
     let attributes = data.attrs()?;
     let text = match attributes.get("MATLAB_class") {
@@ -131,7 +132,7 @@ fn is_text_or_empty(data: &Dataset) -> Result<bool, Error> {
     Ok(text || attributes.contains_key("MATLAB_empty"))
 }
 
-/// How many chunks cover an array; 1 for one that lies in one piece.
+/// Number of chunks that cover an array; 1 for an array in one piece.
 fn chunks(layout: &Layout, shape: &[u64]) -> u128 {
     let Layout::Chunked { chunk_shape, .. } = layout else {
         return 1;
@@ -144,10 +145,10 @@ fn chunks(layout: &Layout, shape: &[u64]) -> u128 {
         })
 }
 
-/// What the library needs to read `count` numbers, beside the numbers: their bytes, and all chunks at
-/// once as they are unpacked.
+/// The memory that the library needs to read `count` numbers, in addition to the numbers: their
+/// bytes, and all chunks at once while they are unpacked.
 fn working_memory(layout: &Layout, element: u64, shape: &[u64], count: u128) -> u128 {
-    // No sum of a few of these is beyond what a u128 holds.
+    // A sum of a few numbers up to this does not overflow a u128.
     const MOST: u128 = u128::MAX >> 4;
     let bytes = count.saturating_mul(u128::from(element)).min(MOST);
     let Layout::Chunked { chunk_shape, .. } = layout else {
@@ -156,7 +157,8 @@ fn working_memory(layout: &Layout, element: u64, shape: &[u64], count: u128) -> 
     let chunk = chunk_shape.iter().fold(u128::from(element), |bytes, side| {
         bytes.saturating_mul(u128::from(*side))
     });
-    // An entry of the index takes some hundred bytes, and unpacking a chunk takes it twice more.
+    // An entry of the index takes some hundred bytes, and unpacking a chunk takes twice its size in
+    // addition.
     const ENTRY: u128 = 256;
     let all = chunks(layout, shape).saturating_add(2);
     chunk.saturating_add(ENTRY).saturating_mul(all).min(MOST) + 2 * bytes

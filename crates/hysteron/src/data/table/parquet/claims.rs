@@ -1,4 +1,5 @@
-//! What a Parquet file claims of its sizes, held against the memory there is.
+//! Checks the sizes that a Parquet file claims against the memory that is left, before the library
+//! reads it.
 
 use super::thrift::Compact;
 use crate::data::table::budget::Budget;
@@ -9,7 +10,7 @@ use std::io::{Read, Seek, SeekFrom};
 
 const CONTRADICTION: &str = "it contradicts itself";
 
-/// How deep columns may be nested. The library goes down by recursion.
+/// Largest nesting depth of columns. The library reads them by recursion.
 const DEEPEST: usize = 100;
 
 /// A file whose claims are checked before the library reads it.
@@ -19,7 +20,7 @@ pub(super) struct Claims {
     budget: Budget,
 }
 
-/// Why a file is not read: it is damaged, or takes too much memory.
+/// Why a file is refused: it is damaged, or it takes too much memory.
 pub(super) enum Refusal {
     Damaged(String),
     TooLarge(String),
@@ -45,12 +46,13 @@ impl Claims {
         })
     }
 
-    /// The footer: its length, and how deep its columns are nested. What else it holds the library
-    /// checks against the footer's length.
+    /// Checks the footer: its length, and how deep its columns are nested. The library checks
+    /// everything else against the length of the footer.
     pub(super) fn check_footer(&mut self) -> Result<(), Refusal> {
-        /// The footer's length and the mark.
+        /// Size of the footer's length and the mark.
         const TAIL: u64 = 8;
-        /// What a byte of it may take when it is read: a column without any statistics.
+        /// Memory per byte of the footer when it is read; the worst case is a column without
+        /// statistics.
         const GROWTH: u128 = 256;
         let Some(end) = self.length.checked_sub(TAIL) else {
             return Ok(());
@@ -60,12 +62,12 @@ impl Claims {
         self.file.read_exact(&mut size)?;
         let size = u64::from(u32::from_le_bytes(size));
         let Some(start) = end.checked_sub(size) else {
-            // The library says so better.
+            // The library has a better message for this case.
             return Ok(());
         };
         self.take(u128::from(size) * GROWTH, "the list of its parts")?;
         let footer = self.bytes(start, size as usize)?;
-        // One that cannot be followed the library refuses.
+        // If the footer cannot be parsed here, the library will refuse it.
         match nesting(&footer) {
             Some(depth) if depth > DEEPEST => Err(Refusal::Damaged(format!(
                 "its columns are nested more than {DEEPEST} deep"
@@ -74,13 +76,15 @@ impl Claims {
         }
     }
 
-    /// A row group of which `columns` are read: its rows, and the largest page of any column.
+    /// Checks a row group of which `columns` are read: its rows, and the largest page of any
+    /// column.
     pub(super) fn check_group(
         &mut self,
         group: &RowGroupMetaData,
         columns: &[usize],
     ) -> Result<(), Refusal> {
-        /// A number and, while its column is read, its stored form and level, in vectors that grow.
+        /// Memory per number: the number itself and, while its column is read, its stored form and
+        /// level, in vectors that grow.
         const READ: u128 = 64;
         let rows = u128::try_from(group.num_rows()).map_err(|_| damaged())?;
         let numbers = rows * (8 * columns.len() as u128 + READ);
@@ -93,9 +97,10 @@ impl Claims {
         Ok(())
     }
 
-    /// What the largest page of a column takes, a dictionary and a page of data being held together.
+    /// Memory for the largest page of a column. A dictionary and a data page are held at the same
+    /// time.
     fn largest_page(&mut self, chunk: &ColumnChunkMetaData) -> Result<u128, Refusal> {
-        // Where these are negative, `byte_range` panics.
+        // `byte_range` panics if one of these is negative.
         let first = chunk.dictionary_page_offset();
         if [
             first.unwrap_or_default(),
@@ -121,9 +126,10 @@ impl Claims {
         Ok(2 * largest)
     }
 
-    /// The header of the page at `at` in a column that goes to `end`, and the header's length.
+    /// The header of the page at `at`, in a column that ends at `end`; and the length of that
+    /// header.
     fn page(&mut self, at: u64, end: u64) -> Result<(Page, u64), Refusal> {
-        // The second is for one with long statistics.
+        // The second window is for headers with long statistics.
         for window in [1 << 9, 1 << 20] {
             let bytes = self.bytes(at, (end - at).min(window) as usize)?;
             let mut rest = Compact(&bytes);
@@ -136,12 +142,13 @@ impl Claims {
         Err(damaged())
     }
 
-    /// How large a page is when it is unpacked. Two codecs do not stop at the size that it says.
+    /// The size of a page when it is unpacked. Two codecs do not stop at the size in the header.
     fn unpacked(&mut self, codec: Compression, page: &Page, at: u64) -> Result<u128, Refusal> {
         let said = u128::from(page.unpacked);
         let packed = u128::from(page.packed);
         match codec {
-            // Of LZ4 255 times as much can come at most, and is refused where that is too much.
+            // LZ4 can expand data at most 255 times. Refuse the page if even that could be too
+            // much.
             Compression::LZ4 => Ok(said.max(255 * packed)),
             Compression::GZIP(_) if 1032 * packed > u128::from(self.budget.left()) => {
                 self.check(packed, "a page of a column")?;
@@ -175,12 +182,12 @@ impl Claims {
     }
 }
 
-/// What the header of a page says of its size.
+/// The sizes in the header of a page.
 #[derive(Default)]
 struct Page {
     packed: u64,
     unpacked: u64,
-    /// How many values there are in a dictionary.
+    /// Number of values in a dictionary.
     values: u64,
 }
 
@@ -206,14 +213,14 @@ impl Page {
         Some(page)
     }
 
-    /// What its values take as a dictionary.
+    /// Memory for its values as a dictionary.
     fn dictionary(&self) -> u128 {
         16 * u128::from(self.values)
     }
 }
 
-/// How deep the columns in a footer are nested, without end where a column claims more parts than
-/// there are columns; `None` where the footer cannot be followed.
+/// The nesting depth of the columns in a footer; unlimited if a column claims more parts than there
+/// are columns. `None` if the footer cannot be parsed.
 fn nesting(footer: &[u8]) -> Option<usize> {
     let (mut deepest, mut open) = (0, Vec::new());
     Compact(footer).fields(|rest, id, kind| {

@@ -1,7 +1,7 @@
-//! As much of Thrift's compact protocol as it takes to see the sizes that a Parquet file claims,
-//! before the library allocates them.
+//! A small part of Thrift's compact protocol: enough to read the sizes that a Parquet file claims,
+//! before the library allocates memory for them.
 
-/// How deep structures and lists are followed.
+/// Largest depth of structures and lists.
 const DEEPEST: usize = 32;
 
 /// Types of fields.
@@ -15,7 +15,7 @@ const MAP: u8 = 11;
 const STRUCT: u8 = 12;
 const UUID: u8 = 13;
 
-/// Bytes in the compact protocol. Functions return `None` where they end, or cannot be.
+/// Bytes in the compact protocol. Functions return `None` if the bytes end or are invalid.
 pub(super) struct Compact<'b>(pub(super) &'b [u8]);
 
 impl Compact<'_> {
@@ -37,7 +37,7 @@ impl Compact<'_> {
         None
     }
 
-    /// An integer field.
+    /// Reads an integer field.
     pub(super) fn integer(&mut self) -> Option<i64> {
         let value = self.unsigned()?;
         Some((value >> 1) as i64 ^ -((value & 1) as i64))
@@ -48,7 +48,8 @@ impl Compact<'_> {
         Some(())
     }
 
-    /// Hands the fields of a structure to `field` with their number and type; it reads or skips them.
+    /// Calls `field` with the number and type of each field of a structure. `field` must read or
+    /// skip the field.
     pub(super) fn fields(
         &mut self,
         mut field: impl FnMut(&mut Self, i64, u8) -> Option<()>,
@@ -68,7 +69,7 @@ impl Compact<'_> {
         }
     }
 
-    /// How many elements the list has that begins here, and their type.
+    /// The length of the list that begins here, and the type of its elements.
     pub(super) fn list(&mut self) -> Option<(u64, u8)> {
         let head = self.byte()?;
         let count = match head >> 4 {
@@ -78,7 +79,7 @@ impl Compact<'_> {
         Some((count, head & 0xf))
     }
 
-    /// Passes over a field.
+    /// Skips a field.
     pub(super) fn skip(&mut self, kind: u8) -> Option<()> {
         self.skip_within(kind, DEEPEST)
     }
@@ -116,7 +117,7 @@ impl Compact<'_> {
         for _ in 0..count {
             for kind in kinds {
                 match BOOLEANS.contains(kind) {
-                    // In a list they have a byte of their own.
+                    // In a list, booleans have a byte of their own.
                     true => self.pass(1)?,
                     false => self.skip_within(*kind, depth)?,
                 }

@@ -1,20 +1,20 @@
-//! Whether commas in numbers are decimal, or stand between thousands.
+//! Decides whether commas in numbers are decimal commas or separate thousands.
 
-/// What the numbers of a column say, where commas were read as decimal points.
+/// What the numbers of a column show about commas, after these were read as decimal points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Commas {
-    /// A number that can have its comma as its decimal point only.
+    /// There is a number whose comma can only be decimal.
     decimal: bool,
-    /// The first that could have it between thousands, and its line.
+    /// The first number whose comma could separate thousands, and its line.
     pub(super) grouped: Option<(String, u64)>,
-    /// A number below 1000 without decimals, as thousands would leave it.
+    /// There is a number below 1000 without decimals, as in a column with thousands separators.
     small: bool,
-    /// Several commas in one number.
+    /// There is a number with several commas.
     several: bool,
 }
 
 impl Commas {
-    /// Learns from a cell, in which points stand for commas.
+    /// Evaluates a cell, in which commas have been replaced by points.
     pub(super) fn learn(&mut self, cell: &[u8], line: u64) {
         if self.decimal {
             return;
@@ -43,12 +43,12 @@ impl Commas {
         }
     }
 
-    /// Whether a number of the column rules thousands out.
+    /// Whether a number of the column excludes thousands separators.
     pub(super) fn is_decimal(&self) -> bool {
         self.decimal
     }
 
-    /// Whether the column is written as thousands would be.
+    /// Whether the column looks as if commas separate thousands.
     pub(super) fn may_be_thousands(&self) -> bool {
         !self.decimal && self.grouped.is_some() && (self.small || self.several)
     }
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn columns_are_told_apart() {
-        // Whether it is decimal for certain, can be both, looks like thousands.
+        // Whether it is certainly decimal, can be either, looks like thousands.
         let cases: [(&[&str], bool, bool, bool); 7] = [
             (&["0.5", "1.234"], true, false, false),
             (&["1.234", "0.123"], true, true, false),

@@ -1,30 +1,31 @@
-//! Which of its dialects a text file is written in, from its beginning.
+//! Detects the dialect of a text file from its beginning.
 
 use super::header::{self, Header};
 use super::split::cells;
 use std::io::Read;
 
-/// How much of a file is looked at.
+/// Number of bytes of a file that are examined.
 const HEAD: usize = 1 << 16;
 
 /// How the cells of a text file are written, and where its table begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::table) struct Dialect {
-    /// Between cells: comma, semicolon or tab.
+    /// Separator of cells: comma, semicolon or tab.
     pub(super) delimiter: u8,
-    /// Whether a comma in a number is its decimal point.
+    /// Whether a comma in a number is a decimal comma.
     pub(super) decimal_comma: bool,
-    /// Whether a row of units stands below the header.
+    /// Whether a row of units follows the header.
     pub(super) units: bool,
-    /// At the end of a line: a line feed, or a carriage return where there is none.
+    /// End of a line: a line feed, or a carriage return if there are no line feeds.
     pub(super) end: u8,
-    /// Where the names of the columns are.
+    /// Where the header is.
     pub(super) header: Header,
 }
 
-/// The beginning of a file, and whether that is all of it.
+/// The beginning of a file, and whether it is the whole file.
 ///
-/// Of a pipe it is what has come once the header and two rows are there: the rest may be long in coming.
+/// From a pipe, only the bytes up to the header and two rows are read, because the rest may take
+/// long to arrive.
 pub(in crate::data::table) fn head(file: &mut impl Read) -> std::io::Result<(Vec<u8>, bool)> {
     let mut head = vec![0; HEAD];
     let mut length = 0;
@@ -47,19 +48,20 @@ pub(in crate::data::table) fn head(file: &mut impl Read) -> std::io::Result<(Vec
     Ok((head, false))
 }
 
-/// The lines of a head that is still growing, each looked at once.
+/// The lines of a head that is still growing. Each line is examined once.
 #[derive(Default)]
 struct Lines {
-    /// Bytes in which no further line ends, and where the last line begins.
+    /// Number of bytes already searched for line ends, and the start of the last line.
     searched: usize,
     start: usize,
-    /// Lines that are neither blank nor comments, and how many of the last of them hold numbers.
+    /// Number of lines that are neither blank nor comments, and how many of the last ones hold
+    /// numbers.
     count: usize,
     rows: usize,
 }
 
 impl Lines {
-    /// Whether a header can be there and two rows of numbers are.
+    /// Whether the head contains a possible header and two rows of numbers.
     fn enough(&mut self, head: &[u8]) -> bool {
         while let Some(end) = head[self.searched..].iter().position(|byte| *byte == b'\n') {
             let line = &head[self.start..self.searched + end];
@@ -90,14 +92,14 @@ impl Dialect {
     /// The dialect of a text with this beginning, in UTF-8.
     pub(super) fn of(head: &[u8], whole: bool) -> Self {
         let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
-        // A first line longer than the head has neither.
+        // A very long first line may hold neither.
         let end = match head.contains(&b'\r') && !head.contains(&b'\n') {
             true => b'\r',
             false => b'\n',
         };
         let mut lines: Vec<(usize, &[u8])> = head.split(|byte| *byte == end).enumerate().collect();
         if !whole && lines.len() > 1 {
-            // The last line goes on beyond the head.
+            // The last line continues beyond the head.
             lines.pop();
         }
         lines.retain(|(_, line)| !is_skipped(line));
@@ -108,7 +110,7 @@ impl Dialect {
             .map(|&(at, line)| header::Line::new(at, cells(line, delimiter), delimiter))
             .collect();
         let (header, below) = header::find(&rows);
-        // Where points stand in numbers, commas do not: they may stand between thousands.
+        // If numbers have decimal points, commas cannot be decimal. They may separate thousands.
         let pointed = |cell: &Vec<u8>| cell.contains(&b'.') && is_number(cell);
         let mut data = rows[below.min(rows.len())..].iter();
         let decimal_comma = delimiter != b',' && !data.any(|row| row.cells.iter().any(pointed));
@@ -122,9 +124,10 @@ impl Dialect {
     }
 }
 
-/// The delimiter that is there as often in every line, or else that which gives most lines as many cells.
+/// The delimiter that occurs equally often in every line, or otherwise the one that gives the most
+/// lines the same number of cells.
 fn delimiter(lines: &[&[u8]]) -> u8 {
-    // A comma may stand for a decimal point as well: it is asked last.
+    // A comma can also be a decimal comma, so it is tried last.
     let known = [b'\t', b';', b','].map(|delimiter| {
         let count = |line: &&[u8]| cells(line, delimiter).len();
         (delimiter, lines.iter().map(count).collect::<Vec<_>>())
@@ -151,7 +154,7 @@ pub(super) fn is_number(cell: &[u8]) -> bool {
     std::str::from_utf8(cell).is_ok_and(|text| text.trim().parse::<f64>().is_ok())
 }
 
-/// A word for a number that is not there, which is no unit and no name.
+/// Whether a cell is a word for a missing number. Such a word is not a unit and not a name.
 pub(super) fn is_missing(cell: &[u8]) -> bool {
     let words: [&[u8]; 5] = [b"na", b"n/a", b"null", b"none", b"missing"];
     words
@@ -159,7 +162,7 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         .any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
 }
 
-/// A number written with a decimal comma, with a point instead.
+/// A number with a decimal comma, rewritten with a point.
 pub(super) fn with_point(cell: &[u8]) -> Option<Vec<u8>> {
     let comma = cell.iter().position(|byte| *byte == b',')?;
     let mut cell = cell.to_vec();
@@ -178,15 +181,15 @@ mod tests {
             ("x;y\n1;2\n", b';', true, false),
             ("x;y\n1,5;2,5\n", b';', true, false),
             ("x\ty\n1.5\t2\n", b'\t', false, false),
-            // A comma in the header alone.
+            // A comma in the header only.
             ("load, axial;y\n1,5;2\n", b';', true, false),
             ("x,note\n1,ok; fine\n", b',', false, false),
-            // Points stand in numbers, so that commas cannot be decimal.
+            // Numbers have decimal points, so commas cannot be decimal.
             ("x;y\n1,234;2.5\n", b';', false, false),
             ("x,y\ndegC,[mm]\n1,2\n", b',', false, true),
             ("x,y\ndegC,\n1,2\n", b',', false, true),
             ("x,y\ndegC,mm\n", b',', false, true),
-            // Numbers that are not there are no units.
+            // Words for missing numbers are not units.
             ("x,y\nNA,NA\n1,2\n", b',', false, false),
             ("x\n1\n2\n", b',', false, false),
             ("Run 7\nx;y\n1,5;2,5\n3,5;4,5\n", b';', true, false),

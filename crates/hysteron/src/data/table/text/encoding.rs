@@ -1,4 +1,4 @@
-//! Text that is not UTF-8.
+//! Detects and decodes text that is not UTF-8.
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 use encoding_rs_io::DecodeReaderBytesBuilder;
@@ -6,8 +6,8 @@ use std::io::Read;
 
 /// The encoding of a text with this beginning; `None` for UTF-8.
 ///
-/// UTF-16 begins with a byte order mark. What is no UTF-8 otherwise is taken as Windows-1252, of
-/// which Latin-1 is a part.
+/// UTF-16 begins with a byte order mark. Other text that is not valid UTF-8 is taken as
+/// Windows-1252, which includes Latin-1.
 pub(super) fn of(head: &[u8], whole: bool) -> Option<&'static Encoding> {
     if let Some((encoding, _)) = Encoding::for_bom(head) {
         return Some(encoding).filter(|encoding| *encoding != UTF_8);

@@ -1,23 +1,24 @@
-//! Where a table begins in a text: below what a measuring program writes above it.
+//! Finds the header of a table in a text file, below the lines that a measuring program writes
+//! above it.
 
 use super::dialect::{is_missing, is_number, with_point};
 
-/// Where the names of the columns are.
+/// The position of the header, and what is around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::data::table) struct Header {
-    /// Lines of the file above it.
+    /// Number of lines of the file above it.
     pub(super) above: u64,
-    /// Whether some of these hold text that is neither blank nor a comment.
+    /// Whether some of the lines above hold text that is neither blank nor a comment.
     pub(super) preamble: bool,
-    /// False where the first row of numbers stands there instead.
+    /// False if there is no header, so that this is the first row of numbers.
     pub(super) named: bool,
-    /// Whether rows may end before the last column: LabVIEW's column of comments.
+    /// Whether rows may omit the last column, as LabVIEW does with its column of comments.
     pub(super) last_is_optional: bool,
 }
 
 /// A line with its cells.
 pub(super) struct Line {
-    /// How many lines of the file are above it.
+    /// Number of lines of the file above it.
     at: usize,
     pub(super) cells: Vec<Vec<u8>>,
     /// Which cells are numbers.
@@ -52,12 +53,13 @@ impl Line {
     }
 }
 
-/// Finds the header among the lines that are neither blank nor comments: where it is, and the index
+/// Finds the header among the lines that are neither blank nor comments. Returns it, and the index
 /// of the line below it.
 ///
-/// It is the first line with as many cells as most, all of them names, that stands above rows like
-/// most rows; a row of units may stand between. Where there is none, it is the first line, unless
-/// that holds numbers or is text of one cell above rows of numbers.
+/// The header is the first line that satisfies all of these: it has as many cells as most lines,
+/// all its cells are names, and the rows below it look like most rows. A row of units may be
+/// between. If there is no such line, the header is the first line, unless that line holds numbers,
+/// or is a text in a single cell above rows of numbers.
 pub(super) fn find(lines: &[Line]) -> (Header, usize) {
     let labview = labview(lines);
     let found = labview.or_else(|| above_the_usual(lines));
@@ -86,7 +88,7 @@ pub(super) fn find(lines: &[Line]) -> (Header, usize) {
     (header, index + usize::from(named))
 }
 
-/// What most rows look like: how many cells, and which of them are numbers.
+/// What most rows look like: the number of cells, and which of them are numbers.
 struct Body<'l> {
     width: usize,
     numbers: &'l [bool],
@@ -125,7 +127,7 @@ fn above_the_usual(lines: &[Line]) -> Option<usize> {
     (0..first).find(fits)
 }
 
-/// In a file of LabVIEW (`.lvm`) the header comes after the last of the marks.
+/// In a LabVIEW file (`.lvm`) the header follows the last of the end marks.
 fn labview(lines: &[Line]) -> Option<usize> {
     let begins = |line: &Line, mark: &[u8]| line.cells.first().is_some_and(|c| c.starts_with(mark));
     begins(lines.first()?, b"LabVIEW Measurement").then_some(())?;
@@ -136,7 +138,7 @@ fn labview(lines: &[Line]) -> Option<usize> {
     header.can_be_header().then_some(mark + 1)
 }
 
-/// Whether a row of units stands below the first of these lines.
+/// Whether a row of units follows the first of these lines.
 pub(super) fn has_units(lines: &[Line]) -> bool {
     match lines {
         [header, units, rest @ ..] => {
@@ -149,7 +151,7 @@ pub(super) fn has_units(lines: &[Line]) -> bool {
     }
 }
 
-/// The value that comes most often, and how often; the first of several.
+/// The most frequent value and its count; the first one of several.
 pub(super) fn usual<T: Ord + Copy>(values: impl Iterator<Item = T>) -> Option<(T, usize)> {
     let mut counts: std::collections::BTreeMap<T, (usize, usize)> = Default::default();
     for (n, value) in values.enumerate() {

@@ -1,16 +1,17 @@
-//! A row of text into its cells, line by line, so that no line is looked at twice.
+//! Splits a row of text into cells, line by line, so that no line is examined twice.
 
-/// Splits a row that may go on over several lines, where a quote is open at the end of one.
+/// Splits a row, which continues on the next line if a quote is open at the end of a line.
 #[derive(Default)]
 pub(super) struct Splitter {
     cell: Vec<u8>,
-    /// Whether the row goes on within a quoted cell.
+    /// Whether the row continues within a quoted cell.
     open: bool,
 }
 
 impl Splitter {
-    /// Gives the cells of the next line to `push`, without quotes around them. False where the row
-    /// goes on in the next line, because a quote is open; its last cell is then still to come.
+    /// Passes the cells of the next line to `push`, without quotes around them. Returns false if
+    /// the row continues in the next line because a quote is open. Then its last cell is not passed
+    /// yet.
     pub(super) fn line(&mut self, line: &[u8], delimiter: u8, mut push: impl FnMut(&[u8])) -> bool {
         let end = line.iter().rposition(|byte| !matches!(byte, b'\r' | b'\n'));
         let (text, ending) = line.split_at(end.map_or(0, |end| end + 1));
@@ -46,14 +47,15 @@ impl Splitter {
         }
     }
 
-    /// Reads on in a quoted cell: what stands after its closing quote, `None` if it is not in this line.
+    /// Continues within a quoted cell. Returns the text after the closing quote, or `None` if this
+    /// line does not contain it.
     fn quoted<'t>(&mut self, mut rest: &'t [u8]) -> Option<&'t [u8]> {
         loop {
             let quote = rest.iter().position(|byte| *byte == b'"');
             let (text, after) = rest.split_at(quote.unwrap_or(rest.len()));
             self.cell.extend_from_slice(text);
             match after {
-                // Two quotes are one that belongs to the text.
+                // Two quotes stand for one quote in the text.
                 [b'"', b'"', after @ ..] => {
                     self.cell.push(b'"');
                     rest = after;
@@ -67,13 +69,13 @@ impl Splitter {
         }
     }
 
-    /// Forgets a row that was not finished.
+    /// Discards a row that is not complete.
     pub(super) fn reset(&mut self) {
         self.open = false;
     }
 }
 
-/// The cells of one line, without their quotes.
+/// The cells of one line, without quotes around them.
 pub(super) fn cells(line: &[u8], delimiter: u8) -> Vec<Vec<u8>> {
     let mut cells = Vec::new();
     Splitter::default().line(line, delimiter, |cell| cells.push(cell.to_vec()));
@@ -107,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Every text of up to seven of these characters: 97,656 of them.
+    /// Tests every text of up to seven of these characters: 97,656 texts.
     #[test]
     fn lines_give_the_cells_of_the_definition() {
         let alphabet = ['"', ',', 'a', '\n', '\r'];
@@ -131,7 +133,7 @@ mod tests {
                 if length == 0 {
                     continue;
                 }
-                // A closed row ends with its line: the rest of the text is the next one.
+                // A complete row ends with its line. The rest of the text is the next row.
                 let expected = by_definition(if closed { &text[..read] } else { &text });
                 assert_eq!(closed.then_some(row), expected, "{text:?}");
             }

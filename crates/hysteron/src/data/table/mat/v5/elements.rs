@@ -1,4 +1,4 @@
-//! Data elements, of which MATLAB files of versions 5 and 7 consist.
+//! Data elements, the building blocks of MATLAB files of versions 5 and 7.
 
 /// Types of data elements.
 pub(super) const INT32: u32 = 5;
@@ -6,7 +6,7 @@ pub(super) const UINT32: u32 = 6;
 pub(super) const MATRIX: u32 = 14;
 pub(super) const COMPRESSED: u32 = 15;
 
-/// Data elements one after another: a tag with type and size, and that many bytes.
+/// A sequence of data elements. Each is a tag with type and size, followed by that many bytes.
 #[derive(Clone, Copy)]
 pub(super) struct Elements<'b> {
     pub(super) bytes: &'b [u8],
@@ -15,7 +15,7 @@ pub(super) struct Elements<'b> {
 }
 
 impl<'b> Elements<'b> {
-    /// Other elements of the same file.
+    /// A sequence of elements inside the same file.
     pub(super) fn of<'c>(&self, bytes: &'c [u8]) -> Elements<'c> {
         Elements {
             bytes,
@@ -25,7 +25,7 @@ impl<'b> Elements<'b> {
 
     pub(super) fn next(&mut self) -> Option<(u32, &'b [u8])> {
         let tag = u32::from_le_bytes(self.number(self.bytes)?);
-        // A small element has its size in the upper half of the tag and its data within it.
+        // A small element has its size in the upper half of the tag, and its data within the tag.
         let (kind, start, size, padded) = match tag >> 16 {
             0 => {
                 let size = self.size()?;
@@ -39,18 +39,18 @@ impl<'b> Elements<'b> {
         };
         let body = self.bytes.get(start..)?;
         let data = body.get(..size)?;
-        // The last one may come without what would fill it up.
+        // The last element may lack its padding.
         self.bytes = body.get(padded..).unwrap_or_default();
         Some((kind, data))
     }
 
-    /// The size that the tag of the first element names.
+    /// The size in the tag of the first element.
     pub(super) fn size(&self) -> Option<usize> {
         let size = u32::from_le_bytes(self.number(self.bytes.get(4..)?)?);
         Some(size as usize)
     }
 
-    /// The first number of some bytes, least significant byte first.
+    /// The first number in some bytes, converted to least significant byte first.
     pub(super) fn number<const N: usize>(&self, bytes: &[u8]) -> Option<[u8; N]> {
         let mut number = *bytes.first_chunk::<N>()?;
         if self.big {
@@ -59,13 +59,13 @@ impl<'b> Elements<'b> {
         Some(number)
     }
 
-    /// The sizes of an array; `None` where one is below zero.
+    /// The sizes of an array; `None` if one is negative.
     pub(super) fn sizes(&self, data: &[u8]) -> Option<Vec<usize>> {
         let size = |bytes| usize::try_from(i32::from_le_bytes(self.number(bytes)?)).ok();
         data.chunks_exact(4).map(size).collect()
     }
 
-    /// How many numbers an element holds; `None` for a type that is none of numbers.
+    /// Number of numbers in an element; `None` for a type that is not numeric.
     pub(super) fn count(&self, kind: u32, data: &[u8]) -> Option<usize> {
         let size = match kind {
             1 | 2 => 1,
@@ -77,7 +77,7 @@ impl<'b> Elements<'b> {
         Some(data.len() / size)
     }
 
-    /// The numbers of an element, as many as [`Elements::count`] says.
+    /// The numbers of an element. `count` is the result of [`Elements::count`].
     pub(super) fn values(&self, kind: u32, data: &[u8], count: usize) -> Option<Vec<f64>> {
         let mut values = Vec::with_capacity(count);
         macro_rules! numbers {
@@ -104,7 +104,7 @@ impl<'b> Elements<'b> {
     }
 }
 
-/// A text up to its first zero.
+/// A text up to its first zero byte.
 pub(super) fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|byte| *byte == 0);
     String::from_utf8_lossy(&bytes[..end.unwrap_or(bytes.len())]).into_owned()

@@ -1,49 +1,51 @@
-//! A sensor under watch: readings that are missing or stand still are not believed.
+//! Filters a sensor's readings, and detects readings that are missing or stuck.
 
-/// What a sensor tells at a sample.
+/// What a sensor's reading means at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Sight {
-    /// Something new, filtered.
-    Seen(f64),
-    /// The last reading once more, to the last bit: chance, or the sensor begins to stick.
+pub(super) enum Sensed {
+    /// A new reading, filtered.
+    New(f64),
+    /// Equal to the last reading to the last bit: by chance, or because the sensor begins to stick.
     Repeated,
-    /// Nothing, but not for long.
+    /// No reading, but not for long.
     Missing,
-    /// Nothing new for so long that the sensor is taken as broken.
-    Blind,
+    /// No new reading for so long that the sensor is taken as broken.
+    Broken,
 }
 
-impl Sight {
+impl Sensed {
     pub(super) fn value(self) -> Option<f64> {
         match self {
-            Self::Seen(value) => Some(value),
+            Self::New(value) => Some(value),
             _ => None,
         }
     }
 
     pub(super) fn fault(self) -> bool {
-        matches!(self, Self::Missing | Self::Blind)
+        matches!(self, Self::Missing | Self::Broken)
     }
 }
 
-/// Filters a sensor's readings and tells when there is none to be believed.
+/// Filters a sensor's readings and tells which of them are valid.
 ///
-/// A repeated reading is held back at once, long before it is called stuck: until then the loop would integrate an error that
-/// is none and a model would learn from it.
+/// A repeated reading is rejected at once, long before the sensor is taken as broken. Otherwise the
+/// loop would integrate an error that does not exist, and a model would learn from it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Watch {
+pub(super) struct Sensor {
     interval_s: f64,
     filter_s: f64,
-    /// Samples without news that a sensor at work does not give; none where equal readings are believed.
+    /// Largest number of samples without a new reading that a working sensor can give; `None` where
+    /// equal readings are valid.
     patience: Option<u32>,
     filtered: f64,
     last: f64,
-    /// Samples since the last news.
+    /// Number of samples since the last new reading.
     gap: u32,
 }
 
-impl Watch {
-    /// A filter with the time constant `filter_s`; without news for `stuck_s` the sensor is taken as broken.
+impl Sensor {
+    /// A filter with the time constant `filter_s`. Without a new reading for `stuck_s`, the sensor
+    /// is taken as broken.
     pub(super) fn new(interval_s: f64, filter_s: f64, stuck_s: Option<f64>) -> Self {
         Self {
             interval_s,
@@ -55,24 +57,24 @@ impl Watch {
         }
     }
 
-    /// What the sensor's `reading` tells.
-    pub(super) fn read(&mut self, reading: f64) -> Sight {
+    /// Classifies and filters the sensor's `reading`.
+    pub(super) fn read(&mut self, reading: f64) -> Sensed {
         let repeated = self.patience.is_some() && reading == self.last;
         if reading.is_finite() && !repeated {
             self.last = reading;
-            return Sight::Seen(self.filter(reading));
+            return Sensed::New(self.filter(reading));
         }
         self.gap = self.gap.saturating_add(1);
         if self.patience.is_none_or(|most| self.gap >= most) {
-            Sight::Blind
+            Sensed::Broken
         } else if repeated {
-            Sight::Repeated
+            Sensed::Repeated
         } else {
-            Sight::Missing
+            Sensed::Missing
         }
     }
 
-    /// Filters a value that is beyond doubt. After a gap it counts for the whole time that has passed.
+    /// Filters a valid value. After a gap the value counts for the whole time since the last one.
     pub(super) fn filter(&mut self, value: f64) -> f64 {
         let passed = self.interval_s * (f64::from(self.gap) + 1.0);
         self.gap = 0;
@@ -94,9 +96,10 @@ mod tests {
 
     #[test]
     fn the_filter_is_that_of_a_first_order_body_whatever_is_lost() {
-        let mut whole = Watch::new(0.1, 0.5, Some(1.0));
+        let mut whole = Sensor::new(0.1, 0.5, Some(1.0));
         let mut lossy = whole.clone();
-        // Of a constant after a start elsewhere both readings say the same, and the filter has come as far at the end.
+        // For a constant after a different start, both filters read the same values and end at the
+        // same state.
         for n in 0..20 {
             let reading = if n == 0 {
                 0.0
@@ -105,9 +108,9 @@ mod tests {
             };
             let lost = n % 3 == 1;
             let seen = whole.read(reading).value();
-            let sight = lossy.read(if lost { f64::NAN } else { reading });
-            assert_eq!(sight == Sight::Missing, lost);
-            if let (Some(a), Some(b)) = (seen, sight.value()) {
+            let sensed = lossy.read(if lost { f64::NAN } else { reading });
+            assert_eq!(sensed == Sensed::Missing, lost);
+            if let (Some(a), Some(b)) = (seen, sensed.value()) {
                 let exact = 1.0 - (-0.1 * f64::from(n) / 0.5).exp();
                 assert!((a - exact).abs() < 1e-9 && (b - exact).abs() < 1e-9);
             }
@@ -116,47 +119,47 @@ mod tests {
 
     #[test]
     fn a_reading_that_stands_still_is_held_back_at_once_and_broken_after_its_time() {
-        let mut watch = Watch::new(0.1, 0.0, Some(0.3));
+        let mut sensor = Sensor::new(0.1, 0.0, Some(0.3));
         let readings = [1.0, 1.0, 1.0, 1.0, f64::NAN, 1.0, 2.0, 2.0];
-        use Sight::{Blind, Repeated, Seen};
+        use Sensed::{Broken, New, Repeated};
         let expected = [
-            Seen(1.0),
+            New(1.0),
             Repeated,
             Repeated,
-            Blind,
-            Blind,
-            Blind,
-            Seen(2.0),
+            Broken,
+            Broken,
+            Broken,
+            New(2.0),
             Repeated,
         ];
-        assert_eq!(readings.map(|y| watch.read(y)), expected);
+        assert_eq!(readings.map(|y| sensor.read(y)), expected);
     }
 
     #[test]
     fn lost_samples_do_not_hide_that_it_sticks() {
-        let mut watch = Watch::new(0.1, 0.0, Some(1.0));
+        let mut sensor = Sensor::new(0.1, 0.0, Some(1.0));
         let last = (0..12)
-            .map(|n| watch.read(if n % 2 == 0 { 1.0 } else { f64::NAN }))
+            .map(|n| sensor.read(if n % 2 == 0 { 1.0 } else { f64::NAN }))
             .last();
-        assert_eq!(last, Some(Sight::Blind));
+        assert_eq!(last, Some(Sensed::Broken));
     }
 
     #[test]
     fn without_noise_equal_readings_are_believed() {
-        let mut watch = Watch::new(0.1, 0.0, None);
+        let mut sensor = Sensor::new(0.1, 0.0, None);
         assert_eq!(
-            [1.0, 1.0, f64::NAN].map(|y| watch.read(y)),
-            [Sight::Seen(1.0), Sight::Seen(1.0), Sight::Blind]
+            [1.0, 1.0, f64::NAN].map(|y| sensor.read(y)),
+            [Sensed::New(1.0), Sensed::New(1.0), Sensed::Broken]
         );
     }
 
     #[test]
     fn huge_readings_leave_no_trace() {
-        let mut watch = Watch::new(0.1, 0.1, None);
+        let mut sensor = Sensor::new(0.1, 0.1, None);
         for reading in [f64::MAX, f64::MIN, f64::INFINITY, f64::MAX] {
-            assert!(watch.read(reading).value().is_none_or(f64::is_finite));
+            assert!(sensor.read(reading).value().is_none_or(f64::is_finite));
         }
-        let seen = (0..10_000).map(|_| watch.read(1.0)).last();
-        assert_eq!(seen, Some(Sight::Seen(1.0)));
+        let seen = (0..10_000).map(|_| sensor.read(1.0)).last();
+        assert_eq!(seen, Some(Sensed::New(1.0)));
     }
 }
