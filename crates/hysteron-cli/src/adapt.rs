@@ -16,8 +16,8 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         }
     }
     let model = Model::read(&args.model)?;
-    // The model begins before the table and is whole after it: where one cannot be written, neither
-    // is there.
+    // The model is begun before the table and completed after it: if one of them cannot be written,
+    // neither appears.
     let inputs = [args.model.as_path(), &args.data];
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let table = args.table.as_ref().map(|table| {

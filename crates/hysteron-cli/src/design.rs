@@ -173,7 +173,7 @@ fn summary(design: &Design, args: &args::Design) -> String {
     lines.join("\n")
 }
 
-/// How many operators are of each class that there is.
+/// How many operators each class has.
 fn classes(classes: &[Excitation]) -> String {
     let some = counts(classes).into_iter().filter(|(_, count)| *count > 0);
     let words: Vec<String> = some

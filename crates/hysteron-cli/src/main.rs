@@ -56,8 +56,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whoever read our output, such as `head`, has had enough: that is no fault. The reader of a pipe
-/// that was named is one who is missed.
+/// A closed standard output, as by `head`, is no fault. The closed reader of a named pipe is one.
 fn broken_pipe(error: &(dyn Error + 'static)) -> bool {
     if let Some((path, _)) = of_file(error)
         && path != Path::new(hysteron::STANDARD_OUTPUT)
@@ -88,8 +87,8 @@ fn causes<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn
     std::iter::successors(Some(error), |&error| error.source())
 }
 
-/// The arguments. What is wrong with them may repeat them, so that it is shown as other messages
-/// are.
+/// The arguments. A message about them may repeat them, so control characters are escaped as in
+/// other messages.
 fn parse() -> Cli {
     Cli::try_parse().unwrap_or_else(|error| {
         let text = error.to_string();

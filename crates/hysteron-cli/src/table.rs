@@ -69,7 +69,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
 /// What is told how many bytes were read.
 type Told<'a> = &'a dyn Fn(u64);
 
-/// Opens both ends, runs `work` between them and says what came of it.
+/// Opens reader and writer, runs `work` between them and reports the counts.
 fn through(
     [data, model]: [&Path; 2],
     out: Option<&Path>,

@@ -1,4 +1,4 @@
-//! What is said to people and to programs.
+//! Output for people and for programs.
 
 use std::error::Error;
 use std::io::Write;

@@ -56,7 +56,7 @@ fn trace_name(controller: Kind) -> String {
     format!("{}.csv", controller.name())
 }
 
-/// The files of a comparison, but for those of its report, of which the page stands for all.
+/// The files of a comparison. Of its report only the page is named.
 fn names(scenario: &Scenario) -> Vec<String> {
     let fixed = [SCORES, MODEL, SUMMARY, "report/index.html"].map(String::from);
     let traces = scenario.controllers.iter().copied().map(trace_name);

@@ -36,7 +36,7 @@ const ADAPTATION: [(&str, &str); 2] = [
     ),
 ];
 
-/// Of the algorithm; a model is its maker's.
+/// The licence of the algorithm. The model in the files belongs to its maker.
 const LICENCE: &str =
     "Copyright (c) 2026 the hysteron developers. SPDX-License-Identifier: MIT OR Apache-2.0";
 
@@ -71,15 +71,15 @@ impl CReal {
 pub struct COptions<'a> {
     /// The number type.
     pub real: CReal,
-    /// The model's name in C, and of its files; by default that of `source`, made fit.
+    /// The model's name in C, and of its files; by default that of `source`, as a C identifier.
     pub name: Option<&'a str>,
-    /// The file that the model comes from, to be told of in a comment.
+    /// The file that the model comes from, named in a comment.
     pub source: &'a Path,
-    /// Whether the model shall be able to learn on the target.
+    /// Whether the model can learn on the target.
     pub adaptation: bool,
 }
 
-/// What was written, and what it takes on the target.
+/// What was written, and what it needs on the target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CExport {
     /// The files.
@@ -107,7 +107,7 @@ pub struct CMemory {
     pub state: usize,
     /// Its turning points: RAM.
     pub turns: usize,
-    /// Where the model shall learn: what that takes beside, but for the turning points. RAM.
+    /// For a model that learns: the additional memory, without its turning points. RAM.
     pub adaptation: Option<usize>,
 }
 

@@ -1,5 +1,5 @@
-//! Carries a model to where it runs: C99 for a microcontroller ([`c()`]), an FMU for Simulink and
-//! other tools ([`fmu()`]).
+//! Exports models: as C99 for a microcontroller ([`c()`]), as an FMU for Simulink and other tools
+//! ([`fmu()`]).
 #![forbid(unsafe_code)]
 
 mod c;

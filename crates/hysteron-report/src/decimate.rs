@@ -39,7 +39,7 @@ fn extremes(column: &[Point]) -> Vec<Point> {
     kept.into_iter().map(|k| column[k]).collect()
 }
 
-/// Width of the columns that a band is drawn in: finer than its light tint shows.
+/// Width of the columns that a band is drawn in: finer than the eye resolves in its light tint.
 pub(crate) const COLUMN: f64 = 0.5;
 
 /// For a band between two edges at the same x, between `left` and `right`: of each column of pixels

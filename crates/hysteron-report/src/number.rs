@@ -1,4 +1,4 @@
-//! Numbers as people write them.
+//! Numbers in the usual notation.
 
 /// `value` with `digits` significant digits; powers of ten outside 10⁻³…10⁶.
 pub(crate) fn significant(value: f64, digits: usize) -> String {

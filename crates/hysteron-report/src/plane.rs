@@ -102,7 +102,7 @@ impl Half {
             } else {
                 0.0
             };
-            // A hair wider than the cell, or the seams between cells shine through.
+            // A little wider than the cell; otherwise seams show between cells.
             let (width, height) = (width + 0.3, width + 0.3);
             let area = Rect {
                 x,

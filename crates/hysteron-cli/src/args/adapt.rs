@@ -20,8 +20,8 @@ pub(crate) struct Adapt {
     /// Column of time, in seconds or with its unit in its name, for the table
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the operators stand before the first sample; `unknown` takes off or on, with which the
-    /// model errs less
+    /// State of the operators before the first sample; `unknown`: off or on, whichever gives the
+    /// smaller error
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: Start,
     /// What follows the error, and how
@@ -52,27 +52,27 @@ pub(crate) struct Adapt {
 #[derive(Args)]
 #[command(next_help_heading = "Tuning")]
 pub(crate) struct Tuning {
-    /// gradient, increments: share of a sample's error that is taken away, above 0 and below 2
-    /// [default: 0.3]
+    /// gradient, increments: share of a sample's error to remove, above 0 and below 2 [default:
+    /// 0.3]
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = parse_finite)]
     gain: Option<f64>,
     /// increments: levels that the input travels between two updates [default: 1]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     span: Option<f64>,
-    /// least-squares, drift: what a sample counts after the next, above 0 and up to 1
-    /// [default: 0.999, of drift 0.9999]
+    /// least-squares, drift: weight of a sample relative to the next one, above 0 and up to 1
+    /// [default: 0.999, with drift 0.9999]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = parse_finite)]
     forgetting: Option<f64>,
-    /// least-squares, drift: standard deviation of the error of a reading and of the model, in the
-    /// output's unit [default: the noise found, and at least 2 %, of drift 5 %, of the range]
+    /// least-squares, drift: standard deviation of a reading's error, model error included, in the
+    /// output's unit [default: the noise found, and at least 2 %, with drift 5 %, of the range]
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
     noise: Option<f64>,
-    /// least-squares, drift: standard deviation by which a weight (in the output's unit) or a
-    /// coefficient may differ from the model's [default: such that the sum of the weights may
-    /// differ by 0.3 of the range; of a coefficient 0.5]
+    /// least-squares, drift: standard deviation of a weight (in the output's unit) or a coefficient
+    /// around the model's [default: such that the sum of the weights may deviate by 0.3 of the
+    /// range; of a coefficient 0.5]
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = parse_finite)]
     spread: Option<f64>,
-    /// least-squares: levels over which deviations of weights go together [default: 1]
+    /// least-squares: correlation length of the deviations, in levels [default: 1]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     correlation: Option<f64>,
     /// Errors up to this are noise, in the output's unit [default: twice the noise found]
@@ -81,24 +81,23 @@ pub(crate) struct Tuning {
     /// Share by which the weights go back to the model's with each update, 0 to 1 [default: 0]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
     leakage: Option<f64>,
-    /// How freely the offset moves beside one weight or coefficient; with 0 it stays [default:
-    /// gradient, increments: 0.2 times the root of the number of weights; otherwise such that the
-    /// offset may differ by 0.3 of the range]
+    /// How freely the offset moves, relative to one weight or coefficient; with 0 it stays
+    /// [default: gradient, increments: 0.2 times the root of the number of weights; otherwise such
+    /// that the offset may deviate by 0.3 of the range]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = parse_finite)]
     offset_share: Option<f64>,
-    /// Levels that the input has to move before a sample is learned from [default: 0.05]
+    /// Levels that the input has to move before the model learns again [default: 0.05]
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     movement: Option<f64>,
-    /// Samples learned from after which the weights are judged against the last good ones
-    /// [default: 256]
+    /// Samples after which the weights are compared with the last good ones [default: 256]
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
-    /// A reading that surprises so many times more than usual is not learned from, from 2; 0: all
-    /// are learned from [default: 12]
+    /// Reject a reading whose error exceeds this many times the usual one, from 2; 0 rejects none
+    /// [default: 12]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = parse_finite)]
     gate: Option<f64>,
-    /// Readings in a row beyond the gate that are learned from, where they agree: fewer are wrong,
-    /// more a plant that jumped [default: 8]
+    /// Consecutive readings beyond the gate that agree, after which they are believed: the plant
+    /// has jumped [default: 8]
     #[arg(long, value_name = "N")]
     burst: Option<u32>,
 }

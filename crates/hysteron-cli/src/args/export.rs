@@ -49,7 +49,7 @@ pub(crate) struct ExportC {
     /// The number type to compute in
     #[arg(long, value_enum, default_value_t = CReal::Float)]
     pub(crate) real: CReal,
-    /// Also write what lets the weights follow the plant on the target
+    /// Also write the code with which the weights adapt on the target
     #[arg(long)]
     pub(crate) adaptation: bool,
     #[command(flatten)]

@@ -31,7 +31,7 @@ pub(crate) struct Fit {
         value_parser = parse_step
     )]
     pub(crate) smooth: Step,
-    /// Where the operators stand before the first sample
+    /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: Start,
     /// Column of the load or stress: the weights become a function of it
@@ -47,9 +47,9 @@ pub(crate) struct Fit {
         value_parser = up_to(5)
     )]
     pub(crate) load_degree: usize,
-    /// Put a thermal body in front of the operators and identify it with the weights: for an input
-    /// that heats, where the temperature is not known. The input is taken as proportional to the
-    /// power, as a duty cycle is; of a current or a voltage give the square. Needs --time
+    /// Identify a thermal body in front of the operators, for an input that heats while the
+    /// temperature is not known. The input has to be proportional to the power, as a duty cycle is:
+    /// give the square of a current or a voltage. Needs --time
     #[arg(long, value_enum, value_name = "BODY", requires = "time")]
     pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45
@@ -118,8 +118,8 @@ pub(crate) struct Prepare {
 
 #[derive(Args)]
 pub(crate) struct PrepareBeforeFit {
-    /// Column of time, in seconds or with its unit in its name, for the preparation, a thermal body
-    /// and the warning that loops depend on rate
+    /// Column of time, in seconds or with its unit in its name: for the preparation, a thermal
+    /// body, and a warning if loops depend on rate
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// Prepare the recording as `hysteron prepare` does; without it, only the steps that are named
@@ -132,8 +132,8 @@ pub(crate) struct PrepareBeforeFit {
 #[derive(Args)]
 #[command(next_help_heading = "Preparation")]
 pub(crate) struct Steps {
-    /// Give back lost signs and replace spikes: `auto`, `off`, or how many median absolute
-    /// deviations make a spike
+    /// Restore lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations
+    /// make a spike
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) spikes: Option<Step>,
     /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the
@@ -148,8 +148,8 @@ pub(crate) struct Steps {
     /// on rate), `off` or its time constant in s [default: off]
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Option<Step>,
-    /// Take away reversals of the input up to a dead band: `auto` (as far as the noise reaches),
-    /// `off`, or the band in its unit
+    /// Remove reversals of the input up to a dead band: `auto` (as far as the noise reaches),
+    /// `off`, or the dead band in the input's unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) dead_band: Option<Step>,
 }

@@ -42,7 +42,7 @@ pub(crate) enum Command {
         \x20 hysteron fit run1.csv --input temperature --output displacement \
         -o spring.json")]
     Fit(Fit),
-    /// Ready a recording for a fit: spikes, noise, a sensor's lag, false reversals
+    /// Prepare a recording for a fit: spikes, noise, a sensor's lag, false reversals
     #[command(after_help = "Example:\n\
         \x20 hysteron prepare run1.csv --input temperature --output displacement \
         --time time -o clean.csv")]
@@ -66,7 +66,7 @@ pub(crate) enum Command {
         \x20 hysteron adapt spring.json run3.csv --input temperature \
         --output displacement -o adapted.json")]
     Adapt(Adapt),
-    /// Tell what is in a recording or a model: ranges, reversals, gaps, operators excited
+    /// Show what is in a recording or a model: ranges, reversals, gaps, operators excited
     #[command(after_help = "Examples:\n\
         \x20 hysteron inspect run1.csv --input temperature --output displacement\n\
         \x20 hysteron inspect spring.json")]
@@ -84,10 +84,11 @@ pub(crate) enum Command {
         \x20 hysteron track load-step --show > mine.toml\n\
         \x20 hysteron track mine.toml --seeds 5 -o mine")]
     Track(Track),
-    /// Carry a model to where it runs: C for a microcontroller, a block for Simulink and others
+    /// Export a model: C for a microcontroller, a block for Simulink and other tools
     #[command(subcommand)]
     Export(Export),
-    /// The main job on a simulated NiTi spring: record, fit, validate forward and inverse, report
+    /// Show the main task on a simulated NiTi spring: record, fit, validate forward and inverse,
+    /// report
     #[command(after_help = "Example:\n  hysteron demo -o demo")]
     Demo(Demo),
 }
@@ -101,7 +102,7 @@ pub(crate) struct Json {
 
 #[derive(Args)]
 pub(crate) struct Force {
-    /// Replace also what hysteron did not make, or what was changed since
+    /// Also replace files that hysteron did not make, or that were changed since
     #[arg(long)]
     pub(crate) force: bool,
 }
@@ -115,8 +116,8 @@ impl Force {
 
 #[derive(Args)]
 pub(crate) struct Repair {
-    /// Drop rows without a number or cut short, sort times that go back, merge repeated ones, and
-    /// tell of it
+    /// Repair the table and report it: drop rows that are cut short or lack a number, sort times
+    /// that go back, merge repeated ones
     #[arg(long)]
     repair: bool,
     #[command(flatten)]
@@ -125,8 +126,7 @@ pub(crate) struct Repair {
 
 #[derive(Args)]
 pub(crate) struct Memory {
-    /// Most memory that the contents of a file may take, in bytes or with K, M or G; more is
-    /// refused
+    /// Limit of the memory for the contents of a file, in bytes or with K, M or G
     #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_bytes)]
     pub(crate) max_memory: u64,
 }
@@ -152,14 +152,14 @@ impl Repair {
 
 #[derive(Args)]
 pub(crate) struct Load {
-    /// For a model that depends on a load: the load to take it at, or, except with `invert`, the
-    /// column of it
+    /// For a model that depends on a load: the load, or (not with `invert`) its column
     #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
     load: Option<String>,
 }
 
 impl Load {
-    /// Where it is a number, the model at that load; otherwise the model as it is, and the column.
+    /// A number gives the model at that load; otherwise the model stays, and the column is
+    /// returned.
     pub(crate) fn apply(
         &self,
         model: hysteron::Model,
@@ -251,7 +251,7 @@ pub(crate) struct Evaluate {
     /// model with a thermal body
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
-    /// Where the operators stand before the first sample
+    /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: Start,
     #[command(flatten)]
@@ -306,7 +306,7 @@ pub(crate) struct Design {
     /// How fast it can fall
     #[arg(long, value_name = "R", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) cooling_rate: f64,
-    /// Longest duration: as many rings as fit, evenly spread [default: all that it takes]
+    /// Longest duration: as many loops as fit, evenly spread [default: as long as needed]
     #[arg(long, value_name = "MINUTES", value_parser = parse_positive, allow_hyphen_values = true)]
     pub(crate) budget: Option<f64>,
     /// A recording that exists, repeatable: what it determines is left out
@@ -326,7 +326,7 @@ pub(crate) struct Design {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
-    /// Draw the plane with what is known of each operator
+    /// Draw the plane, with what the data determine of each operator
     #[arg(long, value_name = "SVG")]
     pub(crate) figure: Option<PathBuf>,
     #[command(flatten)]
@@ -343,7 +343,7 @@ pub(crate) struct Track {
     /// List the built-in scenarios
     #[arg(long)]
     pub(crate) list: bool,
-    /// Print the text of a built-in scenario, to start one's own from
+    /// Print the text of a built-in scenario, to start your own from
     #[arg(long)]
     pub(crate) show: bool,
     /// Runs with different noise [default: what the scenario says]

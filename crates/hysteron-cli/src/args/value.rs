@@ -1,4 +1,4 @@
-//! Values of options: what they may be, and what is said where they are not.
+//! Values of options: their types, ranges and messages.
 
 use clap::ValueEnum;
 use hysteron::Step;
@@ -53,7 +53,8 @@ pub(crate) enum Learner {
     Increments,
     /// All weights, by recursive least squares
     LeastSquares,
-    /// A few parts: the weights shifted along the plane, or the load parts of a model with a load
+    /// A few coefficients: the weights shifted along the plane, or the load dependence of a model
+    /// with a load
     Drift,
 }
 

@@ -44,7 +44,7 @@ impl Number for f64 {
     }
 }
 
-/// What the C needs of a model: all of it as the core works it out in that type.
+/// What the C needs of a model, all of it computed by the core in that type.
 pub(super) struct Constants<T> {
     pub(super) weights: Vec<T>,
     pub(super) core: hysteron_core::Model<T, Vec<T>>,

@@ -1,4 +1,4 @@
-//! The archive that an FMU is.
+//! The archive of an FMU.
 
 use super::Fmi;
 use hysteron::{Error, Result};

@@ -193,14 +193,14 @@ fn unit(quantity: &Quantity) -> Option<String> {
     unit.filter(|unit| !unit.is_empty())
 }
 
-/// Without what no XML or no tool can hold.
+/// Without characters that XML or a tool cannot hold.
 fn clean(text: &str) -> String {
     let legal = |c: &char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     let text: String = text.chars().filter(legal).collect();
     text.trim().into()
 }
 
-/// Names that are there and unlike the others: the model file's where they can be.
+/// Names that are not empty and differ: those of the model file where possible.
 fn with_names(mut variables: Vec<Variable>) -> Vec<Variable> {
     for n in 0..variables.len() {
         let Variable {
@@ -211,7 +211,8 @@ fn with_names(mut variables: Vec<Variable>) -> Vec<Variable> {
         } = &variables[n];
         let taken = |name: &str| {
             let others = variables.iter().enumerate();
-            // Among the two signals the second gives way, and to our own names both.
+            // If the two signals have one name, the second is renamed; a clash with our own names
+            // renames the signal.
             others
                 .clone()
                 .any(|(m, other)| m != n && other.name == name && (m < n || other.reference > 2))

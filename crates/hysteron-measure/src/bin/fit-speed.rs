@@ -29,7 +29,7 @@ fn main() -> Result<()> {
     println!("| ---: | ---: | ---: | ---: | ---: | ---: |");
     for levels in [20, 40] {
         let recording = experiment(levels, 10_000)?;
-        // The best of a few: what else the machine does only ever adds time.
+        // The shortest of several runs: other load on the machine only adds time.
         let mut best = f64::INFINITY;
         let mut squares = 0.0;
         for _ in 0..7 {

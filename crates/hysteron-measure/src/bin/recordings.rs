@@ -22,7 +22,7 @@ const INPUTS: [&str; 5] = [
     "H_A_per_m",
 ];
 
-/// What it does.
+/// What the actuator does, the first of these that a recording has.
 const OUTPUTS: [&str; 9] = [
     "output",
     "strain",

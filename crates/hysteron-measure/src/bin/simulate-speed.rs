@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (samples, _) = bytes.as_chunks::<8>();
     let input: Vec<f64> = samples.iter().map(|s| f64::from_le_bytes(*s)).collect();
     let mut output = vec![0.0; input.len()];
-    // The best of a few: what else the machine does only ever adds time.
+    // The shortest of several runs: other load on the machine only adds time.
     let mut best = f64::INFINITY;
     for _ in 0..50 {
         let start = Instant::now();

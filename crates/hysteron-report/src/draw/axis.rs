@@ -133,7 +133,7 @@ impl Axis {
         }
     }
 
-    /// The same axis, its label left to someone else.
+    /// The same axis without its label, which stands elsewhere.
     pub(crate) fn unlabelled(self) -> Self {
         Self {
             unlabelled: true,

@@ -40,7 +40,7 @@ pub(crate) struct Canvas {
     body: String,
 }
 
-// Writing to a string cannot fail, hence the results that go unread.
+// Writing to a string cannot fail, so the results are ignored.
 impl Canvas {
     pub(crate) fn new(stem: &'static str) -> Self {
         Self {

@@ -79,7 +79,7 @@ pub(crate) const BEYOND: Stroke = Stroke::solid("#d2550c", 3.4);
 
 /// Samples in the dead band.
 pub(crate) const SHADE: &str = "#e4e7ec";
-/// Where the output is expected, around what the model says: a tint of its colour.
+/// The band around the model's output: a tint of its colour.
 pub(crate) const BAND: &str = "#fbd9c0";
 /// Text.
 pub(crate) const INK: &str = "#1b2128";

@@ -1,4 +1,4 @@
-//! Which moments of a recording show how the plane's boundary comes about.
+//! Which instants of a recording show how the boundary on the plane develops.
 
 use hysteron::Turning;
 

@@ -14,7 +14,7 @@ fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
     }
 }
 
-/// Every figure there is, each checked to be well-formed and free of numbers that are none.
+/// All figures. Each must be well-formed, without NaN or infinite numbers.
 fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
     let draw = |figure| Some((figure, report(fixture, "").svg(figure).unwrap()?));
     let drawn: Vec<(Figure, String)> = Figure::ALL.into_iter().filter_map(draw).collect();

@@ -1,4 +1,4 @@
-//! Input and drive over time, with what the loop had to say.
+//! Input and drive over time, with the status of the loop.
 
 use super::figure::Figure;
 use super::report::NamedTrace;
@@ -22,7 +22,7 @@ const WORD: f64 = 10.5;
 
 type Flag = fn(&LoopStatus) -> bool;
 
-/// What a loop can say: the word of its row, what that means, its colour, and whether it holds.
+/// A flag of the status: the word of its row, its meaning, its colour, and how to read it.
 const FLAGS: [(&str, &str, &str, Flag); 4] = [
     ("limit", "drive at a limit", "#8fb6d2", |status| {
         status.saturated

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct NamedTrace<'a> {
     /// The controller, for example `PID`.
     pub name: &'a str,
-    /// What its loop left behind.
+    /// The trace of its loop.
     pub trace: &'a Trace,
 }
 

@@ -26,7 +26,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
     let errors: Vec<Vec<f64>> = runs.iter().map(error_of).collect();
     let (error, cut) = robust(errors.iter().map(Vec::as_slice));
     if cut {
-        // As far from the reference as the errors that can be seen.
+        // A range around the reference as wide as the range of the errors.
         let asked = Span::of(references());
         span = Span {
             low: span.low.max(asked.low + error.low),
@@ -153,7 +153,7 @@ pub(super) fn robust<'a>(panels: impl Iterator<Item = &'a [f64]> + Clone) -> (Sp
         low: all.low.max(-seen),
         high: all.high.min(seen),
     };
-    // A cut that gains little is not worth what it hides.
+    // If a cut widens the scale only a little, everything is shown instead.
     if seen > 0.0 && cut.high - cut.low < 0.6 * (all.high - all.low) {
         (cut, true)
     } else {

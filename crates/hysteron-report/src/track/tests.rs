@@ -7,7 +7,7 @@ use super::view::View;
 use hysteron::Quantity;
 use std::fs;
 
-/// Every figure there is, each checked to be well-formed and free of numbers that are none.
+/// All figures. Each must be well-formed, without NaN or infinite numbers.
 fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
     fixture.report(true, |report| {
         let view = View::new(report);

@@ -226,7 +226,7 @@ fn map(sheet: &mut Sheet, panel: &Panel, trace: &Trace, change: &Change, span: S
     for x in across.take_while(|x| *x < to - from) {
         let column = ((x / width) as usize).min(COLUMNS - 1);
         for row in lines.clone() {
-            // What rounds to no shade has no sign either.
+            // A change that rounds to no shade gets no minus sign.
             if SHADES * value(row, column) / span.largest() < -0.5 {
                 let y = panel.area.bottom() - (row as f64 + 0.5) * height;
                 let _ = write!(minus, "M{} {}h4", Short(from + x - 2.0), Short(y));

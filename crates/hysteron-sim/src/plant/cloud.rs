@@ -1,4 +1,4 @@
-//! The cloud of relays: what no model of the toolkit can hold exactly.
+//! The cloud of relays, which no model of the toolkit can represent exactly.
 //!
 //! Its relays lie in centre and half-width, not on the grid of a plane; they are dense where the
 //! density is high; the density is asymmetric and has two lobes; and a load moves and deforms it.

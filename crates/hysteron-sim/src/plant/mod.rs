@@ -5,9 +5,9 @@
 //! - [`PreisachPlant`]: a piezo-like actuator with an amplifier, made of relays that no model of
 //!   this toolkit has on its plane.
 //!
-//! Both read through a [`SensorChain`]. Neither contains a model, an operator or a table of the
-//! toolkit, so what is shown on them is not shown by the model on itself. Their options are plain
-//! data that a scenario file can name.
+//! Both are read through a [`SensorChain`]. Neither contains a model, an operator or a table of the
+//! toolkit, so no model is tested on itself. Their options are plain data that a scenario file can
+//! set.
 
 mod cloud;
 mod drift;
@@ -23,8 +23,8 @@ pub use preisach::{PreisachPlant, PreisachPlantOptions};
 pub use sensor::{SensorChain, SensorOptions};
 pub use spring::{SpringPlant, SpringPlantOptions};
 
-/// `dt_s` (s) in equal steps, none longer than `longest_s`: their number and length. No steps for a
-/// time that cannot pass.
+/// Divides `dt_s` (s) into equal steps, none longer than `longest_s`: their number and length. No
+/// steps for a time that is not finite or not above zero.
 fn divided(dt_s: f64, longest_s: f64) -> (u64, f64) {
     if !(dt_s > 0.0 && dt_s.is_finite()) {
         return (0, 0.0);

@@ -16,8 +16,8 @@ pub(super) fn step_for_lag(lag_s: f64) -> f64 {
 }
 
 /// What a simulated sensor does to the truth, in the unit of what it measures. The default is a
-/// perfect sensor, also for the fields that a scenario leaves out: who names a sensor describes the
-/// whole of it.
+/// perfect sensor. A scenario that names a sensor gives all of its faults: each field left out is
+/// perfect.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SensorOptions {
@@ -51,7 +51,7 @@ impl SensorOptions {
         dropout: 0.0,
     };
 
-    /// Refuses what no sensor can be.
+    /// Refuses numbers that no sensor can have.
     ///
     /// # Errors
     /// [`RigError::OutOfRange`] names the first number that does not fit.
@@ -159,8 +159,7 @@ impl SensorChain {
 
     /// One reading, NaN where it is lost.
     pub fn read(&mut self) -> f64 {
-        // Drawn whatever the faults are: afterwards the noise goes on as it would have without
-        // them.
+        // Drawn during faults, too. So the noise after a fault is the same as without it.
         let noisy = self.options.noise().read(self.lagged, &mut self.rng);
         let chance: f64 = StandardUniform.sample(&mut self.rng);
         let dropped = chance < self.options.dropout;

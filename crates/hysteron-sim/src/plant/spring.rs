@@ -128,7 +128,7 @@ impl SpringPlant {
         self.plant.displacement_mm() - lost
     }
 
-    /// The sensors' truth jumps: what changed did so at once.
+    /// The truth jumps: the change took no time.
     fn settle(&mut self) {
         self.lvdt.follow(self.displacement_mm(), 0.0);
     }

@@ -1,4 +1,4 @@
-//! What the virtual rig refuses.
+//! Errors of the virtual rig.
 
 use hysteron::filter::FilterError;
 

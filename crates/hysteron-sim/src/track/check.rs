@@ -1,11 +1,11 @@
-//! What a scenario may say.
+//! Checks a scenario.
 
 use super::{LoopOptions, Reference, Scenario};
 use hysteron::{Error, Model, Operator, Result, Sign};
 
 /// Most levels of a model that is identified anew for each run.
 const MOST_LEVELS: usize = 100;
-/// No output is as large; its square still is a number.
+/// Larger than any output; its square is finite.
 const LARGEST: f64 = 1e100;
 
 impl Scenario {
@@ -78,8 +78,8 @@ impl Scenario {
         self.check_events()
     }
 
-    /// What is left out follows from the model, which is not identified yet: here one of the same
-    /// plane stands for it.
+    /// Defaults follow from the model, which is not identified yet. A model of the same plane
+    /// stands in for it.
     fn check_adaptation(&self) -> Result<()> {
         let plane = self.model.plane()?;
         let weights = vec![1.0; plane.operators()];

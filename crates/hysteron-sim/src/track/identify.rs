@@ -10,7 +10,7 @@ use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 /// `seed`.
 ///
 /// # Errors
-/// As [`design`], [`fit`] and [`Model::read`].
+/// As [`design`], [`Fit::run`] and [`Model::read`].
 pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
     let options = &scenario.model;
     if let Some(file) = &options.file {

@@ -30,10 +30,10 @@ use hysteron::{Adaptive, Error, Model, Progress, Result, headings};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// Time for which a reading with noise does not stay the same to the last bit, in samples.
+/// A noisy reading that stays the same to the last bit for this many samples is stuck.
 const STUCK_SAMPLES: f64 = 15.0;
 
-/// What a comparison came to.
+/// The result of a comparison.
 #[derive(Debug, Clone)]
 pub struct Comparison {
     /// The scenario's title.
@@ -57,9 +57,9 @@ pub struct Comparison {
 /// Runs every controller of the scenario with every seed. `progress` is told of each finished run.
 ///
 /// # Errors
-/// [`Error::Scenario`] names a field that cannot be, or a plant that does not answer the test it is
-/// tuned by; otherwise as the parts: [`Error::Plant`] for a plant outside its physics, and as
-/// [`hysteron::fit`] for a model that cannot be identified.
+/// [`Error::Scenario`] names a field that is wrong, or a plant that does not answer the tuning
+/// test; [`Error::Plant`] for a plant outside its physics; as [`hysteron::Fit::run`] for a model
+/// that cannot be identified.
 ///
 /// ```
 /// use hysteron::Progress;

@@ -91,8 +91,8 @@ impl PlantOptions {
         }
     }
 
-    /// Whether its sensors have the noise to tell one that is stuck from one at rest: with noise of
-    /// less than a step of its display a sensor at work reads the same for long, too.
+    /// Whether its sensors are noisy enough to tell a stuck one from one at rest. With noise below
+    /// the resolution, a working sensor also gives equal readings for long.
     pub(super) fn noisy(&self) -> bool {
         let noisy = |sensor: &SensorOptions| {
             let deviation = sensor.accuracy / 3.0;

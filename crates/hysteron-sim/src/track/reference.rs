@@ -29,7 +29,7 @@ pub enum Reference {
     Trapezoid {
         /// Value at time 0.
         low: f64,
-        /// The other one.
+        /// Value after the first ramp.
         high: f64,
         /// Duration of a ramp, s.
         ramp_s: f64,

@@ -62,7 +62,7 @@ impl Scenario {
         BUILTIN.map(|(name, _)| name)
     }
 
-    /// The text of a built-in scenario, to start one's own from.
+    /// The text of a built-in scenario, to start your own from.
     #[must_use]
     pub fn text(name: &str) -> Option<&'static str> {
         let mut found = BUILTIN.iter().filter(|(builtin, _)| *builtin == name);
@@ -146,7 +146,7 @@ impl Scenario {
     }
 }
 
-/// A text that is no scenario.
+/// The error for a text that is no scenario.
 fn unreadable(text: &str, field: &str, error: &toml::de::Error) -> Error {
     Error::Scenario {
         path: None,

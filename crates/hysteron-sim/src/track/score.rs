@@ -24,7 +24,7 @@ pub struct Window {
 pub struct Score {
     /// RMS of output less reference.
     pub rmse: f64,
-    /// Largest of it.
+    /// Largest absolute value of output less reference.
     pub max_abs: f64,
     /// RMS of what the model expected, before it learned, less the output; NaN without a model.
     pub prediction_rmse: f64,
@@ -203,7 +203,7 @@ pub fn reversal_lags(trace: &Trace, from_s: f64, to_s: f64) -> Vec<ReversalLag> 
         lags.push(ReversalLag {
             time: trace.time[rested.unwrap_or(extreme)],
             until: trace.time[next],
-            // Not at all: as late as the next reversal.
+            // No response: the lag lasts until the next reversal.
             lag: trace.time[answered.unwrap_or(next)] - trace.time[turned],
         });
     }

@@ -1,4 +1,4 @@
-//! What a comparison came to, in medians over the seeds.
+//! The result of a comparison: medians over the seeds.
 
 use super::{Comparison, Kind, Score, score::median};
 use hysteron::{Result, TableWriter};
@@ -75,8 +75,8 @@ impl Comparison {
         medians
     }
 
-    /// Inverse and PID against PID, and adaptive against fixed inverse, by window; of windows that
-    /// have settled only, for what a jump of the load leaves is the same whoever controls.
+    /// Inverse and PID against PID, and adaptive against fixed inverse, by window. Only settled
+    /// windows: right after a jump of the load all controllers have the same error.
     #[must_use]
     pub fn ratios(&self) -> Vec<Ratio> {
         let place = |kind: Kind| self.controllers.iter().position(|k| *k == kind);

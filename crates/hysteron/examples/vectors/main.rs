@@ -1,4 +1,5 @@
-//! Writes the test vectors that every surface must reproduce: `cargo run -p hysteron --example vectors -- vectors`
+//! Writes the test vectors that every surface must reproduce: `cargo run -p hysteron --example
+//! vectors -- vectors`
 
 mod make;
 mod plain;

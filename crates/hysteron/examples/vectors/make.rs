@@ -44,7 +44,8 @@ pub fn all() -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// Weights in 1/64, from 1/8 to 9/8; those with `j − i` below `still` are zero, which makes dead bands.
+/// Weights in 1/64, from 1/8 to 9/8; those with `j − i` below `still` are zero, which makes dead
+/// bands.
 fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> Result<Model> {
     let mut random = ChaCha8Rng::seed_from_u64(levels as u64);
     let weights = operators(levels).map(|(i, j)| {
@@ -55,7 +56,8 @@ fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> 
     Model::new(operator, plane, weights.collect(), line.0, line.1)
 }
 
-/// Numbers that inputs and targets are multiples of, so that they are short in the file and the same in single precision.
+/// Numbers that inputs and targets are multiples of, so that they are short in the file and the
+/// same in single precision.
 const GRAIN: f64 = 1.0 / 1024.0;
 
 fn short(value: f64) -> f64 {
@@ -157,7 +159,8 @@ fn targets(model: &Model) -> Vec<(&'static str, Vec<Wanted>)> {
         };
         (0..SAMPLES).map(noise).collect()
     };
-    // Between two multiples: a target that goes back by just the tolerance would be for rounding to decide.
+    // Between two multiples: a target that goes back by just the tolerance would be for rounding to
+    // decide.
     let noisy = noisy(short(0.02 * (on - off).abs()) + GRAIN / 2.0);
     let anywhere = |_| Wanted {
         target: at(1.3 * uniform(&mut random) - 0.15),

@@ -24,7 +24,8 @@ pub struct Wanted {
     pub tolerance: f64,
 }
 
-/// The inverse as a search over the definition: the whole history runs again for each input that is tried.
+/// The inverse as a search over the definition: the whole history runs again for each input that is
+/// tried.
 pub struct Search<'m> {
     model: &'m Model,
     history: Vec<f64>,

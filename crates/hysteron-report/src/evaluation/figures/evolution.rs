@@ -15,7 +15,7 @@ use crate::stack::Figures;
 const WIDTH: f64 = 760.0;
 const COLUMNS: usize = 3;
 const MOST: usize = 6;
-/// Instants to look at before settling on the most telling.
+/// How many instants are examined before some are chosen.
 const LOOKED_AT: usize = 24;
 const GAP: f64 = 20.0;
 const HEADING: f64 = 24.0;

@@ -19,7 +19,7 @@ pub(super) fn svg(view: &View<'_>) -> String {
     let left = MARGIN + left_of(&beta, WIDTH);
     let side = WIDTH - MARGIN - left;
     let radius = 0.33 * side / (half.side as f64 + 1.0);
-    // On a fine plane a ring for every zero would be a grey haze; the empty part says the same.
+    // On a fine plane a ring for every zero would look grey. Zeros are left out there.
     let coarse = radius >= 2.0;
     let not_zero = if coarse {
         Marker::Cross

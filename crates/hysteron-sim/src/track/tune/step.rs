@@ -90,7 +90,7 @@ fn average(
         let mut plant = scenario.plant.build(seed)?;
         let mut controller = Controller::new(scheme.clone())?;
         let (mut command, mut n, mut waited) = (scheme.bias, 0, 0);
-        // What was read last stands in for lost samples.
+        // A lost sample is replaced by the last reading.
         let (mut input, mut output) = (f64::NAN, f64::NAN);
         while n < sums.len() {
             let action = controller.step_command(command, plant.read())?;
@@ -99,7 +99,7 @@ fn average(
             let heard = |new: f64, last: f64| if new.is_nan() { last } else { new };
             input = heard(action.filtered.input.unwrap_or(f64::NAN), input);
             output = heard(action.filtered.output, output);
-            // Before anything was heard there is no test.
+            // No test before the first reading.
             let deaf = output.is_nan() || (action.filtered.input.is_some() && input.is_nan());
             let mut on = false;
             if !deaf {
