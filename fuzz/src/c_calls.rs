@@ -226,7 +226,7 @@ impl User {
             },
             Call::AdaptivePredict(handle, input, to) => unsafe {
                 let (to, _) = self.room.doubles(to);
-                hysteron_adaptive_predict(self.handle(handle), input.get(), to)
+                hysteron_adaptive_simulate(self.handle(handle), input.get(), to)
             },
             Call::AdaptiveModel(handle) => {
                 let adaptive = self.handle(handle);

@@ -2,7 +2,7 @@
 //! change, and runs.
 
 use crate::worded;
-use hysteron::Model;
+use hysteron::{Model, Sample};
 
 pub fn read(text: &str) {
     match Model::from_json(text) {
@@ -22,8 +22,13 @@ fn runs(model: &Model) {
         plane.min(),
         0.5 * plane.min() + 0.5 * plane.max(),
     ] {
+        let sample = Sample {
+            input,
+            dt: Some(1.0),
+            load: model.load.as_ref().map(|load| load.range().0),
+        };
         let output = model
-            .step(&mut state, input)
+            .step(&mut state, sample)
             .expect("a finite input")
             .output;
         assert!(output.is_finite(), "{output} at {input}");

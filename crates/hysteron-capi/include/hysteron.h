@@ -448,7 +448,7 @@ int32_t hysteron_adaptive_step(uint64_t adaptive, double input, double measured,
 /**
  * Moves to `input` and writes the output predicted there, without learning.
  */
-int32_t hysteron_adaptive_predict(uint64_t adaptive, double input, double *output);
+int32_t hysteron_adaptive_simulate(uint64_t adaptive, double input, double *output);
 
 /**
  * As `hysteron_inverse_step`, with the present weights. The inverse has a state of its own,

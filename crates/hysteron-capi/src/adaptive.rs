@@ -67,7 +67,7 @@ pub unsafe extern "C" fn hysteron_adaptive_step(
 
 /// Moves to `input` and writes the output predicted there, without learning.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn hysteron_adaptive_predict(
+pub unsafe extern "C" fn hysteron_adaptive_simulate(
     adaptive: u64,
     input: f64,
     output: *mut f64,
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn hysteron_adaptive_predict(
         // SAFETY: the contract of the crate.
         let output = unsafe { Arguments::default().out(output, "output")? };
         with(adaptive, |learner| {
-            output.set(learner.predict(input)?);
+            output.set(learner.simulate(input)?);
             Ok(())
         })
     })

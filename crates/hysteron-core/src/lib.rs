@@ -20,7 +20,6 @@
 
 mod adapt;
 mod branch;
-mod crossing;
 mod definition;
 mod error;
 mod everett;

@@ -241,7 +241,7 @@ impl Adaptive {
     /// 4.0
     fn simulate(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
         let input = number("input", input)?;
-        let simulate = |adaptive: &mut hysteron::Adaptive| adaptive.predict(input);
+        let simulate = |adaptive: &mut hysteron::Adaptive| adaptive.simulate(input);
         self.inner.with(py, simulate).raise()
     }
 

@@ -98,7 +98,7 @@ static void adaptation(uint64_t model, uint64_t plant_model, int32_t method) {
     OK(hysteron_adaptive_reset(adaptive));
     OK(hysteron_adaptive_inverse_step(adaptive, 12.0, HYSTERON_HOLD, 0.0, &input, &status));
     REQUIRE(status == HYSTERON_INSIDE);
-    OK(hysteron_adaptive_predict(adaptive, input, &expected));
+    OK(hysteron_adaptive_simulate(adaptive, input, &expected));
     REQUIRE(fabs(expected - 12.0) < 1e-9);
 
     OK(hysteron_adaptive_model(adaptive, &now));

@@ -190,7 +190,7 @@ fn cycles(folder: &Path) -> Result<()> {
         let (mut ahead, mut next) = (vec![], vec![]);
         for cycle in &cycles[1..] {
             let mut frozen = adaptive.clone();
-            let whole = cycle.input.iter().map(|&t| frozen.predict(t));
+            let whole = cycle.input.iter().map(|&t| frozen.simulate(t));
             let whole: Vec<f64> = whole.collect::<hysteron::Result<_>>()?;
             ahead.push(percent(&cycle.output, &whole, range));
             let samples = cycle.input.iter().zip(&cycle.output);
@@ -216,7 +216,7 @@ fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adapti
     };
     adaptive.saturate()?;
     for &input in &seen.input {
-        adaptive.predict(input)?;
+        adaptive.simulate(input)?;
     }
     Ok(adaptive)
 }

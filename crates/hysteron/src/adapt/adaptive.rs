@@ -24,7 +24,7 @@ use hysteron_core::{Solution, Target};
 ///     let input = 50.0 - 40.0 * (0.05 * f64::from(n)).cos();
 ///     adaptive.step(input, plant.step(&mut state, input)?.output)?;
 /// }
-/// assert!((adaptive.predict(80.0)? - 15.0 * 1.5).abs() < 0.1);
+/// assert!((adaptive.simulate(80.0)? - 15.0 * 1.5).abs() < 0.1);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -143,7 +143,7 @@ impl Adaptive {
     ///
     /// # Errors
     /// [`Error::Core`] for an input that is not finite; then nothing is changed.
-    pub fn predict(&mut self, input: f64) -> Result<f64> {
+    pub fn simulate(&mut self, input: f64) -> Result<f64> {
         let sum = self.core.step(&mut self.state, input)?.output;
         Ok(self.sign().factor() * (sum + self.estimator.offset()))
     }

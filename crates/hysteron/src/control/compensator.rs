@@ -97,7 +97,7 @@ impl Compensator {
                     false => self.resting.saturating_sub(1),
                 };
                 let Some(measured) = measured.filter(|_| self.resting == 0) else {
-                    return Ok((adaptive.predict(input)?, None));
+                    return Ok((adaptive.simulate(input)?, None));
                 };
                 let learning = adaptive.step(input, measured)?;
                 Ok((learning.output, Some(learning.outcome)))

@@ -10,9 +10,11 @@
 //! The result is the first crossing of the target. It equals the minimum (10) and the maximum (13)
 //! over candidates in the chapter.
 
+mod crossing;
+
 use crate::branch::Turn;
-use crate::crossing::Landing;
 use crate::error::Error;
+use crate::inverse::crossing::Landing;
 use crate::memory::Memory;
 use crate::model::Model;
 use crate::operator::Operator;
