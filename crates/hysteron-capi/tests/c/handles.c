@@ -52,7 +52,7 @@ static void series(uint64_t model) {
     size_t needed;
     int n;
     OK(hysteron_model_info(model, &info));
-    REQUIRE(info.noise_band == 0.01 * (info.output_on - info.output_off));
+    REQUIRE(info.usual_tolerance == 0.01 * (info.output_on - info.output_off));
     OK(hysteron_headings(target, 7, 0.1, heading));
     REQUIRE(memcmp(heading, next, sizeof next) == 0);
     OK(hysteron_state_new(model, &inverse));
