@@ -3,7 +3,8 @@
 /// The largest number of levels of a plane. The number of operators then fits 31 bits.
 pub const MAX_LEVELS: usize = 46_340;
 
-/// The range of an option, in words, for the message of [`Error::Adaptation`](crate::Error::Adaptation).
+/// The range of an option, in words, for the message of
+/// [`Error::Adaptation`](crate::Error::Adaptation).
 pub(crate) fn range_of(option: &str) -> &'static str {
     match option {
         "gain" => "above 0 and below 2",

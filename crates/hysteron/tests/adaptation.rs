@@ -60,8 +60,8 @@ fn every_learner_follows_a_plant_with_another_stroke() {
     for learner in LEARNERS {
         let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
         let (first, last) = (adapted.thirds[0], adapted.thirds[2]);
-        // The plant is the model but for its stroke: what is left after fifty loops is what is still being learned, and with
-        // the gradient methods a long tail of it.
+        // The plant is the model but for its stroke: what is left after fifty loops is what is
+        // still being learned, and with the gradient methods a long tail of it.
         assert!(
             last.adapting.rmse < 0.2 * last.fixed.rmse,
             "{learner:?}: {last:?}"
@@ -88,7 +88,8 @@ fn drift_follows_a_shift_that_it_has_no_part_for() {
     );
 }
 
-/// Where no operator leaves the plane, a member of the basis is the model at an input so many levels away.
+/// Where no operator leaves the plane, a member of the basis is the model at an input so many
+/// levels away.
 #[test]
 fn a_shifted_part_is_a_shifted_model() {
     let mut weights = wire(1.0, 0).weights().to_vec();
@@ -115,7 +116,8 @@ fn a_shifted_part_is_a_shifted_model() {
             .iter()
             .zip(expected)
         {
-            // Rounding of the shifted inputs, a few parts in 10¹⁶, over weights that sum to about one.
+            // Rounding of the shifted inputs, a few parts in 10¹⁶, over weights that sum to about
+            // one.
             assert!((a - b).abs() < 1e-12, "shift {shift}: {a} {b}");
         }
     }

@@ -132,7 +132,8 @@ fn an_unknown_start_costs_little() {
                     ..FitOptions::default()
                 };
                 let found = Fit::from(&options).run(&recording).unwrap();
-                // With the weights given, the start that explains the recording best is no worse than that of the fit.
+                // With the weights given, the start that explains the recording best is no worse
+                // than that of the fit.
                 let again = evaluate_from(&found, &recording, start).unwrap().forward;
                 let fitted = found.fit.as_ref().unwrap().rmse;
                 assert!(
@@ -156,7 +157,8 @@ fn an_unknown_start_costs_little() {
     }
 }
 
-/// A butterfly loop that begins inside its range: what plain least squares fits, evaluation finds again.
+/// A butterfly loop that begins inside its range: what plain least squares fits, evaluation finds
+/// again.
 #[test]
 fn an_unknown_start_with_weights_of_either_sign() {
     let input: Vec<f64> = (0..600)
@@ -186,8 +188,8 @@ fn an_unknown_start_with_weights_of_either_sign() {
     );
 }
 
-/// Three recordings of one material, each after another history: together they are fitted as well as
-/// any, which no common pattern of starts would allow.
+/// Three recordings of one material, each after another history: together they are fitted as well
+/// as any, which no common pattern of starts would allow.
 #[test]
 fn recordings_with_starts_of_their_own_are_one_experiment() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
@@ -219,8 +221,8 @@ fn recordings_with_starts_of_their_own_are_one_experiment() {
         Fit::from(&options).run(&recordings).unwrap()
     };
     let unknown = fitted(Start::Unknown).fit.unwrap();
-    // Whole operators on or off are fitted exactly; an operator that starts half on is, only as long as
-    // its ridge is not met half-way.
+    // Whole operators on or off are fitted exactly; an operator that starts half on is, only as
+    // long as its ridge is not met half-way.
     assert!(unknown.nrmse_percent < 0.5, "{}", unknown.nrmse_percent);
     assert_eq!(
         unknown.samples,
@@ -261,7 +263,8 @@ fn weights_that_depend_on_a_load_are_recovered() {
     assert_eq!(found.load.as_ref().unwrap().range(), (6.0, 10.0));
     let between = found.at_load(8.0).unwrap();
     let error = error_elsewhere(&between, &mixed(0.5), &mut rng);
-    // Exact data: what is left is what the solver takes for nothing, 1e-13 of squares of about 1000.
+    // Exact data: what is left is what the solver takes for nothing, 1e-13 of squares of about
+    // 1000.
     assert!(error < 1e-5, "{error}");
     assert!(between.inverse().is_ok());
     let text = found.to_json();

@@ -68,8 +68,8 @@ fn a_known_model_is_recovered() {
     }
 }
 
-/// Karush-Kuhn-Tucker: no weight below zero, and no direction in which the error falls. The gradient
-/// is taken numerically, from simulations alone.
+/// Karush-Kuhn-Tucker: no weight below zero, and no direction in which the error falls. The
+/// gradient is taken numerically, from simulations alone.
 #[test]
 fn non_negative_least_squares_is_optimal() {
     for seed in 0..20 {

@@ -47,7 +47,8 @@ fn the_proportional_loop_is_the_exact_one() {
 
 #[test]
 fn the_loop_whose_integral_cancels_the_lag_is_of_first_order() {
-    // With integral_s = τ the loop is y' = (r − y) k gain/τ. What the sampling adds goes with its interval.
+    // With integral_s = τ the loop is y' = (r − y) k gain/τ. What the sampling adds goes with its
+    // interval.
     let worst = |dt: f64| {
         let mut plant = FirstOrder {
             lag_s: 3.0,

@@ -116,8 +116,8 @@ fn difference(a: &[f64], b: &[f64], range: (f64, f64)) -> f64 {
     100.0 * (squares / a.len() as f64).sqrt() / (range.1 - range.0)
 }
 
-/// Readings that dropped to zero between −2 and −8 °C, counted from 1; and in the second recording (586) a single reading that
-/// sticks out of a cooling ramp by 1.7 °C, which may be true.
+/// Readings that dropped to zero between −2 and −8 °C, counted from 1; and in the second recording
+/// (586) a single reading that sticks out of a cooling ramp by 1.7 °C, which may be true.
 fn expected_spikes(name: &str) -> &'static [usize] {
     match name {
         "sma_bend_3load" => &[534, 538, 1417, 1418, 1627, 1630, 2541],
@@ -163,7 +163,8 @@ fn spikes_are_taken_from_the_two_that_have_them_and_nothing_gets_worse() {
         assert!(after <= 1.01 * before, "{name}: {before} to {after}");
 
         let (again, _) = prepare(&prepared, &PrepareOptions::default(), Progress::NONE).unwrap();
-        // The noise that stays may be just above the 0.05 % that is left alone, and asks for a second, gentler filter.
+        // The noise that stays may be just above the 0.05 % that is left alone, and asks for a
+        // second, gentler filter.
         assert!(
             difference(&again.input, &prepared.input, input) < 0.1,
             "{name}"

@@ -42,7 +42,8 @@ fn truth() -> Model {
     model
 }
 
-/// The first `samples` of the drive and what the model makes of them, with noise of 1 % of the range; and without.
+/// The first `samples` of the drive and what the model makes of them, with noise of 1 % of the
+/// range; and without.
 fn recorded(samples: usize) -> (Recording, Vec<f64>) {
     let (time, input) = drive();
     let (time, input) = (time[..samples].to_vec(), input[..samples].to_vec());
@@ -72,12 +73,14 @@ fn a_known_body_is_found_again_through_noise() {
         .unwrap();
     let body = model.thermal.unwrap();
     println!("{body:?}, {}", model.fit.as_ref().unwrap().nrmse_percent);
-    // The output crosses its range within about a time constant, so noise of 1 % of it is 1 % of the time constant for
-    // one sample, and far less for the hundreds on each flank. What is left is the grid of the weights.
+    // The output crosses its range within about a time constant, so noise of 1 % of it is 1 % of
+    // the time constant for one sample, and far less for the hundreds on each flank. What is left
+    // is the grid of the weights.
     assert!((body.tau_heating / 3.0 - 1.0).abs() < 0.02, "{body:?}");
     assert!((body.tau_cooling / 6.0 - 1.0).abs() < 0.02, "{body:?}");
     assert_eq!(body.gain, 1.0);
-    // Against the clean output, what 2600 samples leave of 1 % of noise in some 50 weights: √(50/2600) of it.
+    // Against the clean output, what 2600 samples leave of 1 % of noise in some 50 weights:
+    // √(50/2600) of it.
     recording.output = clean;
     let error = evaluate(&model, &recording).unwrap().forward;
     println!("{}", error.nrmse_percent.unwrap());
@@ -122,7 +125,8 @@ fn ramp_and_step_of_a_measured_wire_validate_each_other() {
     let body = model.thermal.unwrap();
     let percent = model.fit.as_ref().unwrap().nrmse_percent;
     println!("both fitted: {percent:.2} % with {body:?}");
-    // Ramp and step together tell heating and cooling apart, and one body serves both about as well as each its own (1 %).
+    // Ramp and step together tell heating and cooling apart, and one body serves both about as well
+    // as each its own (1 %).
     assert!(body.tau_heating > 1.2 * body.tau_cooling && percent < 2.0);
 }
 
@@ -222,11 +226,13 @@ fn a_body_has_no_inverse_and_needs_time() {
     assert_eq!(evaluation.output_model, warmed);
 }
 
-/// The search looks at few samples of a long recording. A drive that turns often must not lose its turning points there.
+/// The search looks at few samples of a long recording. A drive that turns often must not lose its
+/// turning points there.
 #[test]
 fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
     let time: Vec<f64> = (0..30_000).map(|n| 0.1 * f64::from(n)).collect();
-    // Steps of 3 s up and 2 s down to one height after the other: 50 samples a period, where one of 15 is looked at.
+    // Steps of 3 s up and 2 s down to one height after the other: 50 samples a period, where one of
+    // 15 is looked at.
     let heights = [1.0, 0.4, 0.8, 0.6, 0.9];
     let height = |t: &f64| {
         if t % 5.0 < 3.0 {

@@ -98,7 +98,8 @@ fn strength_means_the_same_at_any_number_of_levels() {
         .sum();
     let high = material.output_range().1;
     let difference = (squares / noisy.len() as f64).sqrt() / high;
-    // Half a level of the coarser plane bends the loops by about this; a strength off by K⁴ = 16 moves them by more.
+    // Half a level of the coarser plane bends the loops by about this; a strength off by K⁴ = 16
+    // moves them by more.
     assert!(difference < 0.004, "{difference}");
 }
 
@@ -118,7 +119,8 @@ fn samples_are_left_out_with_their_branch() {
         assert_eq!(*fold, (n - 1) / 30 % 5, "sample {n}");
     }
     assert!(found.training_nrmse_percent < found.nrmse_percent);
-    // What was left out is predicted without it: changing one branch's output changes no prediction of it.
+    // What was left out is predicted without it: changing one branch's output changes no prediction
+    // of it.
     let mut other = noisy.clone();
     for n in 91..=120 {
         other.output[n] += 0.1;

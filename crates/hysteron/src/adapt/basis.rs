@@ -14,14 +14,15 @@ const SHIFTS: [isize; 6] = [-3, -1, 0, 1, 3, 5];
 /// An estimator adapts these few coefficients in place of all weights.
 ///
 /// A model that depends on a load has its load parts as the basis. For any other model, the members
-/// of the basis are the off-line weights, shifted along the diagonal of the plane by −3, −1, 0, 1, 3
-/// and 5 levels. A stress shifts all transformation temperatures alike (the relation of Clausius and
+/// of the basis are the off-line weights, shifted along the diagonal of the plane by −3, −1, 0, 1,
+/// 3 and 5 levels. A stress shifts all transformation temperatures alike (the relation of Clausius
+/// and
 /// Clapeyron). So coefficients of zero or above can follow a larger stroke, a shift, and a wider
 /// transformation.
 ///
 /// An operator that the shift moves beyond the plane is left out. Above the plane it would never
-/// switch; below it, it would always be on, like the offset. An operator that would switch off below
-/// the plane switches off at the lowest level.
+/// switch; below it, it would always be on, like the offset. An operator that would switch off
+/// below the plane switches off at the lowest level.
 ///
 /// ```
 /// use hysteron::{DriftBasis, Model, Operator, Plane, Sign};
@@ -42,8 +43,8 @@ pub struct DriftBasis {
 }
 
 impl DriftBasis {
-    /// The basis of `model`. A model that depends on a load starts at `load`, or at the middle of its
-    /// range.
+    /// The basis of `model`. A model that depends on a load starts at `load`, or at the middle of
+    /// its range.
     ///
     /// # Errors
     /// [`crate::Error::Fit`] for a load outside the model's range, or of a model without one.

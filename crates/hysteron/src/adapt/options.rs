@@ -16,8 +16,9 @@ const GAIN: f64 = 0.3;
 const SPAN: f64 = 1.0;
 /// Forgetting factor of least squares, for weights and for coefficients.
 const FORGETTING: [f64; 2] = [0.999, 0.9999];
-/// Error of a reading as a share of the output's range, for weights and for coefficients. It is larger
-/// for coefficients, because a few coefficients fit less well and their errors are correlated between samples.
+/// Error of a reading as a share of the output's range, for weights and for coefficients. It is
+/// larger for coefficients, because a few coefficients fit less well and their errors are
+/// correlated between samples.
 const MISFIT: [f64; 2] = [0.02, 0.05];
 /// Share of the offset in the regressor of the gradient methods, relative to all weights together.
 const OFFSET: f64 = 0.2;
@@ -73,7 +74,8 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a load.
+    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a
+    /// load.
     pub load: Option<f64>,
     /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
@@ -83,10 +85,10 @@ pub struct AdaptOptions {
     pub forgetting: Option<f64>,
     /// Least squares: standard deviation of a reading's error, including the error of the model, in
     /// the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for weights and
-    /// 5 % for shares.
+    /// 5 % for coefficients.
     pub noise: Option<f64>,
     /// Least squares: standard deviation by which a parameter may differ from its off-line value.
-    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for shares: 0.5.
+    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5.
     pub spread: Option<f64>,
     /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
@@ -94,7 +96,7 @@ pub struct AdaptOptions {
     pub dead_zone: Option<f64>,
     /// Share of the way back to the off-line weights with each update.
     pub leakage: Option<f64>,
-    /// How freely the offset moves, relative to one weight or share. Default of the gradient
+    /// How freely the offset moves, relative to one weight or coefficient. Default of the gradient
     /// methods: `0.2 √N`. Default of least squares: the offset may deviate by 0.3 `Y`.
     pub offset_share: Option<f64>,
     /// Levels that the input has to move before a sample is learned from.
