@@ -1,10 +1,10 @@
 //! Models and states in memory of the caller. Nothing is allocated.
 //!
 //! An object lies at the beginning of its memory, followed by its numbers. It must not be moved,
-//! and it ends with the memory. Where an initialisation fails in memory that has an object, that
-//! object either stays as it is or is refused from then on (`HYSTERON_HANDLE`). Outputs are `Σ μ γ`
-//! of the operators, without offset and sign. Only one thread at a time may use an object that is
-//! changed: a state, and model and estimator while weights are learned.
+//! and it is gone when the memory is. Where an initialisation fails in memory that has an object,
+//! that object either stays as it is or is refused from then on (`HYSTERON_HANDLE`). Outputs are
+//! `Σ μ γ` of the operators, without offset and sign. Only one thread at a time may use an object
+//! that is changed: a state, and model and estimator while weights are learned.
 
 use crate::fault::guard_plain;
 use crate::pointer::Arguments;

@@ -1,4 +1,4 @@
-//! Values of the façade converted to Python and back, through JSON.
+//! Values of the library converted to Python and back, through JSON.
 
 use crate::choices::{another_kind, did_you_mean};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};

@@ -1,4 +1,4 @@
-//! Errors of the façade as Python exceptions, one class for each kind: `pyhysteron.errors`.
+//! Errors of the library as Python exceptions, one class for each kind: `pyhysteron.errors`.
 
 use hysteron::{Error, Remedy, SettingValue};
 use pyo3::call::PyCallArgs;

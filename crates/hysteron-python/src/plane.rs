@@ -1,4 +1,5 @@
-//! Values of operators as squares: `[i-1, j-1]`, nothing below the diagonal.
+//! Values of operators as square arrays: operator `(i, j)` at `[i-1, j-1]`, nothing below the
+//! diagonal.
 
 use crate::array::samples;
 use hysteron::operator_index;

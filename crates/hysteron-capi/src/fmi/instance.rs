@@ -1,4 +1,4 @@
-//! An instance: a block, its state in the order of calls, and its run.
+//! An instance: a block, its state in the standard's state machine, and its run.
 
 use super::block::{Block, Inputs, Kind, Outputs, State};
 use super::snapshot::SAVED;

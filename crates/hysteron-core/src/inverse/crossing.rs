@@ -1,7 +1,7 @@
 //! Where the output crosses a goal: on the way up, and on the way down.
 //!
-//! A way starts at the present position. It leaves the branch being travelled where an enclosing
-//! branch has to be reached; [`Branch::find`] selects that branch.
+//! A way starts at the present position, on the present branch. If the goal lies beyond that
+//! branch, the way goes on along an enclosing branch, which [`Branch::find`] selects.
 
 use crate::branch::Turn;
 use crate::everett::{Grid, Split, table_index};

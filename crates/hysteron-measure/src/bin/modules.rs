@@ -1,8 +1,8 @@
-//! The graph of the modules of each crate, and a refusal of circles among them:
+//! Prints the graph of the modules of each crate, and fails if a graph has a cycle:
 //! `cargo run -p hysteron-measure --bin modules`
 //!
 //! A module is a file or folder directly below `src/`. It imports another where a path in it begins
-//! with `crate::OTHER`. What tests alone import does not count. Exits with 1 on a circle.
+//! with `crate::OTHER`. What tests alone import does not count. Exits with 1 on a cycle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;

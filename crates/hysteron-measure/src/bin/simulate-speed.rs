@@ -1,6 +1,6 @@
 //! What a sample of `Model::run` takes, in nanoseconds, for `python/benchmarks/simulate.py`: `cargo
-//! run --release -p hysteron-measure --bin simulate-speed -- MODEL SAMPLES`, samples being 64-bit
-//! numbers, least significant byte first.
+//! run --release -p hysteron-measure --bin simulate-speed -- MODEL SAMPLES`. `SAMPLES` is a file of
+//! 64-bit numbers, least significant byte first.
 
 use hysteron::Model;
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! The cloud of relays, which no model of the toolkit can represent exactly.
 //!
-//! Its relays lie in centre and half-width, not on the grid of a plane; they are dense where the
-//! density is high; the density is asymmetric and has two lobes; and a load moves and deforms it.
+//! Its relays are placed by centre and half-width, not on the grid of a plane. They are dense where
+//! the density is high. The density is asymmetric and has two lobes. A load moves and deforms it.
 //! All numbers are invented, in the size of a stack actuator of 100 µm at 150 V.
 
 use super::relays::Relay;

@@ -3,9 +3,9 @@
 //! On each transformation dislocations stay behind. They shift the transformation temperatures
 //! (Miyazaki, Igo & Otsuka 1986, thermal cycles of NiTi) and leave strain that does not come back,
 //! more slowly from cycle to cycle until the alloy is trained (Bo & Lagoudas 1999). The measure of
-//! cycling is the transformed fraction that has accumulated, `ζ = ∫ |dξ|`, 2 for a complete cycle;
-//! what changes follows `X = X_∞ (1 − exp(−ζ/ζ₀))`, the law of Lagoudas & Entchev 2004. So partial
-//! cycles count in part, rest counts nothing, and how time is divided does not matter.
+//! cycling is the transformed fraction that has accumulated, `ζ = ∫ |dξ|`. A complete cycle adds 2.
+//! What changes follows `X = X_∞ (1 − exp(−ζ/ζ₀))`, the law of Lagoudas & Entchev 2004. So partial
+//! cycles count in part, rest does not count, and how time is divided does not matter.
 
 use crate::rig::{RigError, check};
 use serde::Deserialize;

@@ -1,10 +1,10 @@
 //! The NiTi tension spring: two-moduli design (Waram 1993) over a cross-section divided into rings.
 //!
-//! The wire is twisted, so its stress grows from nothing at the axis to the most at the skin, and
-//! with it the transformation temperatures. Each ring is one material point; the spread of their
-//! temperatures makes the loops of the whole spring smooth. The stress is that of the elastic bar,
-//! `τ(r) = τ_max · 2r/d` with `τ_max = 8FD/(πd³)`; the curvature of the coil (Wahl's factor) and
-//! the stress that a stiffer ring takes from a softer one are left out.
+//! The wire is twisted, so its stress is zero at the axis and largest at the surface. The
+//! transformation temperatures grow with the stress. Each ring is one material point. The spread of
+//! their transformation temperatures makes the loops of the whole spring smooth. The stress is that
+//! of the elastic bar, `τ(r) = τ_max · 2r/d` with `τ_max = 8FD/(πd³)`; the curvature of the coil
+//! (Wahl's factor) and the stress that a stiffer ring takes from a softer one are left out.
 
 use super::error::{RigError, check};
 use core::f64::consts::PI;

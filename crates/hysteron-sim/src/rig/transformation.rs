@@ -3,7 +3,7 @@
 //! - **Major branches**: cosines between the transformation temperatures (Liang & Rogers 1990,
 //!   Brinson 1993).
 //! - **Stress** shifts the transformation temperatures, `Mₛ(σ) = Mₛ + σ/C_M`, `Aₛ(σ) = Aₛ + σ/C_A`.
-//!   Turned round, the point is driven by the temperatures `θ_M = T − σ/C_M` (cooling) and `θ_A = T
+//!   Equivalently, the point is driven by the temperatures `θ_M = T − σ/C_M` (cooling) and `θ_A = T
 //!   − σ/C_A` (heating), so a change of load drives the same law as a change of temperature.
 //! - **Partial loops** scale the major branch between the turning point that was left and the one
 //!   that the branch returns to, `ξ = ξ_to + (ξ_from − ξ_to) · (f(θ) − f(θ_to)) / (f(θ_from) −
@@ -15,7 +15,7 @@
 //! alloys remember their turning points (Šittner et al. 2000, as the chapter's section 2 says;
 //! Tanaka et al. 1995 and Bo & Lagoudas 1999 build it into their laws), so the rule is here applied
 //! between remembered turning points. Unlike a Preisach model the law has no congruent loops: the
-//! height of a loop depends on where it hangs.
+//! height of a loop depends on where it lies.
 
 use super::error::{RigError, check};
 use core::f64::consts::PI;

@@ -1,10 +1,10 @@
 //! The shrinking spiral: the order of turning points that determines all operators with the
 //! shortest travel. Positions are on the grid: `0` is the bottom of the plane, `k` its level `k`.
 //!
-//! At the start every operator is off. A rise from `q` to `p` shows the Everett corners
-//! `C[q+1][q] … C[p][q]`. A fall from `p` to `q` shows `C[p][p−1] … C[p][q]`. Each step of one
-//! level shows one corner. The corners with `q < p` are `N` numbers. All weights follow from them
-//! as second differences.
+//! At the start every operator is off. A rise from `q` to `p` shows the Everett corners `C[q+1][q]
+//! … C[p][q]`. A fall from `p` to `q` shows `C[p][p−1] … C[p][q]`. Each step of one level shows one
+//! corner. The corners with `q < p` are `N = K(K + 1)/2` numbers. All weights follow from them as
+//! second differences.
 //!
 //! **No profile that turns at levels is shorter.** Along one step between neighbouring levels the
 //! output is linear. So a step adds at most one equation, and `N` unknown weights need `N` steps, a

@@ -3,8 +3,8 @@
 //! - [`relay`]: a relay in place of the controller makes the loop oscillate (Åström & Hägglund
 //!   1984); gains by Tyreus & Luyben 1992. The oscillation crosses the hysteresis, which a step
 //!   test on one branch does not see.
-//! - [`step`]: a small step on the rising branch, gains by SIMC (Skogestad 2003); and the loop
-//!   around a temperature.
+//! - [`step`]: a small step on the rising branch, gains by SIMC (Skogestad 2003). It also tunes the
+//!   loop around a temperature.
 
 mod relay;
 mod step;

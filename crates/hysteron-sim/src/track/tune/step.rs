@@ -1,8 +1,9 @@
 //! Step tests, and SIMC (Skogestad 2003).
 //!
 //! For the loop around the temperature the drive steps to its limit, and the temperature is taken
-//! as a delayed integrator, of slope and delay. For the feedback of the output the command steps by
-//! a little on the rising branch at the middle of the reference ([`Gains::from_step`]).
+//! as an integrator with a slope and a delay. For the feedback of the output the
+//! command steps by a little on the rising branch at the middle of the reference
+//! ([`Gains::from_step`]).
 
 use super::{TESTS, middle, no_answer};
 use crate::track::scenario::Scenario;
