@@ -10,7 +10,7 @@ impl Design {
     /// replaced.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error::File`](crate::Error::File).
     pub fn write_csv(&self, path: &Path) -> Result<()> {
         self.write_to(TableWriter::plain(Some(path.into()))?)
     }
@@ -18,7 +18,7 @@ impl Design {
     /// As [`Design::write_csv`], to a table that is already open.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error::File`](crate::Error::File).
     pub fn write_to(&self, mut table: TableWriter) -> Result<()> {
         table.row(["time [s]", "input"])?;
         for (time, input) in self.time.iter().zip(&self.input) {

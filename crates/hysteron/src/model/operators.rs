@@ -140,8 +140,8 @@ impl Operators {
         state
     }
 
-    /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
-    /// ([`State::input`]), to the last bit.
+    /// The state that returned these `turning_points` ([`OperatorState::turning_points`]) and this `input`
+    /// ([`OperatorState::input`]), to the last bit.
     ///
     /// # Errors
     /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.

@@ -10,7 +10,7 @@ impl Recording {
     /// recording has a last column that marks it as simulated. An existing file is replaced.
     ///
     /// # Errors
-    /// [`Error::File`], and [`Error::Recording`] as for [`Recording::check`].
+    /// [`Error::File`](crate::Error::File), and [`Error::Recording`](crate::Error::Recording) as for [`Recording::check`].
     pub fn write_csv(&self, path: &Path) -> Result<()> {
         self.write_to(TableWriter::plain(Some(path.into()))?)
     }
