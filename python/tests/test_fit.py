@@ -198,5 +198,5 @@ def test_what_does_not_run_by_itself_has_no_state(recording, swings):
     assert "under load" in repr(model)
     time = np.arange(len(swings)) * 0.1
     body = pyhysteron.fit((swings / 100) ** 2, recording.output, time=time, levels=5, thermal="first-order", bootstrap=0)
-    with pytest.raises(pyhysteron.ThermalError, match="needs the time of each sample"):
+    with pytest.raises(pyhysteron.ThermalError, match="each sample needs its time"):
         body.start()
