@@ -107,7 +107,7 @@ fn inverse<T: Number>(
         true => solution.status.mirrored(),
         false => solution.status,
     };
-    Ok((solution.input, status.number().into()))
+    Ok((solution.input, status.number()))
 }
 
 /// Model and inverse, ready to step.
