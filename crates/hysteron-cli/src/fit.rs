@@ -3,7 +3,7 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Auto, Columns, FirstOrder, Fit, FitOptions, FitSummary, Model, Preparation, Progress,
+    Advice, Choice, Columns, FirstOrder, Fit, FitOptions, FitSummary, Model, Preparation, Progress,
     RateDependence, Recording, Sign, Solver, Step,
 };
 use serde_json::json;
@@ -53,18 +53,17 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 }
 
 fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
-    let (levels, auto_levels) = match args.levels {
-        args::Levels::Auto => (FitOptions::default().levels, true),
-        args::Levels::Fixed(levels) => (levels, false),
+    let levels = match args.levels {
+        args::Levels::Auto => Choice::Auto,
+        args::Levels::Fixed(levels) => Choice::Fixed(levels),
     };
-    let (smooth, auto_smooth) = match args.smooth {
-        Step::Auto => (0.0, true),
-        Step::Off => (0.0, false),
-        Step::Value(smooth) => (smooth, false),
+    let smooth = match args.smooth {
+        Step::Auto => Choice::Auto,
+        Step::Off => Choice::Fixed(0.0),
+        Step::Value(smooth) => Choice::Fixed(smooth),
     };
     let options = FitOptions {
         operator: args.operator.into(),
-        levels,
         range: args.range,
         solver: match args.solver {
             args::Solver::Nnls => Solver::Nnls,
@@ -76,28 +75,21 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
             args::Sign::Negative => Some(Sign::Negative),
         },
         offset: args.offset,
-        smooth,
         start: args.start.into(),
         load_degree: args.load_degree,
-        bootstrap: args.bootstrap.unwrap_or_default(),
+        ..FitOptions::default()
     };
     let bar = progress::stages();
     let told = |stage: &'static str, done: f64| {
         progress::stage(&bar, stage, done);
         Ok(())
     };
-    let mut fit = Fit::from(options)
+    let fit = Fit::from(options)
+        .levels(levels)
+        .smooth(smooth)
+        .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
         .thermal(args.thermal.is_some())
         .progress(Progress::new(&told));
-    if auto_levels {
-        fit = fit.levels(Auto);
-    }
-    if auto_smooth {
-        fit = fit.smooth(Auto);
-    }
-    if args.bootstrap.is_none() {
-        fit = fit.bootstrap(Auto);
-    }
     let model = fit.run(recordings)?;
     bar.finish_and_clear();
     Ok(model)

@@ -93,6 +93,10 @@ impl State {
             (Some(dependence), None) => return Err(dependence.one_is_needed()),
             (Some(dependence), Some(load)) => dependence.factors(load)?,
         };
+        // A state of the operators alone has no parts: without this check the sum would lack them.
+        if self.parts.len() != factors.len() {
+            return Err(hysteron_core::Error::StateMismatch.into());
+        }
         let mut step = model.operators().step(&mut self.operators, input)?;
         self.body = body;
         if let Some(dependence) = &model.load {

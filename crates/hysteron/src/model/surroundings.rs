@@ -114,6 +114,14 @@ mod tests {
         };
         let found = model.simulate_in(&input, around).unwrap();
         assert_eq!(found, model.simulate_under_load(&input, &load).unwrap());
+        let sample = crate::model::Sample {
+            load: Some(load[0]),
+            ..input[0].into()
+        };
+        let stepped = model.step(&mut model.start(), sample).unwrap().output;
+        assert_eq!(stepped, found[0]);
+        let mut without_parts = model.operators().start().into();
+        assert!(model.step(&mut without_parts, sample).is_err());
         let (low, high) = model.band_in(&input, around).unwrap();
         let inside = |n: usize| low[n] < found[n] && found[n] < high[n];
         assert!((0..400).all(inside));
