@@ -59,6 +59,16 @@ pub enum Error {
         /// [`Method`](crate::Method).
         option: &'static str,
     },
+    /// The model needs the time since the sample before: a finite number of seconds, 0 or more.
+    TimeStep,
+    /// The model needs a load that is a finite number.
+    Load,
+    /// The constants of a stage cannot be: a time constant that is not above zero, knots that do
+    /// not ascend, lists of different lengths.
+    Stage {
+        /// Name of the constant, as in [`Stages`](crate::Stages).
+        stage: &'static str,
+    },
 }
 
 impl Error {
@@ -77,6 +87,9 @@ impl Error {
             Error::StateMismatch => 9,
             Error::Operator { .. } => 10,
             Error::Adaptation { .. } => 11,
+            Error::TimeStep => 12,
+            Error::Load => 13,
+            Error::Stage { .. } => 14,
         }
     }
 }
@@ -153,6 +166,13 @@ impl fmt::Display for Error {
                 let range = crate::limits::range_of(option);
                 write!(f, "the estimator's option `{option}` must be {range}")
             }
+            Error::TimeStep => write!(
+                f,
+                "the model needs the time since the sample before, in seconds: a finite number \
+                 from 0 on"
+            ),
+            Error::Load => write!(f, "the model needs a load that is a finite number"),
+            Error::Stage { stage } => write!(f, "the model's `{stage}` cannot be used as given"),
             Error::StateMismatch => write!(f, "the state belongs to another model"),
             Error::Operator { i, j } => {
                 write!(

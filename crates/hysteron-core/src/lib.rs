@@ -7,6 +7,7 @@
 //! - [`Model`] computes the same output in amortised `O(1)` per sample.
 //! - [`Inverse`] finds the input that gives a wanted output, exactly, in `O(log K)`.
 //! - [`Estimator`] adapts the weights while the model runs.
+//! - [`Stages`] stand before and after the operators: thermal body, load, spacing, creep, lag.
 //!
 //! The core does not allocate: the caller provides all memory. It has no unsafe code and does not
 //! panic on any input. Numbers are `f32` or `f64`.
@@ -35,6 +36,7 @@ mod renewal;
 mod scalar;
 mod search;
 mod solution;
+mod stages;
 mod state;
 mod target;
 
@@ -54,5 +56,6 @@ pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
+pub use stages::{Axis, Body, Creep, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted, mix};
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

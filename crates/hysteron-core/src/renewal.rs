@@ -52,6 +52,20 @@ impl<T: Real, C: Memory<T>> Model<T, C> {
         self.changed();
     }
 
+    /// Makes the table `Σ_k factors[k] · parts[k]`, entry by entry, for factors from 0 on. Rounding
+    /// keeps the order of entries, so the inverse stays exact.
+    pub(crate) fn blend<P: AsRef<[T]>>(&mut self, parts: &[P], factors: &[T]) {
+        let len = everett::table_len(self.plane().levels());
+        let base = self.base;
+        for (n, entry) in self.table.as_mut()[base..base + len].iter_mut().enumerate() {
+            *entry = T::ZERO;
+            for (part, &factor) in parts.iter().zip(factors) {
+                *entry = *entry + factor * part.as_ref()[n];
+            }
+        }
+        self.changed();
+    }
+
     /// Writes the next row of the second table. After the last row the model uses that table.
     /// Returns whether it changed over. `O(K)`.
     ///

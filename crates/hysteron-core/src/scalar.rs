@@ -11,8 +11,8 @@ mod sealed {
 
 /// A floating-point number: `f32` or `f64`, nothing else (the trait is sealed).
 ///
-/// It has only what the core needs. So the core depends on no numeric crate and on no function of
-/// `std`.
+/// It has only what the core needs, without `std`. The exponential is that of `libm`, which gives the
+/// same bits on every platform.
 ///
 /// [`Real::max`], [`Real::min`] and [`Real::clamp`] are for generic code. On a value whose type is
 /// known to be `f32` or `f64`, the inherent methods of the same name are called instead. The two
@@ -58,6 +58,9 @@ pub trait Real:
     /// Whether the number is neither NaN nor infinite.
     fn is_finite(self) -> bool;
 
+    /// `e^self`.
+    fn exp(self) -> Self;
+
     /// The larger of two numbers. `other` where they are equal or one of them is NaN.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -79,7 +82,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ty, $round:expr) => {
+    ($t:ty, $round:expr, $exp:path) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -125,8 +128,13 @@ macro_rules! real {
             fn is_finite(self) -> bool {
                 <$t>::is_finite(self)
             }
+
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
         }
     };
 }
-real!(f32, 12_582_912.0); // 1.5 · 2²³
-real!(f64, 6_755_399_441_055_744.0); // 1.5 · 2⁵²
+real!(f32, 12_582_912.0, libm::expf); // 1.5 · 2²³
+real!(f64, 6_755_399_441_055_744.0, libm::exp); // 1.5 · 2⁵²

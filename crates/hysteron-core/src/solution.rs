@@ -12,11 +12,15 @@ pub enum Status {
     /// The target lies inside a jump of a relay model. The input is that of the jump, and the
     /// output lies beyond the target by more than the tolerance.
     Passed,
+    /// The model can give the target, but not in this sample: the drive is at an end of its range,
+    /// or the stages after the operators are too slow. The drive goes as far as it can.
+    Limited,
 }
 
 impl Status {
     /// The number of the status in files and in interfaces without enumerations: 0 for
-    /// [`Status::Ok`], −1 for [`Status::Low`], 1 for [`Status::High`], 2 for [`Status::Passed`].
+    /// [`Status::Ok`], −1 for [`Status::Low`], 1 for [`Status::High`], 2 for [`Status::Passed`],
+    /// 3 for [`Status::Limited`].
     #[must_use]
     pub fn number(self) -> i8 {
         match self {
@@ -24,10 +28,11 @@ impl Status {
             Status::Low => -1,
             Status::High => 1,
             Status::Passed => 2,
+            Status::Limited => 3,
         }
     }
 
-    /// The name of the status in tables: `ok`, `low`, `high`, `passed`.
+    /// The name of the status in tables: `ok`, `low`, `high`, `passed`, `limited`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -35,6 +40,7 @@ impl Status {
             Status::Low => "low",
             Status::High => "high",
             Status::Passed => "passed",
+            Status::Limited => "limited",
         }
     }
 

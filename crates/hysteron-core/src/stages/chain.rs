@@ -1,0 +1,329 @@
+//! The whole chain, forward: one sample of drive, time and load in, one output out.
+
+use crate::branch::Turn;
+use crate::error::Error;
+use crate::memory::Memory;
+use crate::model::{Model, Output};
+use crate::scalar::Real;
+use crate::stages::after::{Creep, Fade, MAX_CREEP, Past};
+use crate::stages::axis::Axis;
+use crate::stages::body::{Body, Decay};
+use crate::state::State;
+
+/// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
+///
+/// ```text
+/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + sign · lag(creep(h))
+/// ```
+///
+/// ```
+/// use hysteron_core::{Body, Model, Operator, Plane, Sample, StageState, Stages, Turn};
+/// use hysteron_core::{table_len, turn_capacity};
+/// let plane = Plane::new(1.0, 2.0, 2)?;
+/// let model = Model::new(plane, Operator::Mkp, &[1.0; 3], [0.0; table_len(2)])?;
+/// let body = Body { ambient: 0.0, gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 };
+/// let stages = Stages { body: Some(body), ..Stages::NONE };
+/// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
+/// let mut memory = StageState::default();
+/// stages.step(&model, &mut state, &mut memory, 0.0.into())?; // at rest
+/// let heated = Sample { dt: Some(50.0), ..1.0.into() }; // the drive 1, held for 50 s
+/// assert_eq!(stages.step(&model, &mut state, &mut memory, heated)?.output, 3.0);
+/// # Ok::<(), hysteron_core::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stages<'a, T> {
+    /// From the drive to the temperature; `None` where the input is the temperature itself.
+    pub body: Option<Body<T>>,
+    /// Load and spacing.
+    pub axis: Axis<'a, T>,
+    /// Creep after the operators.
+    pub creep: Creep<'a, T>,
+    /// Time constant of a lag of the whole, in seconds; 0 for none.
+    pub lag: T,
+    /// The output where the operators' sum is zero.
+    pub offset: T,
+    /// Whether the output falls while the operators' sum rises.
+    pub falling: bool,
+}
+
+/// What the stages remember from one sample to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StageState<T> {
+    /// `false` before the first sample. At that sample body, creep and lag are at rest.
+    pub(crate) started: bool,
+    pub(crate) temperature: T,
+    pub(crate) past: Past<T>,
+}
+
+impl<T: Real> StageState<T> {
+    /// The temperature after the last sample; 0 before the first one.
+    #[must_use]
+    pub fn temperature(&self) -> T {
+        self.temperature
+    }
+
+    /// Whether there was a sample.
+    #[must_use]
+    pub fn is_started(&self) -> bool {
+        self.started
+    }
+
+    /// The state as numbers, for saving: 0 or 1 for whether there was a sample, the temperature,
+    /// the output of each creep term, the lagged sum.
+    #[must_use]
+    pub fn to_numbers(&self) -> [T; MAX_CREEP + 3] {
+        let mut numbers = [T::ZERO; MAX_CREEP + 3];
+        numbers[0] = if self.started { T::ONE } else { T::ZERO };
+        numbers[1] = self.temperature;
+        numbers[2..2 + MAX_CREEP].copy_from_slice(&self.past.crept);
+        numbers[2 + MAX_CREEP] = self.past.lagged;
+        numbers
+    }
+
+    /// The state that [`StageState::to_numbers`] gave.
+    ///
+    /// # Errors
+    /// [`Error::InputNotFinite`] with the index of a number that is not finite.
+    pub fn from_numbers(numbers: &[T; MAX_CREEP + 3]) -> Result<Self, Error> {
+        if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
+            return Err(Error::InputNotFinite { index });
+        }
+        let mut past = Past::default();
+        past.crept.copy_from_slice(&numbers[2..2 + MAX_CREEP]);
+        past.lagged = numbers[2 + MAX_CREEP];
+        Ok(Self {
+            started: numbers[0] != T::ZERO,
+            temperature: numbers[1],
+            past,
+        })
+    }
+}
+
+/// One sample. A plain number converts to a sample with that input only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample<T> {
+    /// The input; with a thermal body, the drive that was held since the sample before.
+    pub input: T,
+    /// Time since the sample before, in seconds; needed by body, creep and lag.
+    pub dt: Option<T>,
+    /// The load; needed by a model that depends on one.
+    pub load: Option<T>,
+}
+
+impl<T> From<T> for Sample<T> {
+    fn from(input: T) -> Self {
+        Self {
+            input,
+            dt: None,
+            load: None,
+        }
+    }
+}
+
+/// The factors of all stages for one time step ([`Stages::rates`]). For a fixed sample time they
+/// are computed once.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates<T> {
+    pub(crate) decay: Decay<T>,
+    pub(crate) fade: Fade<T>,
+}
+
+impl<T: Real> Rates<T> {
+    /// The factors as numbers, for programs that carry them as constants: heating, cooling, each
+    /// creep term, lag.
+    #[must_use]
+    pub fn to_numbers(&self) -> [T; MAX_CREEP + 3] {
+        let mut numbers = [T::ZERO; MAX_CREEP + 3];
+        numbers[0] = self.decay.heating;
+        numbers[1] = self.decay.cooling;
+        numbers[2..2 + MAX_CREEP].copy_from_slice(&self.fade.creep);
+        numbers[2 + MAX_CREEP] = self.fade.lag;
+        numbers
+    }
+}
+
+impl<T: Real> Stages<'_, T> {
+    /// No stages: the output is the operators' sum.
+    pub const NONE: Self = Stages {
+        body: None,
+        axis: Axis::PLAIN,
+        creep: Creep::NONE,
+        lag: T::ZERO,
+        offset: T::ZERO,
+        falling: false,
+    };
+
+    /// Checks the constants of all stages, for operators on the plane of `model`.
+    ///
+    /// # Errors
+    /// [`Error::Stage`] with the name of the constant.
+    pub fn check<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> Result<(), Error> {
+        let fault = |stage| Err(Error::Stage { stage });
+        let positive = |value: T| value > T::ZERO && value.is_finite();
+        if let Some(body) = self.body {
+            if !body.ambient.is_finite() {
+                return fault("ambient");
+            }
+            let constants = [
+                ("gain", body.gain),
+                ("tau_heating", body.tau_heating),
+                ("tau_cooling", body.tau_cooling),
+            ];
+            if let Some((name, _)) = constants.into_iter().find(|(_, value)| !positive(*value)) {
+                return fault(name);
+            }
+        }
+        self.axis.check(model.plane())?;
+        let Creep { coefficients, taus } = self.creep;
+        let fits = coefficients.len() <= MAX_CREEP && taus.len() == coefficients.len();
+        let valid = |c: &T| *c >= T::ZERO && c.is_finite();
+        if !(fits && coefficients.iter().all(valid) && taus.iter().all(|tau| positive(*tau))) {
+            return fault("creep");
+        }
+        if !(self.lag >= T::ZERO && self.lag.is_finite()) {
+            return fault("lag");
+        }
+        if !self.offset.is_finite() {
+            return fault("offset");
+        }
+        Ok(())
+    }
+
+    /// Whether a stage depends on time, so that each sample needs its `dt`.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        self.body.is_some() || !self.creep.coefficients.is_empty() || self.lag > T::ZERO
+    }
+
+    /// The factors for a time step of `dt` seconds, 0 or more.
+    #[must_use]
+    pub fn rates(&self, dt: T) -> Rates<T> {
+        let mut fade = Fade::default();
+        for (factor, &tau) in fade.creep.iter_mut().zip(self.creep.taus) {
+            *factor = (-dt / tau).exp();
+        }
+        if self.lag > T::ZERO {
+            fade.lag = (-dt / self.lag).exp();
+        }
+        Rates {
+            decay: self.body.map(|body| body.decay(dt)).unwrap_or_default(),
+            fade,
+        }
+    }
+
+    /// Moves by one sample and returns the output. `clipped` tells whether the operators' input was
+    /// outside the plane.
+    ///
+    /// # Errors
+    /// [`Error::TimeStep`] where the time is needed and missing, negative or not finite;
+    /// [`Error::Load`] where the load is; [`Error::InputNotFinite`]; [`Error::StateMismatch`]. Then
+    /// nothing has moved.
+    pub fn step<C, S>(
+        &self,
+        model: &Model<T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        sample: Sample<T>,
+    ) -> Result<Output<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let rates = self.rates_of(memory, sample.dt)?;
+        self.step_at(model, state, memory, &rates, sample.input, sample.load)
+    }
+
+    /// As [`Stages::step`], for a time step whose factors are known.
+    ///
+    /// # Errors
+    /// As [`Stages::step`].
+    pub fn step_at<C, S>(
+        &self,
+        model: &Model<T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        rates: &Rates<T>,
+        input: T,
+        load: Option<T>,
+    ) -> Result<Output<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let temperature = match self.body {
+            None => input,
+            Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
+            Some(body) => body.rest(input),
+        };
+        if !(input.is_finite() && temperature.is_finite()) {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        let placed = self.axis.at(load)?;
+        let seen = self.axis.forward(model.plane(), placed, temperature);
+        let step = model.step(state, seen)?;
+        let (sum, past) = self.creep.forward(
+            self.past(memory, step.output),
+            self.fade(memory, rates),
+            step.output,
+        );
+        *memory = StageState {
+            started: true,
+            temperature,
+            past,
+        };
+        Ok(Output {
+            output: self.outward(sum),
+            clipped: step.clipped,
+        })
+    }
+
+    /// The factors for a time step; those of no time before the first sample.
+    pub(crate) fn rates_of(
+        &self,
+        memory: &StageState<T>,
+        dt: Option<T>,
+    ) -> Result<Rates<T>, Error> {
+        let valid = |dt: T| dt >= T::ZERO && dt.is_finite();
+        match dt {
+            Some(dt) if valid(dt) => Ok(match self.is_timed() {
+                true => self.rates(dt),
+                false => Rates::default(),
+            }),
+            None if !(memory.started && self.is_timed()) => Ok(Rates::default()),
+            _ => Err(Error::TimeStep),
+        }
+    }
+
+    /// The past of creep and lag; before the first sample, that of a rest at `h`.
+    pub(crate) fn past(&self, memory: &StageState<T>, h: T) -> Past<T> {
+        match memory.started {
+            true => memory.past,
+            false => Past {
+                crept: [h; MAX_CREEP],
+                lagged: h,
+            },
+        }
+    }
+
+    /// The factors of creep and lag. Before the first sample nothing of a past is left.
+    pub(crate) fn fade(&self, memory: &StageState<T>, rates: &Rates<T>) -> Fade<T> {
+        match memory.started {
+            true => rates.fade,
+            false => Fade::default(),
+        }
+    }
+
+    pub(crate) fn outward(&self, sum: T) -> T {
+        match self.falling {
+            true => self.offset - sum,
+            false => self.offset + sum,
+        }
+    }
+
+    pub(crate) fn inward(&self, output: T) -> T {
+        match self.falling {
+            true => self.offset - output,
+            false => output - self.offset,
+        }
+    }
+}

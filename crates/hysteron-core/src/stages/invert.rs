@@ -1,0 +1,235 @@
+//! The inverse of the whole chain, exact for the present sample.
+
+use crate::branch::Turn;
+use crate::error::Error;
+use crate::inverse::Inverse;
+use crate::memory::Memory;
+use crate::operator::Operator;
+use crate::scalar::Real;
+use crate::solution::{Solution, Status};
+use crate::stages::chain::{Rates, StageState, Stages};
+use crate::state::State;
+use crate::target::{Direction, Target};
+
+/// What is wanted of the chain in one sample. A target converts to one without time, load and
+/// limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted<T> {
+    /// The output, its heading and its tolerance, in the output's unit.
+    pub target: Target<T>,
+    /// Time since the sample before, in seconds; needed by body, creep and lag.
+    pub dt: Option<T>,
+    /// The load; needed by a model that depends on one.
+    pub load: Option<T>,
+    /// The range of the drive: of the input, where there is no body.
+    pub drive: (T, T),
+    /// The temperature is to be reached in this many seconds; `dt` where that is longer.
+    ///
+    /// With a horizon of several samples, noise of the target does not send the drive from one end
+    /// to the other. The output then follows late.
+    pub horizon: T,
+    /// The range in which the temperature has to stay, as a preview of the reference gives it.
+    pub temperature: (T, T),
+}
+
+impl<T: Real> From<Target<T>> for Wanted<T> {
+    fn from(target: Target<T>) -> Self {
+        let everywhere = (-T::INFINITY, T::INFINITY);
+        Self {
+            target,
+            dt: None,
+            load: None,
+            drive: everywhere,
+            horizon: T::ZERO,
+            temperature: everywhere,
+        }
+    }
+}
+
+impl<T: Real> Stages<'_, T> {
+    /// Finds the drive for `wanted` and moves there: the operators, the body, creep and lag go
+    /// where the drive takes them, also where it does not give the target.
+    ///
+    /// Each stage is inverted for the present sample, from the last to the first. The status is
+    /// [`Status::Ok`] only where [`Stages::step`] with the drive found gives the target, up to its
+    /// tolerance and rounding.
+    ///
+    /// # Errors
+    /// As [`Stages::step`], and [`Error::Stage`] for a range of drives whose ends are not in order.
+    ///
+    /// ```
+    /// use hysteron_core::{Body, Model, Operator, Plane, Sample, StageState, Stages, Status};
+    /// use hysteron_core::{Target, Turn, Wanted, table_len, turn_capacity};
+    /// let plane = Plane::new(1.0, 2.0, 2)?;
+    /// let model = Model::new(plane, Operator::Mkp, &[1.0; 3], [0.0; table_len(2)])?;
+    /// let body = Body { ambient: 0.0, gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 };
+    /// let stages = Stages { body: Some(body), ..Stages::NONE };
+    /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
+    /// let mut memory = StageState::default();
+    /// stages.step(&model, &mut state, &mut memory, 0.0.into())?;
+    /// let soon = |y| Wanted { dt: Some(0.1), drive: (0.0, 5.0), ..Target::new(y).into() };
+    /// let inverse = model.inverse()?;
+    /// let found = stages.invert(&inverse, &mut state, &mut memory, soon(0.5))?;
+    /// assert_eq!(found.status, Status::Ok);
+    /// let found = stages.invert(&inverse, &mut state, &mut memory, soon(3.0))?;
+    /// assert_eq!((found.input, found.status), (5.0, Status::Limited));
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    pub fn invert<C, S>(
+        &self,
+        inverse: &Inverse<'_, T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        wanted: Wanted<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let rates = self.rates_of(memory, wanted.dt)?;
+        self.invert_at(inverse, state, memory, &rates, wanted)
+    }
+
+    /// As [`Stages::invert`], for a time step whose factors are known. Without a horizon.
+    ///
+    /// # Errors
+    /// As [`Stages::invert`].
+    pub fn invert_at<C, S>(
+        &self,
+        inverse: &Inverse<'_, T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        rates: &Rates<T>,
+        wanted: Wanted<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let Wanted { target, load, .. } = wanted;
+        if !target.output.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        // Written so that NaN fails the comparison.
+        if !(wanted.drive.0 <= wanted.drive.1) {
+            return Err(Error::Stage { stage: "drive" });
+        }
+        let (model, plane) = (inverse.model, inverse.model.plane());
+        let placed = self.axis.at(load)?;
+        let aim = self.aim(memory, rates, target);
+        let solution = match aim.output.is_finite() {
+            true => inverse.solve(state, aim)?,
+            // A lag in a step without length cannot move: stay.
+            false => Solution {
+                input: state.input().clamp(plane.bottom(), plane.max()),
+                status: Status::Limited,
+            },
+        };
+        let mut temperature = self.axis.backward(plane, placed, solution.input);
+        if model.operator() == Operator::Relay {
+            // A relay switches at its level and not an ulp before it.
+            let rising = solution.input > state.input();
+            for _ in 0..4 {
+                let seen = self.axis.forward(plane, placed, temperature);
+                if seen == solution.input || (seen > solution.input) == rising {
+                    break;
+                }
+                let nudge = plane
+                    .nudge()
+                    .max(self.axis.rounding(plane, placed, temperature));
+                temperature = if rising {
+                    temperature + nudge
+                } else {
+                    temperature - nudge
+                };
+            }
+        }
+        let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
+        let input = self.drive(memory, rates, wanted, temperature);
+        let slack = self.axis.rounding(plane, placed, temperature);
+        let reached = self
+            .step_at(model, state, memory, rates, input, load)?
+            .output;
+        let gain = self.creep.gain();
+        let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));
+        let error = (reached - target.output).max(target.output - reached);
+        let spread = T::from_index(4) * T::EPSILON * self.offset.max(-self.offset);
+        let met = error <= target.tolerance.max(T::ZERO) + rounding + spread;
+        let static_reach = self.reach(inverse, target);
+        let status = match solution.status {
+            _ if met => Status::Ok,
+            _ if static_reach != Status::Ok => static_reach,
+            Status::Passed => Status::Passed,
+            _ => Status::Limited,
+        };
+        Ok(Solution { input, status })
+    }
+
+    /// The operators' sum that gives the target in this sample.
+    fn aim(&self, memory: &StageState<T>, rates: &Rates<T>, target: Target<T>) -> Target<T> {
+        let heading = match (self.falling, target.heading) {
+            (true, Some(Direction::Rising)) => Some(Direction::Falling),
+            (true, Some(Direction::Falling)) => Some(Direction::Rising),
+            (_, heading) => heading,
+        };
+        let (base, gain) = match memory.started {
+            true => self.creep.line(memory.past, rates.fade),
+            false => (T::ZERO, self.creep.gain()),
+        };
+        Target {
+            output: (self.inward(target.output) - base) / gain,
+            heading,
+            tolerance: target.tolerance / gain,
+        }
+    }
+
+    /// The drive for a temperature, within its range.
+    fn drive(
+        &self,
+        memory: &StageState<T>,
+        rates: &Rates<T>,
+        wanted: Wanted<T>,
+        temperature: T,
+    ) -> T {
+        let (low, high) = wanted.drive;
+        let Some(body) = self.body else {
+            return temperature.clamp(low, high);
+        };
+        if !memory.started {
+            return body.hold(temperature).clamp(low, high);
+        }
+        let decay = match (wanted.dt, wanted.horizon) {
+            (Some(dt), horizon) if horizon > dt => body.decay(horizon),
+            _ => rates.decay,
+        };
+        let drive = body.drive(memory.temperature, temperature, decay);
+        let drive = match drive == drive {
+            true => drive.clamp(low, high),
+            false => body.hold(temperature).clamp(low, high),
+        };
+        match drive.is_finite() {
+            true => drive,
+            // A step without length, and no end of the range: nothing can move.
+            false => body.hold(memory.temperature),
+        }
+    }
+
+    /// Whether the target lies beyond the outputs at rest.
+    fn reach<C: AsRef<[T]>>(&self, inverse: &Inverse<'_, T, C>, target: Target<T>) -> Status {
+        let gain = self.creep.gain();
+        let (off, on) = inverse.model.output_range();
+        let reach = target.tolerance.max(gain * inverse.rounding());
+        let sum = self.inward(target.output);
+        let status = if sum > gain * on + reach {
+            Status::High
+        } else if sum < gain * off - reach {
+            Status::Low
+        } else {
+            Status::Ok
+        };
+        match self.falling {
+            true => status.mirrored(),
+            false => status,
+        }
+    }
+}
