@@ -45,6 +45,9 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
 /// The JSON of an evaluation: `forward` and `inverse` with the same four measures each.
 pub(crate) fn to_json(evaluation: &Evaluation) -> Value {
     let mut object = json!({"forward": evaluation.forward, "clipped": evaluation.clipped});
+    if let Some(samples) = evaluation.estimated_from {
+        object["start_estimated_from"] = json!(samples);
+    }
     if let Some(band) = &evaluation.band {
         object["band_coverage_percent"] = json!(band.coverage_percent);
     }
@@ -100,6 +103,9 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
             "\n{:.1} % of the samples inside the 95 % band",
             band.coverage_percent
         );
+    }
+    if let Some(samples) = evaluation.estimated_from {
+        result += &format!("\nthe start was estimated from the first {samples} samples");
     }
     if let Err(reason) = &evaluation.inverse {
         result += &format!("\nno inverse: {reason}");

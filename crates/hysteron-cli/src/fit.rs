@@ -3,8 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, FirstOrder, Fit, FitOptions, FitSummary, Model, Preparation, Progress,
-    RateDependence, Recording, Sign, Solver, Step,
+    Advice, Choice, Columns, FirstOrder, Fit, FitOptions, FitSummary, LoadLaw, Model, Preparation,
+    Progress, RateDependence, Recording, Sign, Solver, Spacing, Step,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -76,7 +76,31 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         },
         offset: args.offset,
         start: args.start.into(),
-        load_degree: args.load_degree,
+        load_law: match args.load_law {
+            args::LoadLaw::Shift => LoadLaw::Shift,
+            args::LoadLaw::Weights => LoadLaw::Weights,
+        },
+        load_degree: match args.load_degree {
+            args::Degree::Auto => None,
+            args::Degree::Fixed(degree) => Some(degree),
+        },
+        spacing: match args.spacing {
+            args::Spacing::Uniform => Spacing::Uniform,
+            args::Spacing::Auto => Spacing::Auto,
+        },
+        creep: match args.creep {
+            Step::Auto => Choice::Auto,
+            Step::Off => Choice::Fixed(0),
+            Step::Value(count) if count.fract() == 0.0 => Choice::Fixed(count as usize),
+            Step::Value(count) => {
+                return Err(format!("--creep {count}: a whole number is needed").into());
+            }
+        },
+        lag: match args.lag {
+            Step::Auto => Choice::Auto,
+            Step::Off => Choice::Fixed(0.0),
+            Step::Value(lag) => Choice::Fixed(lag),
+        },
         ..FitOptions::default()
     };
     let bar = progress::stages();
@@ -156,8 +180,77 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
         ));
     }
     lines.extend(model.thermal.as_ref().map(thermal_line));
+    lines.extend(load_line(model));
+    lines.extend(after_line(model, args));
+    lines.extend(start_line(fit));
     lines.extend(text::confidence(fit, model));
     lines.join("\n")
+}
+
+/// What the load does.
+fn load_line(model: &Model) -> Option<String> {
+    let load = model.load.as_ref()?;
+    let shift = load.shift.as_ref()?;
+    let unit = |quantity: &hysteron::Quantity| {
+        quantity
+            .unit
+            .clone()
+            .unwrap_or_else(|| quantity.name.clone())
+    };
+    let scaled = match shift.scales.is_empty() {
+        true => "",
+        false => ", which is also scaled",
+    };
+    // The field states the slope of the phase diagram: load per temperature.
+    let slope = shift.slope();
+    Some(format!(
+        "{} from {} to {}: it shifts the axis by {} {}/{} ({} {}/{}){scaled}; weights of order {}",
+        load.quantity.name,
+        text::number(load.range().0),
+        text::number(load.range().1),
+        text::number(slope),
+        unit(&model.input),
+        unit(&load.quantity),
+        text::number(1.0 / slope),
+        unit(&load.quantity),
+        unit(&model.input),
+        load.weights_order(),
+    ))
+}
+
+/// What happens after the operators; said where it was asked for.
+fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
+    let (creep, lag) = (model.creep(), model.lag());
+    let asked = args.creep != Step::Off || args.lag != Step::Off;
+    let mut said = Vec::new();
+    for term in &creep {
+        said.push(format!(
+            "creep of {:.2} % with {} s",
+            100.0 * term.coefficient,
+            text::number(term.tau)
+        ));
+    }
+    if lag > 0.0 {
+        said.push(format!("lag of {} s", text::number(lag)));
+    }
+    match (said.is_empty(), asked) {
+        (_, false) => None,
+        (true, true) => {
+            Some("no creep and no lag: they do not predict parts of the recording left out".into())
+        }
+        (false, true) => Some(said.join(", ")),
+    }
+}
+
+/// How well the model simulates from the start that was found.
+fn start_line(fit: &FitSummary) -> Option<String> {
+    let found = fit.other.get("start_found")?;
+    let percent = found.get("nrmse_percent")?.as_f64()?;
+    Some(format!(
+        "start found from the first {} samples and kept in the model: from it the model simulates \
+         this recording to {percent:.2} % of the range",
+        found.get("samples")?
+    ))
 }
 
 fn thermal_line(body: &FirstOrder) -> String {

@@ -2,7 +2,7 @@
 
 use crate::terminal::{Result, print, say};
 use crate::{args, progress, recording};
-use hysteron::{Counts, Invert, Model, Policy, TableReader, TableWriter};
+use hysteron::{Around, Counts, Invert, Model, Policy, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
 
@@ -28,23 +28,20 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         |table, out, progress| {
             let what = hysteron::Simulate {
                 input: &args.input,
-                time: args.time.as_deref(),
-                load: load.as_deref(),
+                around: Around {
+                    time: args.time.as_deref(),
+                    load: load.as_deref(),
+                },
                 band: band.as_ref(),
             };
-            hysteron::simulate_table(&model, table, what, out, progress)
+            let state = args.start.state(&model);
+            hysteron::simulate_table(&model, state, table, what, out, progress)
         },
     )
 }
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
-    let (model, column) = args.load.apply(Model::read(&args.model)?)?;
-    if let Some(column) = column {
-        return Err(format!(
-            "--load {column}: an inverse is that of one load, give it as a number"
-        )
-        .into());
-    }
+    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
     let (policy, tolerance) = match args.policy {
         args::Policy::Hold => (Policy::Hold, 0.0),
         args::Policy::Anticipate => (Policy::Anticipate, model.usual_tolerance()),
@@ -54,7 +51,15 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         policy,
         tolerance: args.tolerance.unwrap_or(tolerance),
         look_ahead: args.look_ahead,
+        around: Around {
+            time: args.time.as_deref(),
+            load: load.as_deref(),
+        },
+        drive_range: args.drive_range,
+        horizon: args.horizon,
+        preview: args.preview,
     };
+    let state = args.start.state(&model);
     let what = ["targets above the model's range", "targets below it"];
     through(
         [&args.data, &args.model],
@@ -62,7 +67,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         &args.force,
         (args.json.json, args.memory.max_memory),
         what,
-        |table, out, progress| hysteron::invert_table(&model, table, how, out, progress),
+        |table, out, progress| hysteron::invert_table(&model, state, table, how, out, progress),
     )
 }
 
@@ -102,12 +107,19 @@ fn through(
             counts.passed, counts.samples
         ));
     }
+    if counts.limited > 0 {
+        say(format_args!(
+            "{} of {} targets need a faster drive than its range allows",
+            counts.limited, counts.samples
+        ));
+    }
     if json {
         let object = json!({
             "samples": counts.samples,
             "high": counts.high,
             "low": counts.low,
             "passed": counts.passed,
+            "limited": counts.limited,
             "table": out,
         });
         print(&object.to_string())?;

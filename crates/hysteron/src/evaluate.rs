@@ -1,10 +1,9 @@
 //! Forward and inverse tests of a model on a recording, as in the chapter's section 6.
 
 use crate::error::Result;
-use crate::identify::simulate_from_unknown;
-use crate::model::{BandEvaluation, Inverse, Model, OperatorState, Policy, Start};
+use crate::identify::find_start;
+use crate::model::{BandEvaluation, Inverse, Model, Policy, Start, State, Surroundings};
 use crate::recording::Recording;
-use crate::remedy::{Remedy, Setting};
 use crate::series::Errors;
 use crate::series::range;
 use crate::series::{NOISE, Turning};
@@ -24,6 +23,9 @@ pub struct Evaluation {
     pub forward: Errors,
     /// Number of inputs outside the plane.
     pub clipped: usize,
+    /// For a start that was unknown: the number of samples at the beginning of the recording from
+    /// which it was estimated.
+    pub estimated_from: Option<usize>,
     /// The prediction band; `None` for a model without confidence.
     pub band: Option<BandEvaluation>,
     /// The inverse test, or the reason why there is none (for example negative weights).
@@ -59,91 +61,80 @@ pub struct InverseRun {
 }
 
 /// Runs `model` forward over the measured input, and its inverse over the measured output. Both
-/// start with every operator off. A model that depends on a load uses the load of the recording.
-/// The inverse exists for a fixed load only, see [`Model::at_load`].
+/// start where the model does ([`Model::start`]), and use time and load of the recording as far as
+/// the model needs them.
+///
+/// For a model with a thermal body, the inverse is tested behind the body: its result is compared
+/// with the temperature, because a drive that follows noise says nothing.
 ///
 /// # Errors
-/// [`crate::Error::Recording`] for an invalid recording; [`crate::Error::Thermal`] for a recording
-/// without time if the model has a thermal body.
+/// [`crate::Error::Recording`] for an invalid recording; as [`Model::run_in`].
 pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
-    evaluate_from(model, recording, Start::Off)
+    evaluate_from(model, recording, Start::Fitted)
 }
 
-/// As [`evaluate`], from another start. With [`Start::Unknown`], the forward test uses the start
-/// that explains the recording best. The inverse then starts from all off or all on, whichever is
-/// nearer.
+/// As [`evaluate`], from another start. With [`Start::Unknown`], the start is the one that explains
+/// the beginning of the recording best; [`Evaluation::estimated_from`] tells its length.
 ///
 /// # Errors
-/// As [`evaluate`]; [`crate::Error::Fit`] for a start other than off if the model depends on a
-/// load.
+/// As [`evaluate`].
 pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
     recording.check()?;
-    let seen = model.behind_body(recording)?;
+    let mut estimated_from = None;
+    let begin = match start {
+        Start::Fitted => model.start(),
+        Start::Off => model.off(),
+        Start::On => model.saturated(),
+        Start::Unknown => {
+            let (found, samples) = find_start(model, recording)?;
+            estimated_from = Some(samples);
+            model.restore(&found.turning_points, found.input)?
+        }
+    };
+    let around = Surroundings::of(model, recording);
     let mut output_model = vec![0.0; recording.len()];
-    let operators = model.operators();
-    let run = |mut state, output: &mut Vec<f64>| operators.run(&mut state, &seen.input, output);
-    let mut begin = operators.start();
-    let clipped = run(begin.clone(), &mut output_model)?;
-    if start != Start::Off {
-        if model.load.is_some() {
-            let what = "a model that depends on a load is evaluated from off only";
-            let remedy = Remedy::new("take it at one load ({})", [Setting::any("load")]);
-            return Err(crate::error::Error::Fit(what.into()).remedied(remedy));
-        }
-        let mut from_on = vec![0.0; recording.len()];
-        run(operators.saturated(), &mut from_on)?;
-        let rmse = |output: &[f64]| compare(&recording.output, output).rmse;
-        if start == Start::On || rmse(&from_on) < rmse(&output_model) {
-            begin = operators.saturated();
-        }
-        output_model = match start {
-            Start::On => from_on,
-            _ => simulate_from_unknown(model, &seen)?,
-        };
-    }
-    if model.load.is_some() {
-        let Some(load) = &recording.load else {
-            return Err(crate::error::Error::Fit(
-                "the model depends on a load: the recording needs it too, or take the model at one \
-                 load"
-                    .into(),
-            ));
-        };
-        output_model = model.simulate_under_load(&seen.input, load)?;
-    }
+    let clipped = model.run_in(
+        &mut begin.clone(),
+        &recording.input,
+        around,
+        &mut output_model,
+    )?;
     let forward = compare(&recording.output, &output_model);
-    let inverse = match model.inverse() {
-        Ok(inverse) => Ok(evaluate_inverse(&inverse, &begin, recording)?),
+    let behind = model.behind_body(recording)?;
+    let inner = model.without_body();
+    let inverse = match inner.inverse() {
+        Ok(inverse) => Ok(evaluate_inverse(&inner, &inverse, &begin, &behind)?),
         Err(error) => Err(error.to_string()),
     };
-    Ok(Evaluation {
+    let band = match begin == model.off() {
         // The band is defined only from every operator off.
-        band: match start {
-            Start::Off => BandEvaluation::of(model, &seen, &output_model)?,
-            _ => None,
-        },
+        true => BandEvaluation::of(model, recording, &output_model)?,
+        false => None,
+    };
+    Ok(Evaluation {
+        band,
         output_model,
         forward,
         clipped: clipped.low + clipped.high,
+        estimated_from,
         inverse,
     })
 }
 
 fn evaluate_inverse(
+    model: &Model,
     inverse: &Inverse<'_>,
-    begin: &OperatorState,
+    begin: &State,
     recording: &Recording,
 ) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
     let moving = moving(&recording.output, tolerance, STILL * (high - low));
+    let around = Surroundings::of(model, recording);
     let run = |policy: Policy| -> Result<InverseRun> {
-        let solutions = inverse.series(
-            &mut begin.clone().into(),
-            &recording.output,
-            policy,
-            tolerance,
-        )?;
+        let mut state = begin.clone();
+        let targets = &recording.output;
+        let solutions = inverse.series_in(&mut state, targets, policy, tolerance, around)?;
         let missed = |solution: &&Solution<f64>| solution.status.is_out_of_reach();
         let out_of_reach = solutions.iter().filter(missed).count();
         let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();

@@ -41,10 +41,10 @@ pub use adapt::{
 };
 #[cfg(feature = "data")]
 pub use data::{
-    Added, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts, Destination,
-    Invert, Note, NoteKind, Others, Own, Places, ReadOptions, Remark, Repair, Row, STANDARD_OUTPUT,
-    Simulate, TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table,
-    invert_table, printable, refuse_one_file, simulate_table,
+    Added, Around, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts,
+    Destination, Invert, Note, NoteKind, Others, Own, Places, ReadOptions, Remark, Repair, Row,
+    STANDARD_OUTPUT, Simulate, TableReader, TableSummary, TableWriter, discard_unfinished,
+    inspect_table, invert_table, printable, refuse_one_file, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
@@ -55,17 +55,17 @@ pub use hysteron_core::{
     Output, Region, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
-    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, advice,
-    cross_validate, excitation, left_out, plane_of, way_against_input,
+    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, LoadLaw, Spacing,
+    advice, cross_validate, excitation, left_out, plane_of, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,
     inspect_model, inspect_recording,
 };
 pub use model::{
-    Band, BandEvaluation, Confidence, Excitation, FirstOrder, FitSummary, INTERVAL, Inverse,
-    LoadDependence, LoadPart, Model, OperatorState, Operators, Plane, Policy, Sample, Score, Sign,
-    Solver, Start, State, Surroundings, ThermalState, Validation,
+    Band, BandEvaluation, Confidence, CreepTerm, Excitation, FirstOrder, FitSummary, FittedStart,
+    INTERVAL, Inverse, LoadDependence, LoadPart, LoadShift, Model, OperatorState, Operators, Plane,
+    Policy, Sample, Score, Sign, Solver, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

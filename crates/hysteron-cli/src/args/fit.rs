@@ -33,20 +33,34 @@ pub(crate) struct Fit {
     pub(crate) smooth: Step,
     /// State of the operators before the first sample
     #[arg(long, value_enum, default_value = "off")]
-    pub(crate) start: Start,
-    /// Column of the load or stress: the weights become a function of it
+    pub(crate) start: FitStart,
+    /// Column of the load or stress: the model depends on it
     #[arg(long, value_name = "COL")]
     pub(crate) load: Option<String>,
-    /// Order of that function
+    /// What the load changes
+    #[arg(long, value_enum, requires = "load", default_value = "shift")]
+    pub(crate) load_law: LoadLaw,
+    /// Order of weights and offset in the load, 0 to 5; `auto` chooses it by loads left out
     #[arg(
         long,
         value_name = "N",
-        default_value_t = 1,
+        default_value = "auto",
         requires = "load",
         allow_hyphen_values = true,
-        value_parser = up_to(5)
+        value_parser = parse_degree
     )]
-    pub(crate) load_degree: usize,
+    pub(crate) load_degree: Degree,
+    /// Where the levels are
+    #[arg(long, value_enum, default_value = "uniform")]
+    pub(crate) spacing: Spacing,
+    /// Creep of the output: `auto` (where it predicts parts of the recording left out), `off`, or
+    /// the number of terms, up to 4. Needs --time
+    #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) creep: Step,
+    /// Lag of the output: `auto` (as for --creep), `off`, or the time constant in seconds. Needs
+    /// --time
+    #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) lag: Step,
     /// Identify a thermal body in front of the operators, for an input that heats while the
     /// temperature is not known. The input has to be proportional to the power, as a duty cycle is:
     /// give the square of a current or a voltage. Needs --time

@@ -51,8 +51,8 @@ pub(crate) enum Command {
     #[command(after_help = "Example:\n\
         \x20 hysteron simulate spring.json run2.csv --input temperature -o modelled.csv")]
     Simulate(Simulate),
-    /// Find the input for a wanted output: adds the columns `input_model` and `status` (ok, low,
-    /// high)
+    /// Find the input for a wanted output: adds the columns `input_model` (the drive, for a model
+    /// with a thermal body) and `status` (ok, low, high, limited)
     #[command(after_help = "Example:\n\
         \x20 hysteron invert spring.json wanted.csv --target displacement -o inputs.csv")]
     Invert(Invert),
@@ -152,7 +152,7 @@ impl Repair {
 
 #[derive(Args)]
 pub(crate) struct Load {
-    /// For a model that depends on a load: the load, or (not with `invert`) its column
+    /// For a model that depends on a load: the load, or its column
     #[arg(long, value_name = "LOAD|COL", allow_hyphen_values = true)]
     load: Option<String>,
 }
@@ -187,9 +187,13 @@ pub(crate) struct Simulate {
     /// with --bootstrap
     #[arg(long)]
     pub(crate) band: bool,
-    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body
+    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
+    /// creep or a lag
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
+    /// State of the operators before the first row
+    #[arg(long, value_enum, default_value = "fitted")]
+    pub(crate) start: RunStart,
     /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
     /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
@@ -223,6 +227,24 @@ pub(crate) struct Invert {
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
+    /// Column of time, in seconds or with its unit in its name, for a model with a thermal body,
+    /// creep or a lag
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// State of the operators before the first row
+    #[arg(long, value_enum, default_value = "fitted")]
+    pub(crate) start: RunStart,
+    /// Lowest and highest drive, or input of a model without a thermal body [default: for a thermal
+    /// body the drives it was fitted with, otherwise no limits]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true)]
+    pub(crate) drive_range: Option<(f64, f64)>,
+    /// With a thermal body: reach a temperature in this time instead of one row, so that noise of
+    /// the target does not send the drive from one end to the other
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_tolerance)]
+    pub(crate) horizon: f64,
+    /// With a thermal body: how long before a target the drive may start for it
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_tolerance)]
+    pub(crate) preview: f64,
     /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
     /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
@@ -252,7 +274,7 @@ pub(crate) struct Evaluate {
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first sample
-    #[arg(long, value_enum, default_value = "off")]
+    #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: Start,
     #[command(flatten)]
     pub(crate) load: Load,

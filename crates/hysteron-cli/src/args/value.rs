@@ -21,14 +21,81 @@ pub(crate) enum Solver {
     Ols,
 }
 
+/// The start of a fit, and of an adaptation.
 #[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Start {
+pub(crate) enum FitStart {
     /// All off, as after the lowest input
     Off,
     /// All on, as after the highest input
     On,
     /// Not known: estimated together with the weights
     Unknown,
+}
+
+/// The start of a model that runs.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum RunStart {
+    /// The state that the model's fit found; all off if it found none
+    Fitted,
+    /// All off, as after the lowest input
+    Off,
+    /// All on, as after the highest input
+    On,
+}
+
+/// The start of a model that is judged.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Start {
+    /// The state that the model's fit found; all off if it found none
+    Fitted,
+    /// All off, as after the lowest input
+    Off,
+    /// All on, as after the highest input
+    On,
+    /// Not known: estimated from the beginning of the recording
+    Unknown,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum LoadLaw {
+    /// It shifts the axis of the operators, and weights and offset follow it with a low order
+    Shift,
+    /// Weights and offset only
+    Weights,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Spacing {
+    /// At equal distances
+    Uniform,
+    /// Close together where the output moves
+    Auto,
+}
+
+/// The order of the weights in the load, or the choice of one.
+#[derive(Clone, Copy)]
+pub(crate) enum Degree {
+    Auto,
+    Fixed(usize),
+}
+
+pub(super) fn parse_degree(text: &str) -> Result<Degree, String> {
+    match (text.trim(), text.trim().parse()) {
+        ("auto", _) => Ok(Degree::Auto),
+        (_, Ok(degree)) if degree <= 5 => Ok(Degree::Fixed(degree)),
+        _ => Err("`auto` or a whole number from 0 to 5 is needed".into()),
+    }
+}
+
+impl RunStart {
+    /// The state that a model starts from.
+    pub(crate) fn state(self, model: &hysteron::Model) -> hysteron::State {
+        match self {
+            Self::Fitted => model.start(),
+            Self::Off => model.off(),
+            Self::On => model.saturated(),
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -79,9 +146,20 @@ pub(crate) enum Sign {
     Negative,
 }
 
+impl From<FitStart> for hysteron::Start {
+    fn from(start: FitStart) -> Self {
+        match start {
+            FitStart::Off => Self::Off,
+            FitStart::On => Self::On,
+            FitStart::Unknown => Self::Unknown,
+        }
+    }
+}
+
 impl From<Start> for hysteron::Start {
     fn from(start: Start) -> Self {
         match start {
+            Start::Fitted => Self::Fitted,
             Start::Off => Self::Off,
             Start::On => Self::On,
             Start::Unknown => Self::Unknown,
@@ -179,6 +257,17 @@ pub(super) fn parse_range(text: &str) -> Result<(f64, f64), String> {
         [min, max] if min < max => Ok((min, max)),
         [_, _] => Err("the first number must be below the second".into()),
         _ => Err("two numbers with a comma between are needed, such as 20,80".into()),
+    }
+}
+
+/// As a range, and both ends may be the same.
+pub(super) fn parse_limits(text: &str) -> Result<(f64, f64), String> {
+    match text.split_once(',') {
+        Some((min, max)) => match (parse_finite(min)?, parse_finite(max)?) {
+            (min, max) if min <= max => Ok((min, max)),
+            _ => Err("the first number must not be above the second".into()),
+        },
+        None => Err("two numbers with a comma between are needed, such as 0,1".into()),
     }
 }
 

@@ -189,6 +189,47 @@ impl<T: Real> Stages<'_, T> {
         Ok(())
     }
 
+    /// The output after creep and lag from that of the operators, `h`, in its unit and with its sign.
+    /// `past` is what the call before returned; `None` at the first sample.
+    #[must_use]
+    pub fn after(&self, past: Option<StageState<T>>, dt: T, h: T) -> (T, StageState<T>) {
+        let sum = self.inward(h);
+        let memory = past.unwrap_or_default();
+        let fade = self.fade(&memory, &self.rates(dt));
+        let (sum, past) = self.creep.forward(self.past(&memory, sum), fade, sum);
+        let next = StageState {
+            started: true,
+            past,
+            ..memory
+        };
+        (self.outward(sum), next)
+    }
+
+    /// The output of the operators, in its unit and with its sign, from the output `y` after creep
+    /// and lag. `past` is what the call before returned: the outputs of the lags. `None` at the
+    /// first sample, where they are at rest.
+    ///
+    /// The result is not finite for a lag in a step without length.
+    #[must_use]
+    pub fn undo_after(&self, past: Option<StageState<T>>, dt: T, y: T) -> (T, StageState<T>) {
+        let sum = self.inward(y);
+        let memory = past.unwrap_or_default();
+        let rates = self.rates(dt);
+        let (base, gain) = match memory.started {
+            true => self.creep.line(memory.past, rates.fade),
+            false => (T::ZERO, self.creep.gain()),
+        };
+        let h = (sum - base) / gain;
+        let fade = self.fade(&memory, &rates);
+        let (_, past) = self.creep.forward(self.past(&memory, h), fade, h);
+        let next = StageState {
+            started: true,
+            past,
+            ..memory
+        };
+        (self.outward(h), next)
+    }
+
     /// Whether a stage depends on time, so that each sample needs its `dt`.
     #[must_use]
     pub fn is_timed(&self) -> bool {
@@ -209,6 +250,18 @@ impl<T: Real> Stages<'_, T> {
             decay: self.body.map(|body| body.decay(dt)).unwrap_or_default(),
             fade,
         }
+    }
+
+    /// Whether [`Stages::step`] would take this sample, as far as the sample alone tells.
+    ///
+    /// # Errors
+    /// [`Error::InputNotFinite`], [`Error::TimeStep`] and [`Error::Load`], as [`Stages::step`].
+    pub fn accepts(&self, memory: &StageState<T>, sample: Sample<T>) -> Result<(), Error> {
+        if !sample.input.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        self.rates_of(memory, sample.dt)?;
+        self.axis.at(sample.load).map(|_| ())
     }
 
     /// Moves by one sample and returns the output. `clipped` tells whether the operators' input was

@@ -130,6 +130,9 @@ pub fn adapt(
     progress: Progress<'_>,
 ) -> Result<Adapted> {
     recording.check()?;
+    if !model.is_plain() && model.load.is_none() {
+        return adapt_within(model, recording, options, progress);
+    }
     refuse_unusable(model)?;
     let adaptation = options.adaptation(model, recording)?;
     let mut adaptive = options.estimator(model, adaptation)?;
@@ -188,6 +191,22 @@ pub fn adapt(
     })
 }
 
+/// Adapts the operators between the stages of a model. The errors are those of the operators: before
+/// creep and lag.
+fn adapt_within(
+    model: &Model,
+    recording: &Recording,
+    options: &AdaptOptions,
+    progress: Progress<'_>,
+) -> Result<Adapted> {
+    let seen = model.recording_within(recording)?;
+    let mut adapted = adapt(&model.within(), &seen, options, progress)?;
+    let mut whole = model.around(adapted.model.operators().clone());
+    whole.fit = adapted.model.fit.take();
+    adapted.model = whole;
+    Ok(adapted)
+}
+
 /// How many of `count` samples are at the end and on probation.
 fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
     match options.gate > 0.0 {
@@ -222,7 +241,8 @@ fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Ve
         pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>()
     };
     match start {
-        Start::Off => Ok((false, from(false)?)),
+        // A model that adapts starts as it is, with its operators off or on.
+        Start::Off | Start::Fitted => Ok((false, from(false)?)),
         Start::On => Ok((true, from(true)?)),
         Start::Unknown => {
             let (off, on) = (from(false)?, from(true)?);
@@ -237,7 +257,7 @@ fn fixed(model: &Model, recording: &Recording, start: Start) -> Result<(bool, Ve
 fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> {
     let mut state = match on {
         true => model.saturated(),
-        false => model.start(),
+        false => model.off(),
     };
     let mut output = vec![0.0; recording.len()];
     model.run(&mut state, &recording.input, &mut output)?;

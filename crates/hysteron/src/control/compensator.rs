@@ -12,7 +12,7 @@
 
 use crate::adapt::Adaptive;
 use crate::error::Result;
-use crate::model::{Model, OperatorState, Operators, Sign};
+use crate::model::{Model, Sample, Sign, State, Wanted};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
@@ -28,7 +28,7 @@ const JUMP: u32 = 10;
 pub struct Compensator {
     kind: Kind,
     /// State of the inverse; `None` before the first sample.
-    wanted: Option<OperatorState>,
+    wanted: Option<State>,
     /// The branch that the target is on.
     target: Option<Turning>,
     /// The last input that the model followed.
@@ -39,24 +39,20 @@ pub struct Compensator {
 
 #[derive(Debug, Clone)]
 enum Kind {
-    Fixed {
-        operators: Box<Operators>,
-        state: OperatorState,
-    },
+    Fixed { model: Box<Model>, state: State },
     Adaptive(Box<Adaptive>),
 }
 
 impl Compensator {
-    /// A model that does not change. It starts with every operator off.
+    /// A model that does not change. It starts as the model does ([`Model::start`]).
     ///
     /// # Errors
     /// As [`Model::inverse`], for a model that has no inverse.
     pub fn fixed(model: &Model) -> Result<Self> {
-        let operators = model.plain()?;
-        operators.inverse()?;
+        model.inverse()?;
         Ok(Self::new(Kind::Fixed {
-            operators: Box::new(operators.clone()),
-            state: operators.start(),
+            model: Box::new(model.clone()),
+            state: model.start(),
         }))
     }
 
@@ -77,19 +73,26 @@ impl Compensator {
     }
 
     /// Moves the model to `input`. Returns the output expected there and, for a model that learns
-    /// from the measured output, what was done with that measurement.
+    /// from the measured output, what was done with that measurement. `dt` is the time since the
+    /// sample before.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for numbers that are not finite.
     pub(super) fn follow(
         &mut self,
         input: f64,
+        dt: Option<f64>,
         measured: Option<f64>,
     ) -> Result<(f64, Option<Outcome>)> {
         let from = self.input.replace(input).unwrap_or(input);
         match (&mut self.kind, measured) {
-            (Kind::Fixed { operators, state }, _) => {
-                Ok((operators.step(state, input)?.output, None))
+            (Kind::Fixed { model, state }, _) => {
+                let sample = Sample {
+                    input,
+                    dt,
+                    load: None,
+                };
+                Ok((model.step(state, sample)?.output, None))
             }
             (Kind::Adaptive(adaptive), measured) => {
                 self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
@@ -116,6 +119,7 @@ impl Compensator {
         target: f64,
         heading: Option<Direction>,
         tolerance: f64,
+        dt: Option<f64>,
     ) -> Result<Solution<f64>> {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
@@ -124,10 +128,12 @@ impl Compensator {
             self.set_out_again();
         }
         let (state, sign) = match &self.kind {
-            Kind::Fixed { operators, state } => (state, operators.sign()),
-            Kind::Adaptive(adaptive) => (adaptive.state(), adaptive.offline().sign()),
+            Kind::Fixed { model, state } => (state.clone(), model.sign()),
+            Kind::Adaptive(adaptive) => {
+                (adaptive.state().clone().into(), adaptive.offline().sign())
+            }
         };
-        let wanted = self.wanted.get_or_insert_with(|| state.clone());
+        let wanted = self.wanted.get_or_insert(state);
         let rises = wanted.is_rising() == (sign == Sign::Positive);
         let turned = match branch {
             Some((branch, _)) => rises != (branch == Direction::Rising),
@@ -139,8 +145,14 @@ impl Compensator {
         };
         let target = Target::new(target).heading(heading).tolerance(tolerance);
         match &self.kind {
-            Kind::Fixed { operators, .. } => operators.inverse()?.step_operators(wanted, target),
-            Kind::Adaptive(adaptive) => adaptive.solve_from(wanted, target),
+            Kind::Fixed { model, .. } => {
+                let wanted_now = Wanted {
+                    dt,
+                    ..target.into()
+                };
+                model.inverse()?.step(wanted, wanted_now)
+            }
+            Kind::Adaptive(adaptive) => adaptive.solve_from(&mut wanted.operators, target),
         }
     }
 

@@ -122,7 +122,8 @@ impl Controller {
                 if std::mem::take(&mut self.lost) {
                     compensator.set_out_again();
                 }
-                let (prediction, outcome) = compensator.follow(input, output.value())?;
+                let (prediction, outcome) =
+                    compensator.follow(input, Some(self.scheme.interval_s), output.value())?;
                 self.prediction = prediction;
                 status.adapted = outcome == Some(Outcome::Learned);
                 status.rejected = outcome == Some(Outcome::Rejected);
@@ -219,7 +220,12 @@ impl Controller {
         };
         let feedforward = match &mut scheme.compensator {
             Some(compensator) => {
-                let solution = compensator.solve(target.output, heading, scheme.tolerance)?;
+                let solution = compensator.solve(
+                    target.output,
+                    heading,
+                    scheme.tolerance,
+                    Some(scheme.interval_s),
+                )?;
                 status.out_of_reach = solution.status.is_out_of_reach();
                 solution.input
             }

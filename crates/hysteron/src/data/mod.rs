@@ -24,5 +24,5 @@ pub use output::{
 };
 pub use printable::printable;
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
-pub use run::{Counts, Invert, Simulate, invert_table, simulate_table};
+pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, ReadOptions, Remark, Row, TableReader};

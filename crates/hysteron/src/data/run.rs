@@ -1,11 +1,10 @@
 //! Simulates and inverts tables row by row, so that memory does not grow with the file.
 
 use crate::data::output::{Added, Cell, TableWriter};
-use crate::data::table::Row;
-use crate::data::table::TableReader;
+use crate::data::table::{Column, Row, TableReader};
 use crate::error::{Error, Result};
-use crate::model::{Band, Inverse, Model, State};
-use crate::model::{Policy, Sample, needs_time, no_load};
+use crate::model::{Band, Inverse, Model, Policy, Preview, Sample, State, Wanted};
+use crate::model::{needs_time, no_load};
 use crate::series::Headings;
 use hysteron_core::{Direction, Status, Target};
 use serde::Serialize;
@@ -22,6 +21,17 @@ pub struct Counts {
     pub low: u64,
     /// Targets inside a jump of a relay model, which no input reaches exactly.
     pub passed: u64,
+    /// Targets that the drive, within its range, cannot reach in time.
+    pub limited: u64,
+}
+
+/// The columns that a model may need besides its input or target.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Around<'a> {
+    /// Column of time in seconds, for a model that depends on time.
+    pub time: Option<&'a str>,
+    /// Column of the load, for a model that depends on one.
+    pub load: Option<&'a str>,
 }
 
 /// The columns and options of a simulation.
@@ -29,61 +39,38 @@ pub struct Counts {
 pub struct Simulate<'a> {
     /// Column of the input.
     pub input: &'a str,
-    /// Column of time in seconds, for a model with a thermal body.
-    pub time: Option<&'a str>,
-    /// Column of the load, for a model that depends on one.
-    pub load: Option<&'a str>,
+    /// Columns of time and load.
+    pub around: Around<'a>,
     /// The band, for the columns `output_low` and `output_high`; `None` for no band.
     pub band: Option<&'a Band>,
 }
 
-/// Copies `table` to `out` with an additional column `output_model`: the model's output, from every
-/// operator off. With a band, the columns `output_low` and `output_high` follow. `out` is finished
-/// at the end. `progress` gets the bytes read.
+/// Copies `table` to `out` with an additional column `output_model`: the model's output, from
+/// `state`. With a band, the columns `output_low` and `output_high` follow. `out` is finished at the
+/// end. `progress` gets the bytes read.
 ///
 /// # Errors
 /// - [`crate::Error::File`].
 /// - [`crate::Error::Recording`] with line and column.
-/// - [`crate::Error::Thermal`] for a model with a thermal body without time.
+/// - [`crate::Error::Thermal`] for a model that depends on time without time.
 /// - [`crate::Error::Fit`] for a model that depends on a load without its column.
 pub fn simulate_table(
     model: &Model,
+    mut state: State,
     table: &mut TableReader,
     what: Simulate<'_>,
     out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let column = table.column(what.input)?;
-    let time = match (model.thermal, what.time) {
-        (None, _) => None,
-        (Some(_), name) => Some(table.time_column(name.ok_or_else(needs_time)?)?),
-    };
-    if let (Some(dependence), None) = (&model.load, what.load) {
-        return Err(dependence.one_is_needed());
-    }
-    if let (None, Some(_)) = (&model.load, what.load) {
-        return Err(no_load());
-    }
-    let load = what.load.map(|name| table.column(name)).transpose()?;
+    let mut samples = Samples::new(model, table, what.input, what.around)?;
     let names = ["output_model", "output_low", "output_high"].map(Added::Numbers);
     let added = if what.band.is_some() { 3 } else { 1 };
     let mut sink = Sink::start(table, out, &names[..added])?;
-    let (mut state, mut before) = (model.start(), None);
     let mut band = what.band.map(|band| (band, band.start()));
     while table.advance()? {
-        let now = time.map(|at| table.number(at)).transpose()?;
-        let sample = Sample {
-            input: table.number(column)?,
-            dt: now.map(|now| now - before.replace(now).unwrap_or(now)),
-            load: load.map(|at| table.number(at)).transpose()?,
-        };
-        let step = model.step(&mut state, sample).map_err(|error| {
-            let at = match error {
-                Error::Thermal(_) => time,
-                _ => load,
-            };
-            table.fault(at, error.to_string())
-        })?;
+        let sample = samples.read(table)?;
+        let step = model.step(&mut state, sample);
+        let step = step.map_err(|error| samples.fault(table, &error))?;
         match step.clipped {
             None => {}
             Some(hysteron_core::Clipped::Low) => sink.counts.low += 1,
@@ -103,11 +90,67 @@ pub fn simulate_table(
     sink.finish()
 }
 
-/// The column and options of an inversion.
+/// Reads a sample from each row.
+struct Samples {
+    value: Column,
+    time: Option<Column>,
+    load: Option<Column>,
+    before: Option<f64>,
+}
+
+impl Samples {
+    fn new(
+        model: &Model,
+        table: &mut TableReader,
+        value: &str,
+        around: Around<'_>,
+    ) -> Result<Self> {
+        let value = table.column(value)?;
+        let time = match (model.is_timed(), around.time) {
+            (false, _) => None,
+            (true, name) => Some(table.time_column(name.ok_or_else(needs_time)?)?),
+        };
+        let load = match (&model.load, around.load) {
+            (Some(dependence), None) => return Err(dependence.one_is_needed()),
+            (None, Some(_)) => return Err(no_load()),
+            (_, name) => name.map(|name| table.column(name)).transpose()?,
+        };
+        let before = None;
+        Ok(Self {
+            value,
+            time,
+            load,
+            before,
+        })
+    }
+
+    fn read(&mut self, table: &mut TableReader) -> Result<Sample> {
+        let now = self.time.map(|at| table.number(at)).transpose()?;
+        Ok(Sample {
+            input: table.number(self.value)?,
+            dt: now.map(|now| now - self.before.replace(now).unwrap_or(now)),
+            load: self.load.map(|at| table.number(at)).transpose()?,
+        })
+    }
+
+    /// The error with the row and the column that it comes from.
+    fn fault(&self, table: &TableReader, error: &Error) -> Error {
+        let at = match error.parts().0 {
+            Error::Thermal(_) => self.time,
+            Error::Fit(_) => self.load,
+            _ => Some(self.value),
+        };
+        table.fault(at, error.to_string())
+    }
+}
+
+/// The columns and options of an inversion.
 #[derive(Debug, Clone, Copy)]
 pub struct Invert<'a> {
     /// Column of the wanted output.
     pub target: &'a str,
+    /// Columns of time and load.
+    pub around: Around<'a>,
     /// Whether the inverse holds the input or crosses the dead band when the target reverses.
     pub policy: Policy,
     /// Reversals of the target up to this size are noise and are not followed; in its unit.
@@ -115,87 +158,173 @@ pub struct Invert<'a> {
     /// Largest number of rows to look ahead for [`Policy::Anticipate`]. If the next turning point
     /// is further away, the input is held.
     pub look_ahead: usize,
+    /// The range of the drive; `None` for that of the model ([`Model::drive_range`]).
+    pub drive_range: Option<(f64, f64)>,
+    /// Time in which a temperature is to be reached, s ([`Inverse::horizon`]).
+    pub horizon: f64,
+    /// For a model with a thermal body: how many seconds ahead of a target the drive may start.
+    pub preview: f64,
 }
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
-/// wanted output, from every operator off. `out` is finished at the end. `progress` gets the bytes
-/// read.
+/// wanted output, from `state`. For a model with a thermal body the input is the drive to hold since
+/// the row before, and `temperature_model` follows it. `out` is finished at the end. `progress` gets
+/// the bytes read.
 ///
 /// # Errors
-/// As [`simulate_table`], and [`crate::Error::Core`] for a model with negative weights.
+/// As [`simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
+/// [`crate::Error::Fit`] for a range of drives that is not in order.
 pub fn invert_table(
     model: &Model,
+    state: State,
     table: &mut TableReader,
     what: Invert<'_>,
     out: Option<TableWriter>,
     progress: impl Fn(u64),
 ) -> Result<Counts> {
-    let column = table.column(what.target)?;
-    let mut inverting = Inverting {
-        inverse: model.inverse()?,
-        state: model.start(),
-        tolerance: what.tolerance,
-        sink: Sink::start(
-            table,
-            out,
-            &[Added::Numbers("input_model"), Added::Words("status")],
-        )?,
+    let mut samples = Samples::new(model, table, what.target, what.around)?;
+    let drive = what.drive_range.unwrap_or_else(|| model.drive_range());
+    let inner = model.without_body();
+    let preview = match model.thermal.filter(|_| what.preview > 0.0) {
+        None => None,
+        Some(body) => {
+            let state = state.clone();
+            Some(Preview::new(
+                &inner,
+                body.core(),
+                drive,
+                what.preview,
+                state,
+            )?)
+        }
     };
-    match what.policy {
-        Policy::Hold => {
-            while table.advance()? {
-                let target = table.number(column)?;
-                inverting.row(table.row(), target, None)?;
-                progress(table.bytes_read());
-            }
+    let heated = model.thermal.is_some();
+    let added = match heated {
+        false => vec![Added::Numbers("input_model"), Added::Words("status")],
+        true => vec![
+            Added::Numbers("input_model"),
+            Added::Numbers("temperature_model"),
+            Added::Words("status"),
+        ],
+    };
+    let inverse = model
+        .inverse()?
+        .drive_range(drive.0, drive.1)?
+        .horizon(what.horizon)?;
+    let mut inverting = Inverting {
+        inverse,
+        state,
+        preview,
+        heated,
+        waiting: VecDeque::new(),
+        sink: Sink::start(table, out, &added)?,
+    };
+    let mut headings = match what.policy {
+        Policy::Hold => None,
+        Policy::Anticipate => Some(Headings::new(what.tolerance, what.look_ahead)),
+    };
+    let mut unheaded: VecDeque<(Row, Sample)> = VecDeque::new();
+    let mut release = |waiting: &mut VecDeque<(Row, Sample)>, heading, count: usize| {
+        for (row, sample) in waiting.drain(..count) {
+            inverting.row(row, wanted(sample, heading, what.tolerance))?;
         }
-        Policy::Anticipate => {
-            let mut waiting: VecDeque<(Row, f64)> = VecDeque::new();
-            let mut headings = Headings::new(what.tolerance, what.look_ahead);
-            let mut release =
-                |waiting: &mut VecDeque<(Row, f64)>, heading: Option<Direction>, count: usize| {
-                    for (row, target) in waiting.drain(..count) {
-                        inverting.row(&row, target, heading)?;
-                    }
-                    Ok::<(), Error>(())
-                };
-            while table.advance()? {
-                let target = table.number(column)?;
-                waiting.push_back((table.row().clone(), target));
-                for (heading, count) in headings.push(target) {
-                    release(&mut waiting, heading, count)?;
+        Ok::<(), Error>(())
+    };
+    while table.advance()? {
+        let sample = samples.read(table)?;
+        // A time or a load that cannot be is told with its row.
+        model
+            .accepts(sample)
+            .map_err(|error| samples.fault(table, &error))?;
+        unheaded.push_back((table.row().clone(), sample));
+        match &mut headings {
+            None => release(&mut unheaded, None, 1)?,
+            Some(headings) => {
+                for (heading, count) in headings.push(sample.input) {
+                    release(&mut unheaded, heading, count)?;
                 }
-                progress(table.bytes_read());
             }
-            let (heading, count) = headings.finish();
-            release(&mut waiting, heading, count)?;
         }
+        progress(table.bytes_read());
     }
-    inverting.sink.finish()
+    if let Some(headings) = headings {
+        let (heading, count) = headings.finish();
+        release(&mut unheaded, heading, count)?;
+    }
+    inverting.finish()
+}
+
+fn wanted(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Wanted {
+    let Sample {
+        input: output,
+        dt,
+        load,
+    } = sample;
+    let target = Target {
+        output,
+        heading,
+        tolerance,
+    };
+    Wanted {
+        dt,
+        load,
+        ..target.into()
+    }
 }
 
 struct Inverting<'m> {
     inverse: Inverse<'m>,
     state: State,
-    tolerance: f64,
+    preview: Option<Preview<'m>>,
+    heated: bool,
+    /// Rows whose preview is not complete.
+    waiting: VecDeque<Row>,
     sink: Sink,
 }
 
 impl Inverting<'_> {
-    fn row(&mut self, row: &Row, target: f64, heading: Option<Direction>) -> Result<()> {
-        let target = Target::new(target)
-            .heading(heading)
-            .tolerance(self.tolerance);
-        let solution = self.inverse.step(&mut self.state, target)?;
+    fn row(&mut self, row: Row, wanted: Wanted) -> Result<()> {
+        let Some(preview) = &mut self.preview else {
+            return self.write(&row, wanted);
+        };
+        let ready = preview.push(wanted)?;
+        self.waiting.push_back(row);
+        for wanted in ready {
+            self.write_next(wanted)?;
+        }
+        Ok(())
+    }
+
+    fn write_next(&mut self, wanted: Wanted) -> Result<()> {
+        match self.waiting.pop_front() {
+            Some(row) => self.write(&row, wanted),
+            None => Ok(()),
+        }
+    }
+
+    fn finish(mut self) -> Result<Counts> {
+        while let Some(wanted) = self.preview.as_mut().and_then(Preview::next) {
+            self.write_next(wanted)?;
+        }
+        self.sink.finish()
+    }
+
+    fn write(&mut self, row: &Row, wanted: Wanted) -> Result<()> {
+        let solution = self.inverse.step(&mut self.state, wanted)?;
         let hysteron_core::Solution { input, status } = solution;
         match status {
             Status::Ok => {}
             Status::Low => self.sink.counts.low += 1,
             Status::High => self.sink.counts.high += 1,
             Status::Passed => self.sink.counts.passed += 1,
+            Status::Limited => self.sink.counts.limited += 1,
         }
-        let cells = [Cell::Number(input), Cell::Word(status.name())];
-        self.sink.write(row, &cells)
+        let temperature = Cell::Number(self.state.temperature());
+        let cells = [Cell::Number(input), temperature, Cell::Word(status.name())];
+        match self.heated {
+            true => self.sink.write(row, &cells),
+            false => self.sink.write(row, &[cells[0], cells[2]]),
+        }
     }
 }
 

@@ -1,46 +1,13 @@
 //! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::identify::choose::validate::{Candidates, cross_validate};
-use crate::identify::options::FitOptions;
-use crate::identify::stages::body::fit_body;
-use crate::identify::weights::fit::fit_weights;
-use crate::model::{Model, Sign, Solver, Start};
+use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
+use crate::identify::stages;
+use crate::model::{Model, Sign, Solver, Start, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::remedy::{Remedy, Setting};
 use hysteron_core::Operator;
-
-/// Let the data decide.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Auto;
-
-/// A fixed value, or a choice left to the data. Both convert into it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice<T> {
-    /// Let the data decide.
-    Auto,
-    /// Use this value.
-    Fixed(T),
-}
-
-impl<T> From<Auto> for Choice<T> {
-    fn from(_: Auto) -> Self {
-        Self::Auto
-    }
-}
-
-impl From<usize> for Choice<usize> {
-    fn from(value: usize) -> Self {
-        Self::Fixed(value)
-    }
-}
-
-impl From<f64> for Choice<f64> {
-    fn from(value: f64) -> Self {
-        Self::Fixed(value)
-    }
-}
 
 /// Identifies a model from recordings. Set the options that differ from the defaults, then call
 /// [`run`](Fit::run).
@@ -185,10 +152,44 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load.
+    /// What a load changes, for recordings with a load.
     #[must_use]
-    pub fn load_degree(mut self, degree: usize) -> Self {
-        self.options.load_degree = degree;
+    pub fn load_law(mut self, law: LoadLaw) -> Self {
+        self.options.load_law = law;
+        self
+    }
+
+    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load. [`Auto`]
+    /// chooses it by loads that are left out.
+    #[must_use]
+    pub fn load_degree(mut self, degree: impl Into<Choice<usize>>) -> Self {
+        self.options.load_degree = match degree.into() {
+            Choice::Auto => None,
+            Choice::Fixed(degree) => Some(degree),
+        };
+        self
+    }
+
+    /// Where the levels are.
+    #[must_use]
+    pub fn spacing(mut self, spacing: Spacing) -> Self {
+        self.options.spacing = spacing;
+        self
+    }
+
+    /// Number of creep terms, 0 to 4. [`Auto`] takes creep only if it predicts parts of the
+    /// recording that were left out. The recordings need time.
+    #[must_use]
+    pub fn creep(mut self, terms: impl Into<Choice<usize>>) -> Self {
+        self.options.creep = terms.into();
+        self
+    }
+
+    /// Time constant of a lag of the whole, in seconds. [`Auto`] takes one only if it predicts parts
+    /// of the recording that were left out. The recordings need time.
+    #[must_use]
+    pub fn lag(mut self, seconds: impl Into<Choice<f64>>) -> Self {
+        self.options.lag = seconds.into();
         self
     }
 
@@ -212,21 +213,30 @@ impl<'a> Fit<'a> {
     }
 
     /// Identifies the model. Several recordings are parts of one experiment, each with its own
-    /// initial state. If they have a load, the weights depend on it.
+    /// initial state. If they have a load, the model depends on it.
     ///
     /// # Errors
-    /// - [`Error::Recording`] for an invalid recording or a constant input.
-    /// - [`Error::Core`] for an invalid plane.
-    /// - [`Error::Fit`] for options that contradict each other, and for automatic levels or
-    ///   smoothness with a thermal body.
-    /// - [`Error::Thermal`] for a thermal body without time.
+    /// - [`crate::Error::Recording`] for an invalid recording or a constant input.
+    /// - [`crate::Error::Core`] for an invalid plane.
+    /// - [`crate::Error::Fit`] for options that contradict each other.
+    /// - [`crate::Error::Thermal`] for a thermal body, creep or a lag without time.
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
-        let mut options = self.options.clone();
+        let chosen =
+            |recordings: &[Recording], options: &FitOptions| self.chosen(recordings, options);
+        stages::fit(recordings, &self.options, self.body, &chosen, self.progress)
+    }
+
+    /// The options with levels, smoothness and replicates, for recordings as the operators see them.
+    fn chosen(
+        &self,
+        recordings: &[Recording],
+        options: &FitOptions,
+    ) -> Result<(FitOptions, Option<Validation>)> {
+        let mut options = options.clone();
         let mut validation = None;
         if self.auto_levels || self.auto_smooth {
-            self.refuse_choice_behind_body()?;
             let candidates = Candidates::new(
                 (!self.auto_levels).then_some(options.levels),
                 (!self.auto_smooth).then_some(options.smooth),
@@ -238,23 +248,6 @@ impl<'a> Fit<'a> {
         if self.auto_bootstrap {
             options.bootstrap = FitOptions::usual_bootstrap(options.levels);
         }
-        let mut model = match self.body {
-            false => fit_weights(recordings, &options, self.progress)?,
-            true => fit_body(recordings, &options, self.progress)?,
-        };
-        if let Some(fit) = &mut model.fit {
-            fit.validation = validation;
-        }
-        Ok(model)
-    }
-
-    fn refuse_choice_behind_body(&self) -> Result<()> {
-        if !self.body {
-            return Ok(());
-        }
-        let what = "with a thermal body, levels and smoothness cannot be chosen automatically";
-        let settings = [Setting::any("levels"), Setting::any("smooth")];
-        let remedy = Remedy::new("give {} and {} yourself", settings);
-        Err(Error::Fit(what.into()).remedied(remedy))
+        Ok((options, validation))
     }
 }

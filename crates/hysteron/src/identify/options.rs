@@ -4,6 +4,57 @@ use crate::model::Sign;
 use crate::model::{Solver, Start};
 use hysteron_core::Operator;
 
+/// Let the data decide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Auto;
+
+/// A fixed value, or a choice left to the data. Both convert into it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice<T> {
+    /// Let the data decide.
+    Auto,
+    /// Use this value.
+    Fixed(T),
+}
+
+impl<T> From<Auto> for Choice<T> {
+    fn from(_: Auto) -> Self {
+        Self::Auto
+    }
+}
+
+impl From<usize> for Choice<usize> {
+    fn from(value: usize) -> Self {
+        Self::Fixed(value)
+    }
+}
+
+impl From<f64> for Choice<f64> {
+    fn from(value: f64) -> Self {
+        Self::Fixed(value)
+    }
+}
+
+/// What a load changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LoadLaw {
+    /// It shifts the axis of the operators, and weights and offset follow with a low order.
+    #[default]
+    Shift,
+    /// It changes weights and offset only.
+    Weights,
+}
+
+/// Where the levels of the plane are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Spacing {
+    /// At equal distances.
+    #[default]
+    Uniform,
+    /// Close together where the output moves.
+    Auto,
+}
+
 /// The options of a fit.
 ///
 /// | field | default | range | purpose |
@@ -16,7 +67,11 @@ use hysteron_core::Operator;
 /// | `offset` | free | finite | output with every operator off |
 /// | `smooth` | 0 | 0 to 1e6, usually 1e-10 to 1e-4 | strength of the smoothness |
 /// | `start` | off | off, on, unknown | state of the operators before each recording |
-/// | `load_degree` | 1 | 0 to 5 | order of the weights as a function of the load, if any |
+/// | `load_law` | shift | shift, weights | what a load changes, if there is one |
+/// | `load_degree` | by left-out loads | 0 to 5 | order of the weights as a function of the load |
+/// | `spacing` | uniform | uniform, auto | where the levels are |
+/// | `creep` | 0 | auto, 0 to 4 | number of creep terms |
+/// | `lag` | 0 | auto, 0 or more | time constant of a lag of the whole, in seconds |
 /// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
@@ -37,8 +92,17 @@ pub struct FitOptions {
     pub smooth: f64,
     /// State of the operators before the first sample of each recording.
     pub start: Start,
-    /// Order of the weights as a function of the load.
-    pub load_degree: usize,
+    /// What a load changes.
+    pub load_law: LoadLaw,
+    /// Order of the weights as a function of the load; `None` to choose it: by loads left out where
+    /// there are three or more, otherwise 1.
+    pub load_degree: Option<usize>,
+    /// Where the levels are.
+    pub spacing: Spacing,
+    /// Number of creep terms.
+    pub creep: Choice<usize>,
+    /// Time constant of a lag of the whole, in seconds.
+    pub lag: Choice<f64>,
     /// Number of bootstrap replicates.
     pub bootstrap: usize,
 }
@@ -63,7 +127,11 @@ impl Default for FitOptions {
             offset: None,
             smooth: 0.0,
             start: Start::Off,
-            load_degree: 1,
+            load_law: LoadLaw::Shift,
+            load_degree: None,
+            spacing: Spacing::Uniform,
+            creep: Choice::Fixed(0),
+            lag: Choice::Fixed(0.0),
             bootstrap: 0,
         }
     }

@@ -141,7 +141,8 @@ impl BandEvaluation {
         let Some(band) = model.band()? else {
             return Ok(None);
         };
-        let half_width = band.run(&recording.input)?;
+        let around = crate::model::Surroundings::of(model, recording);
+        let half_width = band.run(&model.seen(&recording.input, around)?)?;
         let modelled = output_model.iter().zip(&half_width);
         let inside = recording
             .output

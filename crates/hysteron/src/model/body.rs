@@ -8,23 +8,29 @@ use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A lumped thermal body: `θ' = (g u − θ)/τ`, with one time constant for heating (`g u > θ`) and
-/// one for cooling.
+/// A lumped thermal body: `T' = (T∞ − T)/τ` with `T∞ = ambient + gain · drive`. It has one time
+/// constant for heating (`T∞ > T`) and one for cooling.
 ///
-/// `θ` is the temperature above the surroundings. If no temperature was measured, the gain cannot
-/// be identified. It is then 1, and `θ` is in units of the drive that holds it constant. The drive
-/// must be proportional to the heating power, as a duty cycle is. Of a current or a voltage, give
-/// the square.
+/// If no temperature was measured, gain and ambient temperature cannot be identified. They are then
+/// 1 and 0, and the temperature is in units of the drive that holds it constant. The drive must be
+/// proportional to the heating power, as a duty cycle is. Of a current or a voltage, give the
+/// square.
+///
+/// The drive of a sample is the one that was held since the sample before.
 ///
 /// ```
-/// let body = hysteron::FirstOrder { gain: 1.0, tau_heating: 2.0, tau_cooling: 4.0 };
-/// let temperature = body.respond(&[0.0, 1.0, 3.0], &[0.0, 1.0, 1.0])?;
+/// use hysteron::FirstOrder;
+/// let body = FirstOrder { tau_heating: 2.0, tau_cooling: 4.0, ..FirstOrder::default() };
+/// let temperature = body.respond(&[0.0, 1.0, 3.0], &[0.0, 0.0, 1.0])?;
 /// assert_eq!(temperature, [0.0, 0.0, 1.0 - (-1.0_f64).exp()]);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct FirstOrder {
+    /// Temperature at rest without a drive.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub ambient: f64,
     /// Temperature at rest per unit of the drive; above zero.
     pub gain: f64,
     /// Time constant of heating in seconds; above zero.
@@ -33,44 +39,51 @@ pub struct FirstOrder {
     pub tau_cooling: f64,
 }
 
-/// State of a body: the last drive, and the temperature at that time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ThermalState {
-    drive: f64,
-    temperature: f64,
+impl Default for FirstOrder {
+    /// A body with time constants of one second, in units of the drive.
+    fn default() -> Self {
+        Self {
+            ambient: 0.0,
+            gain: 1.0,
+            tau_heating: 1.0,
+            tau_cooling: 1.0,
+        }
+    }
 }
 
-impl ThermalState {
-    /// Temperature above the surroundings.
-    #[must_use]
-    pub fn temperature(&self) -> f64 {
-        self.temperature
-    }
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl FirstOrder {
-    /// A body at rest under a constant `drive`.
-    #[must_use]
-    pub fn at_rest(&self, drive: f64) -> ThermalState {
-        ThermalState {
-            drive,
-            temperature: self.gain * drive,
+    /// The constants for the core.
+    pub(crate) fn core(&self) -> hysteron_core::Body<f64> {
+        hysteron_core::Body {
+            ambient: self.ambient,
+            gain: self.gain,
+            tau_heating: self.tau_heating,
+            tau_cooling: self.tau_cooling,
         }
     }
 
-    /// The temperature `dt` seconds after the last sample, when the drive changes to `drive`.
+    /// The temperature at rest under a constant `drive`.
+    #[must_use]
+    pub fn rest(&self, drive: f64) -> f64 {
+        self.core().rest(drive)
+    }
+
+    /// The temperature `dt` seconds after it was `temperature`, if `drive` is held in between.
     ///
-    /// This is exact for a drive that is held between samples, for any step length. The temperature
-    /// moves towards its rest value and never beyond it, so one time constant holds for the whole
-    /// step.
+    /// This is exact for any step length.
     ///
     /// # Errors
     /// [`Error::Thermal`] for numbers that are not finite, a negative `dt`, or a body with a
-    /// parameter that is not above zero; then the state is unchanged.
-    pub fn step(&self, state: &mut ThermalState, dt: f64, drive: f64) -> Result<f64> {
+    /// parameter that is not above zero.
+    pub fn step(&self, temperature: f64, dt: f64, drive: f64) -> Result<f64> {
         if let Some((name, value)) = self.fault() {
             return Err(Error::Thermal(format!(
-                "the body's {name} is {value}, but must be a finite number above zero"
+                "the body's {name} is {value}, but must be {}",
+                range_of(name)
             )));
         }
         if !(dt >= 0.0 && dt.is_finite() && drive.is_finite()) {
@@ -78,14 +91,8 @@ impl FirstOrder {
                 "drive {drive} after {dt} s: times must not go back and both must be finite numbers"
             )));
         }
-        let rest = self.gain * state.drive;
-        let tau = match rest > state.temperature {
-            true => self.tau_heating,
-            false => self.tau_cooling,
-        };
-        let temperature = rest + (state.temperature - rest) * (-dt / tau).exp();
-        *state = ThermalState { drive, temperature };
-        Ok(temperature)
+        let body = self.core();
+        Ok(body.step(temperature, drive, body.decay(dt)))
     }
 
     /// The temperature at each time (seconds) under `drive`, which has as many samples. The body
@@ -104,11 +111,13 @@ impl FirstOrder {
         let (Some(&first), Some(&u)) = (time.first(), drive.first()) else {
             return Ok(Vec::new());
         };
-        let mut state = self.at_rest(u);
-        let mut last = first;
+        let (mut temperature, mut last) = (self.rest(u), first);
         let samples = time.iter().zip(drive);
         samples
-            .map(|(&t, &u)| self.step(&mut state, t - std::mem::replace(&mut last, t), u))
+            .map(|(&t, &u)| {
+                temperature = self.step(temperature, t - std::mem::replace(&mut last, t), u)?;
+                Ok(temperature)
+            })
             .collect()
     }
 
@@ -124,21 +133,40 @@ impl FirstOrder {
         })
     }
 
-    /// The name and value of the first parameter that is not a finite number above zero; `None` if
-    /// all are valid.
+    /// The name and value of the first parameter that cannot be; `None` if all are valid.
     pub(crate) fn fault(&self) -> Option<(&'static str, f64)> {
+        let valid =
+            |(name, value): &(&str, f64)| value.is_finite() && (*name == "ambient" || *value > 0.0);
         [
+            ("ambient", self.ambient),
             ("gain", self.gain),
             ("tau_heating", self.tau_heating),
             ("tau_cooling", self.tau_cooling),
         ]
         .into_iter()
-        .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
+        .find(|parameter| !valid(parameter))
+    }
+}
+
+/// What a parameter of the body has to be, in words.
+pub(crate) fn range_of(parameter: &str) -> &'static str {
+    match parameter {
+        "ambient" => "a finite number",
+        _ => "a finite number above zero",
     }
 }
 
 impl Model {
-    /// The recording as the operators see it: behind the thermal body, if the model has one.
+    /// The model behind its thermal body: its input is the temperature.
+    #[must_use]
+    pub fn without_body(&self) -> Self {
+        let mut model = self.clone();
+        (model.thermal, model.drive) = (None, None);
+        model
+    }
+
+    /// The recording with the temperature as its input: behind the thermal body, if the model has
+    /// one.
     ///
     /// # Errors
     /// [`Error::Thermal`] for a recording without time if there is a body.
@@ -151,8 +179,9 @@ impl Model {
 }
 
 pub(crate) fn needs_time() -> Error {
-    let what = "the model has a thermal body, whose temperature depends on time";
-    let remedy = Remedy::new("give that too ({})", [Setting::any("time")]);
+    let what = "the model has a thermal body, creep or a lag, which depend on time: it needs the \
+                time of each sample, which does not go back";
+    let remedy = Remedy::new("give it ({})", [Setting::any("time")]);
     Error::Thermal(what.into()).remedied(remedy)
 }
 
@@ -162,6 +191,7 @@ mod tests {
     use super::*;
 
     const BODY: FirstOrder = FirstOrder {
+        ambient: 20.0,
         gain: 2.0,
         tau_heating: 3.0,
         tau_cooling: 7.0,
@@ -170,9 +200,12 @@ mod tests {
     /// A drive that changes every 5 s, sampled every 5/`parts` s.
     fn held(parts: usize) -> (Vec<f64>, Vec<f64>) {
         let drive = [1.0, 4.0, 0.0, 0.5, 3.0, 0.0];
-        let samples = 0..drive.len() * parts;
+        let samples = 0..1 + (drive.len() - 1) * parts;
         let time = samples.clone().map(|n| 5.0 * n as f64 / parts as f64);
-        (time.collect(), samples.map(|n| drive[n / parts]).collect())
+        (
+            time.collect(),
+            samples.map(|n| drive[n.div_ceil(parts)]).collect(),
+        )
     }
 
     #[test]
@@ -183,33 +216,30 @@ mod tests {
             let (time, drive) = held(parts);
             let fine = BODY.respond(&time, &drive).unwrap();
             for (n, theta) in coarse.iter().enumerate() {
-                // One rounding for each of up to 3000 samples.
-                assert!((fine[n * parts] - theta).abs() < 3000.0 * 8.0 * f64::EPSILON);
+                // A few roundings of numbers up to 30 for each of up to 3000 samples.
+                assert!((fine[n * parts] - theta).abs() < 3000.0 * 100.0 * f64::EPSILON);
             }
         }
     }
 
     #[test]
     fn heating_and_cooling_have_their_own_time_constants() {
-        let time: Vec<f64> = (0..3).map(f64::from).collect();
-        let heated = BODY.respond(&time, &[0.0, 1.0, 1.0]).unwrap();
-        assert_eq!(heated[2], 2.0 - 2.0 * (-1.0 / 3.0_f64).exp());
-        let cooled = BODY.respond(&time, &[1.0, 0.0, 0.0]).unwrap();
-        assert_eq!(cooled[2], 2.0 * (-1.0 / 7.0_f64).exp());
+        let time: Vec<f64> = (0..2).map(f64::from).collect();
+        let heated = BODY.respond(&time, &[0.0, 1.0]).unwrap();
+        assert!((heated[1] - (22.0 - 2.0 * (-1.0 / 3.0_f64).exp())).abs() < 1e-14);
+        let cooled = BODY.respond(&time, &[1.0, 0.0]).unwrap();
+        assert!((cooled[1] - (20.0 + 2.0 * (-1.0 / 7.0_f64).exp())).abs() < 1e-14);
     }
 
     #[test]
-    fn what_cannot_be_is_refused_and_leaves_the_state() {
-        let mut state = BODY.at_rest(0.5);
-        let before = state;
+    fn what_cannot_be_is_refused() {
         for (dt, drive) in [
             (-0.1, 1.0),
             (f64::NAN, 1.0),
             (f64::INFINITY, 1.0),
             (2.0, f64::NAN),
         ] {
-            assert!(BODY.step(&mut state, dt, drive).is_err());
-            assert_eq!(state, before);
+            assert!(BODY.step(20.0, dt, drive).is_err());
         }
         assert!(BODY.respond(&[0.0], &[]).is_err());
         assert!(BODY.respond(&[], &[]).unwrap().is_empty());

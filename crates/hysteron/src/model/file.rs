@@ -1,9 +1,14 @@
 //! The model file: JSON with a version. Every error names the field.
+//!
+//! Version 2 adds the stages and the start: `load.shift`, `thermal.ambient`, `drive`, `spacing`,
+//! `creep`, `lag` and `start`. A model that needs none of them is written as version 1.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
-use crate::model::body::FirstOrder;
-use crate::model::load::{LoadDependence, LoadPart};
+use crate::model::after::{After, CreepTerm};
+use crate::model::body::{FirstOrder, range_of};
+use crate::model::load::{LoadDependence, LoadPart, LoadShift};
+use crate::model::start::FittedStart;
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
 use crate::recording::{LARGEST, Quantity};
@@ -11,7 +16,8 @@ use hysteron_core::Operator;
 use serde::{Deserialize, Serialize};
 
 const FORMAT: &str = "hysteron-model";
-const VERSION: u64 = 1;
+/// The versions that can be read.
+const VERSIONS: std::ops::RangeInclusive<u64> = 1..=2;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
@@ -30,7 +36,47 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     thermal: Option<ThermalEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    drive: Option<DriveEntry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    spacing: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    creep: Vec<CreepTerm>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lag: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    start: Option<FittedStart>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     fit: Option<FitSummary>,
+}
+
+impl File {
+    /// The first entry that only version 2 has.
+    fn beyond_version_1(&self) -> Option<&'static str> {
+        let shift = self.load.as_ref().is_some_and(|load| load.shift.is_some());
+        let ambient = |ThermalEntry::FirstOrder(body): &ThermalEntry| body.ambient != 0.0;
+        [
+            ("load.shift", shift),
+            (
+                "thermal.ambient",
+                self.thermal.as_ref().is_some_and(ambient),
+            ),
+            ("drive", self.drive.is_some()),
+            ("spacing", !self.spacing.is_empty()),
+            ("creep", !self.creep.is_empty()),
+            ("lag", self.lag.is_some()),
+            ("start", self.start.is_some()),
+        ]
+        .into_iter()
+        .find_map(|(name, present)| present.then_some(name))
+    }
+}
+
+/// The drives that the actuator was recorded with.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+struct DriveEntry {
+    min: f64,
+    max: f64,
 }
 
 /// The fields that show whether the rest of the file can be read.
@@ -90,6 +136,8 @@ struct LoadEntry {
     max: f64,
     /// One entry for each Bernstein polynomial, from the smallest load on.
     parts: Vec<LoadPart>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shift: Option<LoadShift>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -109,7 +157,7 @@ impl ThermalEntry {
             None => Ok(body),
             Some((field, value)) => Err(fault(
                 &format!("thermal.{field}"),
-                format!("{value} is not a finite number above zero"),
+                format!("{value} is not {}", range_of(field)),
             )),
         }
     }
@@ -149,18 +197,22 @@ impl Model {
             let problem = format!("{found}, where a model file has `{FORMAT}`");
             return Err(fault("format", problem));
         }
-        match head.version {
-            Some(version) if version == VERSION => {}
-            found => {
-                let found = found.map_or("none".into(), |v| v.to_string());
-                let problem = format!(
-                    "version {found} is not known, only {VERSION}: \
-                     a newer hysteron may read this file"
-                );
-                return Err(fault("version", problem));
-            }
+        let version = head.version.as_ref().and_then(serde_json::Value::as_u64);
+        if !version.is_some_and(|version| VERSIONS.contains(&version)) {
+            let found = head
+                .version
+                .map_or("none".into(), |found| found.to_string());
+            let problem = format!(
+                "version {found} is not known, only {} to {}: a newer hysteron may read it",
+                VERSIONS.start(),
+                VERSIONS.end()
+            );
+            return Err(fault("version", problem));
         }
         let file: File = parse(text)?;
+        if let Some(field) = file.beyond_version_1().filter(|_| file.version == 1) {
+            return Err(fault(field, "this needs `version` 2".into()));
+        }
         let in_field = |field: &'static str| {
             move |error: hysteron_core::Error| fault(field, error.to_string())
         };
@@ -196,6 +248,22 @@ impl Model {
         }
         model.load = file.load.map(|entry| entry.into_load(&model)).transpose()?;
         model.thermal = file.thermal.map(ThermalEntry::check).transpose()?;
+        model.drive = file.drive.map(DriveEntry::check).transpose()?;
+        model.spacing = file.spacing;
+        model.after = After::new(&file.creep, file.lag.unwrap_or_default());
+        model.check_stages().map_err(|error| {
+            let field = match &error {
+                Error::Core(hysteron_core::Error::Stage { stage }) => match *stage {
+                    stage @ ("loads" | "shifts" | "scales") => format!("load.shift.{stage}"),
+                    stage => stage.to_owned(),
+                },
+                _ => "spacing".into(),
+            };
+            fault(&field, format!("{error}{}", hint(&field)))
+        })?;
+        let mut model = model
+            .with_start(file.start)
+            .map_err(|error| fault("start.turning_points", error.to_string()))?;
         let confidence = file.fit.as_ref().and_then(|fit| fit.confidence.as_ref());
         if let Some((field, problem)) = confidence.and_then(|c| c.fault(plane.operators())) {
             return Err(fault(&format!("fit.confidence.{field}"), problem));
@@ -213,7 +281,7 @@ impl Model {
         let plane = self.plane();
         let file = File {
             format: FORMAT.into(),
-            version: VERSION,
+            version: 1,
             operator: match self.operator() {
                 Operator::Mkp => OperatorName::Mkp,
                 Operator::Kp => OperatorName::Kp,
@@ -237,8 +305,19 @@ impl Model {
             weights: self.weights().to_vec(),
             load: self.load.as_ref().map(LoadEntry::of),
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
+            drive: self.drive.map(|(min, max)| DriveEntry { min, max }),
+            spacing: self.spacing.clone(),
+            creep: self.after.terms(),
+            lag: Some(self.after.lag).filter(|lag| *lag > 0.0),
+            start: self.start.clone(),
             fit: self.fit.clone(),
         };
+        let version = if file.beyond_version_1().is_some() {
+            2
+        } else {
+            1
+        };
+        let file = File { version, ..file };
         // The file has only numbers and strings, so writing JSON cannot fail.
         serde_json::to_string(&file).unwrap_or_default() + "\n"
     }
@@ -253,6 +332,7 @@ impl LoadEntry {
             min,
             max,
             parts: load.parts().to_vec(),
+            shift: load.shift.clone(),
         }
     }
 
@@ -271,7 +351,43 @@ impl LoadEntry {
             unit: self.unit,
         };
         let load = LoadDependence::new(quantity, (min, max), self.parts, model.operators());
-        load.map_err(|(n, error)| fault(&format!("load.parts[{n}]"), error.to_string()))
+        let mut load =
+            load.map_err(|(n, error)| fault(&format!("load.parts[{n}]"), error.to_string()))?;
+        if self
+            .shift
+            .as_ref()
+            .is_some_and(|shift| shift.loads.is_empty())
+        {
+            return Err(fault("load.shift.loads", "there are none".into()));
+        }
+        load.shift = self.shift;
+        Ok(load)
+    }
+}
+
+impl DriveEntry {
+    fn check(self) -> Result<(f64, f64)> {
+        let Self { min, max } = self;
+        match min.is_finite() && max.is_finite() && min <= max {
+            true => Ok((min, max)),
+            false => {
+                let what = format!("the range {min} to {max} must be finite and in order");
+                Err(fault("drive", what))
+            }
+        }
+    }
+}
+
+/// What a stage has to be.
+fn hint(field: &str) -> &'static str {
+    match field {
+        "load.shift.loads" => ": loads ascend and are finite numbers",
+        "load.shift.shifts" => ": it has a finite number for each load",
+        "load.shift.scales" => ": it has a number above zero for each load, or none at all",
+        "spacing" => ": it has K + 1 finite numbers, one above the other",
+        "creep" => ": at most 4 terms, coefficients from 0 on, time constants above zero",
+        "lag" => ": a finite number of seconds, 0 or more",
+        _ => "",
     }
 }
 

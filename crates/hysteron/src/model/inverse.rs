@@ -1,34 +1,9 @@
 //! The inverse of a model: the input for a wanted output, for one target or a series of them.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::policy::Policy;
-use crate::model::{Model, OperatorState, Operators, Sign, State};
-use crate::series::headings;
+use crate::model::{Model, Operators, Sample, Sign, State, Surroundings};
 use hysteron_core::{Direction, Solution, Target};
-
-impl Model {
-    /// The inverse of a plain model.
-    ///
-    /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`](crate::Error::Core) for negative weights, which names
-    /// the first of them.
-    pub fn inverse(&self) -> Result<Inverse<'_>> {
-        self.plain()?.inverse()
-    }
-}
-
-impl Operators {
-    /// The inverse of these operators.
-    ///
-    /// # Errors
-    /// [`Error::Core`](crate::Error::Core) for negative weights, which names the first of them.
-    pub fn inverse(&self) -> Result<Inverse<'_>> {
-        Ok(Inverse {
-            operators: self,
-            core: self.core.inverse()?,
-        })
-    }
-}
 
 impl Sign {
     /// The target for the core. `output` is the target's output without offset and sign.
@@ -55,47 +30,181 @@ impl Sign {
     }
 }
 
-/// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model.
+/// What is wanted of a model in one sample. A [`Target`] converts to one, with the model's own range
+/// of drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// The output, its heading and its tolerance.
+    pub target: Target<f64>,
+    /// Time since the sample before, s; needed by a model that depends on time.
+    pub dt: Option<f64>,
+    /// The load; needed by a model that depends on one.
+    pub load: Option<f64>,
+    /// The range in which the temperature has to stay, for example because of what comes next; the
+    /// input itself for a model without a thermal body.
+    pub temperature: (f64, f64),
+}
+
+impl From<Target<f64>> for Wanted {
+    fn from(target: Target<f64>) -> Self {
+        Self {
+            target,
+            dt: None,
+            load: None,
+            temperature: (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+}
+
+/// The inverse of a [`Model`]: the input that gives a wanted output, in the units of the model. For
+/// a model with a thermal body it is the drive.
 #[derive(Debug, Clone)]
 pub struct Inverse<'m> {
-    operators: &'m Operators,
+    model: &'m Model,
     core: hysteron_core::Inverse<'m, f64, Vec<f64>>,
+    drive: (f64, f64),
+    horizon: f64,
+}
+
+impl Model {
+    /// The inverse of this model.
+    ///
+    /// # Errors
+    /// [`Error::Core`](crate::Error::Core) for negative weights, which names the first of them.
+    pub fn inverse(&self) -> Result<Inverse<'_>> {
+        let core = self.operators().core.inverse()?;
+        if self.load.as_ref().is_some_and(|load| load.is_negative()) {
+            let what =
+                "the inverse needs weights that are not negative, but some are at some loads";
+            return Err(Error::Fit(what.into()));
+        }
+        Ok(Inverse {
+            model: self,
+            core,
+            drive: self.drive_range(),
+            horizon: 0.0,
+        })
+    }
+}
+
+impl Operators {
+    /// The inverse of these operators in the core, without offset and sign.
+    ///
+    /// # Errors
+    /// [`Error::Core`](crate::Error::Core) for negative weights, which names the first of them.
+    pub fn core_inverse(&self) -> Result<hysteron_core::Inverse<'_, f64, Vec<f64>>> {
+        Ok(self.core.inverse()?)
+    }
 }
 
 impl Inverse<'_> {
-    /// Finds the input for `target` and moves `state` there. `O(log K)`.
+    /// The same inverse with another range of drives: of inputs, for a model without a thermal
+    /// body. A target that needs more has the status [`Limited`](crate::Status::Limited).
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for ends that are not numbers or not in order.
+    pub fn drive_range(mut self, min: f64, max: f64) -> Result<Self> {
+        // Written so that NaN fails the comparison.
+        if !(min <= max) {
+            let what = format!("the range of the drive, {min} to {max}, must be in order");
+            return Err(Error::Fit(what));
+        }
+        self.drive = (min, max);
+        Ok(self)
+    }
+
+    /// The same inverse, which reaches a temperature in this many seconds instead of one sample.
+    /// Noise of the target then does not send the drive from one end to the other, and the output
+    /// follows late.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for a horizon that is negative or not finite.
+    pub fn horizon(mut self, seconds: f64) -> Result<Self> {
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            let what = format!("the horizon of {seconds} s must be a finite number from 0 on");
+            return Err(Error::Fit(what));
+        }
+        self.horizon = seconds;
+        Ok(self)
+    }
+
+    /// Finds the input for what is wanted and moves `state` there. `O(log K)`; a load that changed
+    /// since the sample before takes `O(K²)`.
+    ///
+    /// With a thermal body the input is the drive to hold since the sample before, within its
+    /// range. The state goes where the drive takes it, also where that does not give the target.
     ///
     /// Status and heading refer to the target as given. So with a negative sign,
     /// [`Low`](crate::Status::Low) means that the input would have to be above the plane.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) for a target that is not finite or a state of another
-    /// model; then the state is unchanged.
-    pub fn step(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
-        self.step_operators(&mut state.operators, target)
+    /// As [`Model::step`], for the target in place of the input; then the state is unchanged.
+    pub fn step(&self, state: &mut State, wanted: impl Into<Wanted>) -> Result<Solution<f64>> {
+        let wanted = wanted.into();
+        let model = self.model;
+        if self.is_plain(&wanted) {
+            let Target { output, .. } = wanted.target;
+            let raw = model.sign().factor() * (output - model.offset());
+            let target = model.sign().inward(wanted.target, raw);
+            let solution = self.core.step(&mut state.operators, target)?;
+            return Ok(model.sign().outward(solution));
+        }
+        let worded = |error| model.worded(error);
+        let mut stages = model.stages();
+        let sample = Sample {
+            input: wanted.target.output,
+            dt: wanted.dt,
+            load: wanted.load,
+        };
+        stages.accepts(&state.stages, sample).map_err(worded)?;
+        let wanted = hysteron_core::Wanted {
+            target: wanted.target,
+            dt: wanted.dt,
+            load: wanted.load,
+            drive: self.drive,
+            horizon: self.horizon,
+            temperature: wanted.temperature,
+        };
+        let Some(mixed) = state.place(model, wanted.load)? else {
+            let State {
+                operators,
+                stages: memory,
+                ..
+            } = state;
+            return stages
+                .invert(&self.core, operators, memory, wanted)
+                .map_err(worded);
+        };
+        stages.offset = mixed.offset;
+        let State {
+            operators,
+            stages: memory,
+            ..
+        } = state;
+        let solution = match mixed.core.inverse() {
+            Ok(inverse) => stages.invert(&inverse, operators, memory, wanted),
+            Err(error) => Err(error),
+        };
+        state.mixed = Some(mixed);
+        solution.map_err(worded)
     }
 
-    /// As [`Inverse::step`], for the state of the operators alone.
-    ///
-    /// # Errors
-    /// As [`Inverse::step`].
-    pub fn step_operators(
-        &self,
-        state: &mut OperatorState,
-        target: Target<f64>,
-    ) -> Result<Solution<f64>> {
-        let sign = self.operators.sign();
-        let raw = sign.factor() * (target.output - self.operators.offset());
-        let solution = self.core.step(state, sign.inward(target, raw))?;
-        Ok(sign.outward(solution))
+    /// Whether the operators alone give the input: there is no stage and no limit.
+    fn is_plain(&self, wanted: &Wanted) -> bool {
+        let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+        self.model.is_plain()
+            && wanted.load.is_none()
+            && self.drive == everywhere
+            && wanted.temperature == everywhere
     }
 
     /// Finds the inputs for a whole series of targets, and moves `state` through them. Reversals of
-    /// the target up to `tolerance` (in the output's unit) are not followed.
+    /// the target up to `tolerance` (in the output's unit) are not followed. For models that need
+    /// neither time nor load.
     ///
     /// # Errors
-    /// [`Error::Core`](crate::Error::Core) with the index of a target that is not finite, or for a
-    /// state of another model; then the state is unchanged.
+    /// As [`Inverse::step`], with the index of a target that is not finite; then the state is
+    /// unchanged.
     ///
     /// ```
     /// use hysteron::{Model, Operator, Plane, Policy, Sign};
@@ -115,11 +224,51 @@ impl Inverse<'_> {
         policy: Policy,
         tolerance: f64,
     ) -> Result<Vec<Solution<f64>>> {
-        let headings = match policy {
-            Policy::Hold => Vec::new(),
-            Policy::Anticipate => headings(targets, tolerance),
-        };
-        self.headed(state, targets, &headings, tolerance)
+        self.headed(
+            state,
+            targets,
+            &policy.headings(targets, tolerance),
+            tolerance,
+        )
+    }
+
+    /// As [`Inverse::series`], for any model.
+    ///
+    /// # Errors
+    /// As [`Inverse::series`] and [`Model::run_in`].
+    pub fn series_in(
+        &self,
+        state: &mut State,
+        targets: &[f64],
+        policy: Policy,
+        tolerance: f64,
+        surroundings: Surroundings<'_>,
+    ) -> Result<Vec<Solution<f64>>> {
+        let mut headings = policy.headings(targets, tolerance).into_iter();
+        let samples = surroundings.samples(self.model, targets)?;
+        let wanted = samples.map(
+            |(
+                _,
+                Sample {
+                    input: output,
+                    dt,
+                    load,
+                },
+            )| {
+                let heading = headings.next().flatten();
+                let target = Target {
+                    output,
+                    heading,
+                    tolerance,
+                };
+                Wanted {
+                    dt,
+                    load,
+                    ..target.into()
+                }
+            },
+        );
+        self.through(state, &wanted.collect::<Vec<_>>())
     }
 
     /// As [`Inverse::series`], with the direction that each target takes next. A target without one
@@ -146,33 +295,28 @@ impl Inverse<'_> {
         tolerance: f64,
     ) -> Result<Vec<Solution<f64>>> {
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
-        let wanted = targets
-            .iter()
-            .zip(headings)
-            .map(|(&output, heading)| Target {
+        let pairs = targets.iter().zip(headings);
+        let target = |(&output, heading)| {
+            Target {
                 output,
                 heading,
                 tolerance,
-            });
-        self.through(state, &wanted.collect::<Vec<_>>())
+            }
+            .into()
+        };
+        self.through(state, &pairs.map(target).collect::<Vec<_>>())
     }
 
-    /// As [`Inverse::series`], with a heading and a tolerance for each target.
+    /// As [`Inverse::series`], with all that is wanted of each sample.
     ///
     /// # Errors
-    /// As [`Inverse::series`].
-    pub fn through(
-        &self,
-        state: &mut State,
-        targets: &[Target<f64>],
-    ) -> Result<Vec<Solution<f64>>> {
-        let finite = |target: &Target<f64>| (target.output - self.operators.offset()).is_finite();
-        if let Some(index) = targets.iter().position(|target| !finite(target)) {
+    /// As [`Inverse::series`]. An error of time or load comes when its sample is reached.
+    pub fn through(&self, state: &mut State, wanted: &[Wanted]) -> Result<Vec<Solution<f64>>> {
+        let finite = |wanted: &Wanted| (wanted.target.output - self.model.offset()).is_finite();
+        if let Some(index) = wanted.iter().position(|wanted| !finite(wanted)) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }
-        targets
-            .iter()
-            .map(|&target| self.step(state, target))
-            .collect()
+        let steps = wanted.iter().map(|&wanted| self.step(state, wanted));
+        steps.collect()
     }
 }

@@ -1,7 +1,8 @@
-//! Weights that depend on a load, so that one model holds for several loads or stresses.
+//! The load: it shifts the operators' axis, and offset and weights depend on it. So one model holds
+//! for several loads or stresses.
 
 use crate::error::{Error, Result};
-use crate::model::{Model, Operators};
+use crate::model::{Model, Operators, Plane};
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,53 @@ impl LoadPart {
     }
 }
 
+/// How the load moves the axis of the operators: `x = a(σ) · T − s(σ)`, with shift `s` and scale `a`
+/// piecewise linear between the loads given.
+///
+/// Under stress a shape-memory alloy transforms at a higher temperature (Clausius and Clapeyron).
+/// Weights alone cannot follow that, because they do not move along the axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+pub struct LoadShift {
+    /// The loads, ascending.
+    pub loads: Vec<f64>,
+    /// The shift at each load, in the input's unit.
+    pub shifts: Vec<f64>,
+    /// The scale at each load, above zero; empty for a scale of 1.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scales: Vec<f64>,
+}
+
+impl LoadShift {
+    /// The axis for the core, with these corners.
+    pub(crate) fn axis<'a>(&'a self, spacing: &'a [f64]) -> hysteron_core::Axis<'a, f64> {
+        hysteron_core::Axis {
+            loads: &self.loads,
+            shifts: &self.shifts,
+            scales: &self.scales,
+            spacing,
+        }
+    }
+
+    /// Scale and shift at a load.
+    #[must_use]
+    pub fn at(&self, load: f64) -> (f64, f64) {
+        match self.axis(&[]).at(Some(load)) {
+            Ok(placed) => (placed.scale, placed.shift),
+            Err(_) => (1.0, f64::NAN),
+        }
+    }
+
+    /// The mean slope of the shift, in units of the input per unit of the load. 0 for one load.
+    #[must_use]
+    pub fn slope(&self) -> f64 {
+        match (self.loads.as_slice(), self.shifts.as_slice()) {
+            ([first, .., last], [low, .., high]) => (high - low) / (last - first),
+            _ => 0.0,
+        }
+    }
+}
+
 /// How offset and weights depend on the load: `μ(s) = Σ_k μ_k B_k(s)`, where `B_k` are Bernstein
 /// polynomials and `s` in `[0, 1]` is the load scaled to its range. The first part is the model at
 /// the smallest load and the last part the model at the largest; those between are control points.
@@ -46,13 +94,17 @@ pub struct LoadDependence {
     pub quantity: Quantity,
     range: (f64, f64),
     parts: Vec<LoadPart>,
-    /// One set of operators for each part.
-    operators: Vec<Operators>,
+    /// How the load moves the axis; `None` where it changes offset and weights only.
+    pub shift: Option<LoadShift>,
+    /// The Everett table of each part.
+    tables: Vec<Vec<f64>>,
+    /// Whether a weight of a part is below zero.
+    negative: bool,
 }
 
 impl LoadDependence {
-    /// Operators of the same kind as `like` for each of `parts` (at least one), over the `range` of
-    /// loads.
+    /// Offset and weights for each of `parts` (at least one), over the `range` of loads. The
+    /// operators are of the same kind as `like`.
     ///
     /// # Errors
     /// As [`Operators::new`], with the index of the part.
@@ -64,27 +116,34 @@ impl LoadDependence {
     ) -> std::result::Result<Self, (usize, Error)> {
         let operators = parts.iter().enumerate().map(|(n, part)| {
             let (operator, plane) = (like.operator(), *like.plane());
-            Operators::new(
-                operator,
-                plane,
-                part.weights.clone(),
-                part.offset,
-                like.sign(),
-            )
-            .map_err(|error| (n, error))
+            let weights = part.weights.clone();
+            Operators::new(operator, plane, weights, part.offset, like.sign())
+                .map_err(|error| (n, error))
         });
-        let operators = operators.collect::<std::result::Result<_, _>>()?;
+        let operators = operators.collect::<std::result::Result<Vec<_>, _>>()?;
         Ok(Self {
             quantity,
             range,
             parts,
-            operators,
+            shift: None,
+            negative: operators
+                .iter()
+                .any(|part| part.core.negative_weights().is_some()),
+            tables: operators
+                .iter()
+                .map(|part| part.core.table().to_vec())
+                .collect(),
         })
     }
 
-    /// The operators of each part.
-    pub(crate) fn operators(&self) -> impl Iterator<Item = &Operators> {
-        self.operators.iter()
+    /// The Everett table of each part.
+    pub(crate) fn tables(&self) -> &[Vec<f64>] {
+        &self.tables
+    }
+
+    /// Whether a weight of a part is below zero, so that there is no inverse.
+    pub(crate) fn is_negative(&self) -> bool {
+        self.negative
     }
 
     /// The error for a model that depends on a load but was given none.
@@ -105,6 +164,16 @@ impl LoadDependence {
     #[must_use]
     pub fn range(&self) -> (f64, f64) {
         self.range
+    }
+
+    /// The order of the weights in the load: 0 if all parts have the same weights.
+    #[must_use]
+    pub fn weights_order(&self) -> usize {
+        let same = self
+            .parts
+            .windows(2)
+            .all(|pair| pair[0].weights == pair[1].weights);
+        if same { 0 } else { self.parts.len() - 1 }
     }
 
     /// The parts: one more than the degree in the load.
@@ -151,44 +220,37 @@ impl Model {
             return Err(no_load());
         };
         let LoadPart { offset, weights } = dependence.at(load)?;
-        let (operator, plane) = (self.operator(), *self.plane());
-        let mut model = Self::new(operator, plane, weights, offset, self.sign())?;
-        model.input = self.input.clone();
-        model.output = self.output.clone();
-        model.thermal = self.thermal;
-        model.fit = self.fit.clone();
-        Ok(model)
-    }
-
-    /// The outputs for `input` under a `load` that may change from sample to sample, from every
-    /// operator off. All three have the same length.
-    ///
-    /// The operators move with the input alone. So each part of the load dependence is simulated on
-    /// its own.
-    ///
-    /// # Errors
-    /// As [`Model::at_load`] and [`Model::run`]; [`Error::Fit`] if there are not as many loads as
-    /// inputs.
-    pub fn simulate_under_load(&self, input: &[f64], load: &[f64]) -> Result<Vec<f64>> {
-        let Some(dependence) = &self.load else {
-            return Err(no_load());
+        let (scale, shift) = dependence
+            .shift
+            .as_ref()
+            .map_or((1.0, 0.0), |law| law.at(load));
+        let moved = |x: f64| (x + shift) / scale;
+        let plane = self.plane();
+        let plane = match self.spacing.is_empty() {
+            true => Plane::new(moved(plane.min()), moved(plane.max()), plane.levels())?,
+            // The corners move; the plane behind them stays.
+            false => *plane,
         };
-        if load.len() != input.len() {
-            let (loads, inputs) = (load.len(), input.len());
-            return Err(Error::Fit(format!("{loads} loads for {inputs} inputs")));
-        }
-        let factors: Vec<Vec<f64>> = load
-            .iter()
-            .map(|f| dependence.factors(*f))
-            .collect::<Result<_>>()?;
-        let mut output = vec![0.0; input.len()];
-        for (k, part) in dependence.operators().enumerate() {
-            let run = part.simulate(input)?;
-            for ((y, h), factors) in output.iter_mut().zip(run).zip(&factors) {
-                *y += factors[k] * h;
+        let operators = Operators::new(self.operator(), plane, weights, offset, self.sign())?;
+        let start = self.start.as_ref().map(|start| {
+            let spaced = !self.spacing.is_empty();
+            let input = if spaced {
+                start.input
+            } else {
+                moved(start.input)
+            };
+            crate::model::FittedStart {
+                input,
+                ..start.clone()
             }
-        }
-        Ok(output)
+        });
+        Ok(Self {
+            operators,
+            load: None,
+            spacing: self.spacing.iter().map(|corner| moved(*corner)).collect(),
+            start,
+            ..self.clone()
+        })
     }
 }
 

@@ -1,11 +1,13 @@
 //! The model of an actuator: operators, the stages in front of them, and a record of how they were
 //! identified.
 //!
-//! `operators` are the weighted operators; `body` and `load` are the stages. `state` moves a model
-//! sample by sample, `surroundings` simulates it with time and load, and `inverse` inverts it
+//! `operators` are the weighted operators; `body`, `load` and `after` are the constants of the
+//! stages around them, and `stages` hands them to the core. `state` moves a model sample by sample
+//! from its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it
 //! (`policy` says how). `band` is the interval around the output. `file` reads and writes models;
 //! `summary`, `validation`, `confidence` and `excitation` are the record of the fit.
 
+mod after;
 mod band;
 mod body;
 mod confidence;
@@ -15,30 +17,40 @@ mod inverse;
 mod load;
 mod operators;
 mod policy;
+mod preview;
 mod sign;
+mod stages;
+mod start;
 mod state;
 mod summary;
 mod surroundings;
 mod validation;
+mod within;
 
+pub(crate) use after::After;
+pub use after::CreepTerm;
 pub use band::{Band, BandEvaluation};
+pub use body::FirstOrder;
 pub(crate) use body::needs_time;
-pub use body::{FirstOrder, ThermalState};
 pub use confidence::{Confidence, INTERVAL};
 pub use excitation::Excitation;
-pub use inverse::Inverse;
-pub use load::{LoadDependence, LoadPart};
+pub use inverse::{Inverse, Wanted};
+pub use load::{LoadDependence, LoadPart, LoadShift};
 pub(crate) use load::{bernstein, no_load};
 pub use operators::{OperatorState, Operators};
 pub use policy::Policy;
+pub(crate) use preview::Preview;
 pub use sign::Sign;
+pub use start::FittedStart;
 pub use state::{Sample, State};
 pub use summary::{FitSummary, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Score, Validation};
+pub(crate) use within::Found;
 
 use crate::error::{Error, Result};
 use crate::recording::Quantity;
+use crate::remedy::{Remedy, Setting};
 use hysteron_core::{ClippedCount, Operator, Output};
 
 /// The discrete Preisach plane, equation (3).
@@ -73,6 +85,15 @@ pub struct Model {
     /// The thermal body in front of the operators, if there is one. The input then drives the body,
     /// and the operators follow the body's temperature. The plane is in units of that temperature.
     pub thermal: Option<FirstOrder>,
+    /// The lowest and the highest drive that the actuator was recorded with. The inverse of a model
+    /// with a thermal body stays between them, if it is given no other range.
+    pub drive: Option<(f64, f64)>,
+    /// The inputs at the corners of the grid; empty for equal distances.
+    spacing: Vec<f64>,
+    /// Creep and lag.
+    after: after::After,
+    /// The state found before the first sample fitted.
+    start: Option<FittedStart>,
     /// How the model was obtained, if it was identified.
     pub fit: Option<FitSummary>,
 }
@@ -86,6 +107,10 @@ impl From<Operators> for Model {
             output: Quantity::named("output"),
             load: None,
             thermal: None,
+            drive: None,
+            spacing: Vec::new(),
+            after: after::After::default(),
+            start: None,
             fit: None,
         }
     }
@@ -112,21 +137,24 @@ impl Model {
         &self.operators
     }
 
-    /// The operators of a plain model: one without a thermal body and a load.
+    /// The operators of a plain model: one without stages.
     ///
     /// # Errors
-    /// [`Error::Thermal`] for a model with a thermal body, [`Error::Fit`] for one that depends on a
-    /// load.
+    /// [`Error::Thermal`] for a model that depends on time, [`Error::Fit`] for one that depends on a
+    /// load or has its levels at unequal distances.
     pub fn plain(&self) -> Result<&Operators> {
-        if self.thermal.is_some() {
-            let what = "the model has a thermal body: an inverse gives its temperature, not the \
-                        drive that takes it there, and each sample needs its time";
-            return Err(Error::Thermal(what.into()));
+        if self.is_timed() {
+            return Err(needs_time());
         }
-        match &self.load {
-            Some(load) => Err(load.one_is_needed()),
-            None => Ok(&self.operators),
+        if let Some(load) = &self.load {
+            return Err(load.one_is_needed());
         }
+        if !self.spacing.is_empty() {
+            let what = "the model's levels are not at equal distances, which this needs";
+            let remedy = Remedy::new("fit with {}", [Setting::word("spacing", "uniform")]);
+            return Err(Error::Fit(what.into()).remedied(remedy));
+        }
+        Ok(&self.operators)
     }
 
     /// The plane.
@@ -172,24 +200,11 @@ impl Model {
         self.operators.usual_tolerance()
     }
 
-    /// A state with every operator off. A thermal body is at rest with the first input.
-    #[must_use]
-    pub fn start(&self) -> State {
-        State::new(self, Operators::start)
-    }
-
-    /// A state with every operator on, at the top of the plane.
-    #[must_use]
-    pub fn saturated(&self) -> State {
-        State::new(self, Operators::saturated)
-    }
-
-    /// The state of a plain model that returned these `turning_points` ([`State::turning_points`])
-    /// and this `input` ([`State::input`]), to the last bit.
+    /// The state that returned these `turning_points` ([`State::turning_points`]) and this `input`
+    /// ([`State::input`]), to the last bit. Body, creep and lag are at rest with the next sample.
     ///
     /// # Errors
-    /// As [`Model::plain`]; [`Error::Core`] for turning points that are not nested and for an input
-    /// that is not finite.
+    /// [`Error::Core`] for turning points that are not nested and for an input that is not finite.
     ///
     /// ```
     /// # use hysteron::{Model, Operator, Plane, Sign};
@@ -202,7 +217,10 @@ impl Model {
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     pub fn restore(&self, turning_points: &[f64], input: f64) -> Result<State> {
-        Ok(self.plain()?.restore(turning_points, input)?.into())
+        Ok(State::new(
+            self,
+            self.operators.restore(turning_points, input)?,
+        ))
     }
 
     /// Moves `state` by one sample. Returns the output, and whether the operators' input was
@@ -215,7 +233,7 @@ impl Model {
     /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
     /// assert_eq!(model.step(&mut model.start(), 2.0)?.output, 3.0);
     ///
-    /// model.thermal = Some(FirstOrder { gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 });
+    /// model.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
     /// let mut state = model.start();
     /// model.step(&mut state, 1.0)?; // at rest at twice the drive
     /// assert!(model.step(&mut state, 1.0).is_err()); // from here on time counts
@@ -235,26 +253,26 @@ impl Model {
         state.step(self, sample.into())
     }
 
-    /// Moves the `state` of a plain model through `input` and writes the outputs to `output`, which
-    /// is at least as long. Returns how many inputs were clipped.
+    /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
+    /// Returns how many inputs were clipped. For models that need neither time nor load.
     ///
     /// # Errors
-    /// As [`Model::plain`] and [`Operators::run`].
+    /// As [`Model::run_in`].
     pub fn run(
         &self,
         state: &mut State,
         input: &[f64],
         output: &mut [f64],
     ) -> Result<ClippedCount> {
-        self.plain()?.run(&mut state.operators, input, output)
+        self.run_in(state, input, Surroundings::default(), output)
     }
 
-    /// The outputs of a plain model for `input`, from every operator off.
+    /// The outputs for `input`, from the model's start ([`Model::start`]).
     ///
     /// # Errors
-    /// As [`Model::run`]. For any model see [`Model::simulate_in`].
+    /// As [`Model::simulate_in`], which is for models that need time or load.
     pub fn simulate(&self, input: &[f64]) -> Result<Vec<f64>> {
-        self.plain()?.simulate(input)
+        self.simulate_in(input, Surroundings::default())
     }
 
     /// The operators' states `γ_ij` in `[0, 1]`, in the order of the weights.

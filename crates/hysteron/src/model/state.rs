@@ -1,66 +1,71 @@
 //! The state of a model, and the sample that moves it.
 
 use crate::error::Result;
-use crate::model::body::{ThermalState, needs_time};
 use crate::model::load::no_load;
-use crate::model::{Model, OperatorState, Operators};
-use hysteron_core::Output;
+use crate::model::{Model, OperatorState};
+use hysteron_core::{Error, Output, StageState, mix};
 
 /// One input sample of a model. A plain number converts to a sample with that input only.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// The input; for a model with a thermal body, its drive.
-    pub input: f64,
-    /// Time since the sample before, s; needed by a model with a thermal body.
-    pub dt: Option<f64>,
-    /// The load; needed by a model that depends on one.
-    pub load: Option<f64>,
-}
+pub type Sample = hysteron_core::Sample<f64>;
 
-impl From<f64> for Sample {
-    fn from(input: f64) -> Self {
-        Self {
-            input,
-            dt: None,
-            load: None,
-        }
-    }
-}
-
-/// The state of a model: of its operators, and of its thermal body.
+/// The state of a model: of its operators and of its stages.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     pub(crate) operators: OperatorState,
-    /// States of the operators of each part of a load dependence.
-    parts: Vec<OperatorState>,
-    /// `None` before the first sample. At that sample the body is at rest.
-    body: Option<ThermalState>,
+    pub(crate) stages: StageState<f64>,
+    /// Offset and operators at the load of the last sample, if they depend on a load.
+    pub(crate) mixed: Option<Box<Mixed>>,
+}
+
+/// The model at one load.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Mixed {
+    pub(crate) core: hysteron_core::Model<f64, Vec<f64>>,
+    pub(crate) offset: f64,
+    load: f64,
 }
 
 impl From<OperatorState> for State {
     fn from(operators: OperatorState) -> Self {
         Self {
             operators,
-            parts: Vec::new(),
-            body: None,
+            stages: StageState::default(),
+            mixed: None,
         }
     }
 }
 
 impl State {
-    pub(super) fn new(model: &Model, begin: fn(&Operators) -> OperatorState) -> Self {
-        let parts = model.load.iter().flat_map(|load| load.operators());
+    pub(super) fn new(model: &Model, operators: OperatorState) -> Self {
+        let mixed = model.load.as_ref().map(|_| {
+            Box::new(Mixed {
+                core: model.operators().core.clone(),
+                offset: model.offset(),
+                load: f64::NAN,
+            })
+        });
         Self {
-            operators: begin(model.operators()),
-            parts: parts.map(begin).collect(),
-            body: None,
+            mixed,
+            ..operators.into()
         }
     }
 
-    /// The last input of the operators. For a model with a thermal body, this is the temperature.
+    /// The last input of the operators.
+    ///
+    /// With a thermal body it is made from the temperature; with a load or unequal levels it is
+    /// also shifted and stretched.
     #[must_use]
     pub fn input(&self) -> f64 {
         self.operators.input()
+    }
+
+    /// The temperature after the last sample: the input itself for a model without a thermal body.
+    #[must_use]
+    pub fn temperature(&self) -> f64 {
+        match self.stages.is_started() {
+            true => self.stages.temperature(),
+            false => self.operators.input(),
+        }
     }
 
     /// The turning points that the operators remember, normalised to the plane.
@@ -75,37 +80,53 @@ impl State {
     }
 
     pub(super) fn step(&mut self, model: &Model, sample: Sample) -> Result<Output<f64>> {
-        let Sample { input, dt, load } = sample;
-        let (input, body) = match (&model.thermal, self.body) {
-            (None, _) => (input, None),
-            (Some(body), None) => {
-                let state = body.at_rest(input);
-                (state.temperature(), Some(state))
+        if model.is_plain() {
+            if sample.load.is_some() {
+                return Err(no_load());
             }
-            (Some(body), Some(mut state)) => {
-                let dt = dt.ok_or_else(needs_time)?;
-                (body.step(&mut state, dt, input)?, Some(state))
-            }
+            let step = model.operators().step(&mut self.operators, sample.input)?;
+            return Ok(step);
+        }
+        let mut stages = model.stages();
+        let worded = |error| model.worded(error);
+        stages.accepts(&self.stages, sample).map_err(worded)?;
+        let Some(mixed) = self.place(model, sample.load)? else {
+            let core = &model.operators().core;
+            let step = stages.step(core, &mut self.operators, &mut self.stages, sample);
+            return step.map_err(worded);
         };
-        let factors = match (&model.load, load) {
-            (None, None) => Vec::new(),
+        stages.offset = mixed.offset;
+        let step = stages.step(&mixed.core, &mut self.operators, &mut self.stages, sample);
+        self.mixed = Some(mixed);
+        step.map_err(worded)
+    }
+
+    /// Brings the operators to a load, and lends the model at that load; `None` for a model without
+    /// a load. The caller gives it back.
+    pub(super) fn place(&mut self, model: &Model, load: Option<f64>) -> Result<Option<Box<Mixed>>> {
+        let (dependence, load) = match (&model.load, load) {
+            (None, None) => return Ok(None),
             (None, Some(_)) => return Err(no_load()),
             (Some(dependence), None) => return Err(dependence.one_is_needed()),
-            (Some(dependence), Some(load)) => dependence.factors(load)?,
+            (Some(dependence), Some(load)) => (dependence, load),
         };
-        // A state of the operators alone has no parts: without this check the sum would lack them.
-        if self.parts.len() != factors.len() {
-            return Err(hysteron_core::Error::StateMismatch.into());
+        let factors = dependence.factors(load)?;
+        // A state of the operators alone, or of another model, has no room for the load.
+        let fits = |mixed: &&mut Box<Mixed>| mixed.core.plane() == model.plane();
+        let Some(mixed) = self.mixed.as_mut().filter(fits) else {
+            return Err(Error::StateMismatch.into());
+        };
+        if mixed.load != load {
+            mix(
+                &mut mixed.core,
+                &mut self.operators,
+                dependence.tables(),
+                &factors,
+            )?;
+            let parts = dependence.parts().iter().zip(&factors);
+            mixed.offset = parts.map(|(part, factor)| factor * part.offset).sum();
+            mixed.load = load;
         }
-        let mut step = model.operators().step(&mut self.operators, input)?;
-        self.body = body;
-        if let Some(dependence) = &model.load {
-            let parts = dependence.operators().zip(&mut self.parts);
-            step.output = 0.0;
-            for ((part, state), factor) in parts.zip(factors) {
-                step.output += factor * part.step(state, input)?.output;
-            }
-        }
-        Ok(step)
+        Ok(self.mixed.take())
     }
 }

@@ -25,6 +25,9 @@ pub enum Start {
     Off,
     /// All operators on, as after the highest input.
     On,
+    /// The state that the model's fit found; all operators off for a model without one. A fit
+    /// itself cannot start from it.
+    Fitted,
     /// Unknown: the initial states of operators that the first sample does not determine are
     /// estimated together with the weights.
     Unknown,

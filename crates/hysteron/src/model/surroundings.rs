@@ -1,46 +1,86 @@
-//! Simulates any model, together with the series that it may need besides its input: the time, for
-//! a thermal body, and the load. Also computes the band around that output.
+//! Simulates any model, together with the series that it may need besides its input: time and load.
+//! Also computes the band around that output.
 
 use crate::error::{Error, Result};
-use crate::model::Model;
 use crate::model::band::ends;
 use crate::model::body::needs_time;
+use crate::model::{Model, Sample, State};
+use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use hysteron_core::Error as CoreError;
+use hysteron_core::{Clipped, ClippedCount};
 use std::borrow::Cow;
 
 /// The series that accompany an input. Each is as long as the input.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Surroundings<'a> {
-    /// Time in seconds; needed by a model with a thermal body.
+    /// Time in seconds; needed by a model with a thermal body, creep or a lag.
     pub time: Option<&'a [f64]>,
     /// The load; needed by a model that depends on one.
     pub load: Option<&'a [f64]>,
 }
 
 impl Model {
-    /// The outputs for `input`, from every operator off, for any model. The input passes through
-    /// the thermal body, if there is one, and the load is taken into account. For a plain model
-    /// this equals [`Model::simulate`].
+    /// The outputs for `input`, from the model's start ([`Model::start`]), for any model.
     ///
     /// ```
     /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Surroundings};
     /// let plane = Plane::new(1.0, 2.0, 2)?;
     /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
-    /// model.thermal = Some(FirstOrder { gain: 2.0, tau_heating: 1.0, tau_cooling: 1.0 });
+    /// model.thermal = Some(FirstOrder { gain: 2.0, ..FirstOrder::default() });
     /// let surroundings = Surroundings { time: Some(&[0.0, 1.0, 50.0]), load: None };
-    /// let output = model.simulate_in(&[0.0, 1.0, 1.0], surroundings)?;
-    /// assert_eq!(output, [0.0, 0.0, 3.0]); // a held drive heats for as long as it is held
+    /// let output = model.simulate_in(&[0.0, 0.0, 1.0], surroundings)?;
+    /// assert_eq!(output, [0.0, 0.0, 3.0]); // held for 49 s
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     ///
     /// # Errors
-    /// - As [`Model::run`].
-    /// - [`Error::Thermal`] for a model with a thermal body without time, and for times that go
-    ///   back.
-    /// - [`Error::Fit`] for a model that depends on a load without a load, and for a load with a
-    ///   model that has none.
+    /// As [`Model::run_in`].
     pub fn simulate_in(&self, input: &[f64], surroundings: Surroundings<'_>) -> Result<Vec<f64>> {
-        self.at(&self.seen(input, surroundings)?, surroundings)
+        let mut output = vec![0.0; input.len()];
+        self.run_in(&mut self.start(), input, surroundings, &mut output)?;
+        Ok(output)
+    }
+
+    /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
+    /// Returns how many inputs of the operators were clipped. The time step of the first sample is
+    /// zero.
+    ///
+    /// # Errors
+    /// - [`Error::Core`] for an input that is not finite, with its index, a short `output`, and a
+    ///   state of another model.
+    /// - [`Error::Thermal`] for a model that depends on time without time, and for times that go
+    ///   back.
+    /// - [`Error::Fit`] for a model that depends on a load without a load, for a load with a model
+    ///   that has none, and for series of different lengths.
+    pub fn run_in(
+        &self,
+        state: &mut State,
+        input: &[f64],
+        surroundings: Surroundings<'_>,
+        output: &mut [f64],
+    ) -> Result<ClippedCount> {
+        if self.is_plain() && surroundings.load.is_none() {
+            return self.operators().run(&mut state.operators, input, output);
+        }
+        if output.len() < input.len() {
+            let (needed, found) = (input.len(), output.len());
+            return Err(CoreError::MemoryTooSmall { needed, found }.into());
+        }
+        let mut count = ClippedCount::default();
+        for (sample, output) in surroundings.samples(self, input)?.zip(output) {
+            let (index, sample) = sample;
+            let step = self
+                .step(state, sample)
+                .map_err(|error| at_index(error, index))?;
+            *output = step.output;
+            match step.clipped {
+                None => {}
+                Some(Clipped::Low) => count.low += 1,
+                Some(Clipped::High) => count.high += 1,
+            }
+        }
+        Ok(count)
     }
 
     /// The lower and the upper end of the 95 % band around [`Model::simulate_in`].
@@ -58,27 +98,75 @@ impl Model {
             let remedy = Remedy::new("fit it again with {}", [bootstrap]);
             return Err(Error::Fit(what.into()).remedied(remedy));
         };
-        let seen = self.seen(input, surroundings)?;
-        let output = self.at(&seen, surroundings)?;
-        let half = band.run(&seen)?;
+        let output = self.simulate_in(input, surroundings)?;
+        let half = band.run(&self.seen(input, surroundings)?)?;
         Ok(ends(&output, &half))
     }
 
-    /// The input as the operators see it: behind the thermal body.
-    fn seen<'i>(&self, input: &'i [f64], around: Surroundings<'_>) -> Result<Cow<'i, [f64]>> {
-        let Some(body) = &self.thermal else {
+    /// The inputs as the operators see them: behind the thermal body, shifted by the load, on the
+    /// uniform grid of the plane.
+    ///
+    /// # Errors
+    /// As [`Model::run_in`].
+    pub fn seen<'i>(
+        &self,
+        input: &'i [f64],
+        surroundings: Surroundings<'_>,
+    ) -> Result<Cow<'i, [f64]>> {
+        if self.is_plain() && surroundings.load.is_none() {
             return Ok(Cow::Borrowed(input));
-        };
-        let time = around.time.ok_or_else(needs_time)?;
-        Ok(Cow::Owned(body.respond(time, input)?))
+        }
+        let mut state = self.off();
+        let samples = surroundings.samples(self, input)?.map(|(index, sample)| {
+            self.step(&mut state, sample)
+                .map_err(|error| at_index(error, index))?;
+            Ok(state.input())
+        });
+        Ok(Cow::Owned(samples.collect::<Result<_>>()?))
+    }
+}
+
+impl<'a> Surroundings<'a> {
+    /// Time and load of a recording, as far as `model` needs them.
+    #[must_use]
+    pub fn of(model: &Model, recording: &'a Recording) -> Self {
+        Self {
+            time: recording.time.as_deref().filter(|_| model.is_timed()),
+            load: recording.load.as_deref().filter(|_| model.load.is_some()),
+        }
     }
 
-    fn at(&self, seen: &[f64], around: Surroundings<'_>) -> Result<Vec<f64>> {
-        match (&self.load, around.load) {
-            (None, None) => self.operators().simulate(seen),
-            (_, Some(load)) => self.simulate_under_load(seen, load),
-            (Some(dependence), None) => Err(dependence.one_is_needed()),
+    /// The samples of `input` for `model`, numbered from 0.
+    pub(crate) fn samples<'i>(
+        self,
+        model: &Model,
+        input: &'i [f64],
+    ) -> Result<impl Iterator<Item = (usize, Sample)> + use<'a, 'i>> {
+        let time = match (model.is_timed(), self.time) {
+            (false, _) => None,
+            (true, None) => return Err(needs_time()),
+            (true, Some(time)) => Some(time),
+        };
+        for (name, series) in [("times", time), ("loads", self.load)] {
+            if let Some(series) = series.filter(|series| series.len() != input.len()) {
+                let (found, inputs) = (series.len(), input.len());
+                return Err(Error::Fit(format!("{found} {name} for {inputs} samples")));
+            }
         }
+        let load = self.load;
+        Ok(input.iter().enumerate().map(move |(n, &input)| {
+            let dt = time.map(|time| time[n] - time[n.saturating_sub(1)]);
+            let load = load.map(|load| load[n]);
+            (n, Sample { input, dt, load })
+        }))
+    }
+}
+
+/// The same error with the index of the sample, where it is one of a sample.
+pub(crate) fn at_index(error: Error, index: usize) -> Error {
+    match error {
+        Error::Core(CoreError::InputNotFinite { .. }) => CoreError::InputNotFinite { index }.into(),
+        other => other,
     }
 }
 

@@ -72,7 +72,7 @@ pub(crate) fn of(
     // among the unknowns.
     let start = match options.start {
         Start::On => Initial::On,
-        Start::Off | Start::Unknown => Initial::Off,
+        _ => Initial::Off,
     };
     Ok(Some(Confidence {
         branches: experiment.branches(),

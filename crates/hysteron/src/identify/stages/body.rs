@@ -1,15 +1,13 @@
-//! Identifies a thermal body together with the weights behind it.
+//! Identifies a thermal body by the fit of the weights behind it.
 
 use crate::error::{Error, Result};
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::nelder_mead::minimise;
-use crate::model::Model;
 use crate::model::{FirstOrder, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
-use serde_json::json;
 
 /// Number of samples that the search uses (up to three times as many). The last fit uses all
 /// samples.
@@ -34,28 +32,27 @@ const TOLERANCE: f64 = 1e-3;
 /// Largest number of simplex steps, several times the number that is needed.
 const STEPS: usize = 200;
 
-/// Identifies a thermal body and the weights behind it, from recordings of a drive (squared
-/// current, squared voltage, duty cycle) with time.
+/// Identifies a thermal body from recordings of a drive (squared current, squared voltage, duty
+/// cycle) with time. Returns it, and whether the data tell heating and cooling apart.
 ///
 /// For given time constants, finding the weights is the problem of [`fit_weights`]. So the search
 /// is over the time constants only (separable least squares, Golub and Pereyra 1973): on a
 /// logarithmic grid, then from its best point by the simplex of Nelder and Mead. The time constants
 /// lie between the sampling step and a quarter of the longest recording. A faster body is always at
-/// rest, and a slower one never comes near it. By default the plane covers the range of the
-/// temperature.
+/// rest, and a slower one never comes near it.
 ///
 /// If each branch is driven in one way only, the weights can compensate for a wrong body, and the
 /// two time constants are not resolved. Then a common one is identified, which is what a body in
-/// constant surroundings has. `fit.other["thermal"]` of the model records which of the two was
-/// done. Drives of different shape, for example a ramp and a step, resolve both.
+/// constant surroundings has. Drives of different shape, for example a ramp and a step, resolve
+/// both.
 ///
 /// # Errors
 /// As [`fit_weights`]; [`Error::Thermal`] for recordings without time.
-pub fn fit_body(
+pub(super) fn find(
     recordings: &[Recording],
     options: &FitOptions,
     progress: Progress<'_>,
-) -> Result<Model> {
+) -> Result<(FirstOrder, bool)> {
     let search = Search::new(recordings, options, progress)?;
     let (two, least) = search.best(|taus: &[f64; 2]| *taus)?;
     let told_apart = search.least_beside(&two)? > RESOLVED * least;
@@ -64,19 +61,11 @@ pub fn fit_body(
         false => search.best(|[tau]: &[f64; 1]| [*tau; 2])?.0,
     };
     let body = FirstOrder {
-        gain: 1.0,
         tau_heating,
         tau_cooling,
+        ..FirstOrder::default()
     };
-    let heated = recordings.iter().map(|r| body.behind(r));
-    let heated: Vec<Recording> = heated.collect::<Result<_>>()?;
-    let mut model = fit_weights(&heated, options, progress)?;
-    model.thermal = Some(body);
-    if let Some(fit) = &mut model.fit {
-        let said = json!({"told_apart": told_apart});
-        fit.other.insert("thermal".into(), said);
-    }
-    Ok(model)
+    Ok((body, told_apart))
 }
 
 struct Search<'a> {
@@ -129,9 +118,9 @@ impl<'a> Search<'a> {
         self.progress.tell("time constants", f64::NAN)?;
         let [tau_heating, tau_cooling] = logarithms.map(f64::exp);
         let body = FirstOrder {
-            gain: 1.0,
             tau_heating,
             tau_cooling,
+            ..FirstOrder::default()
         };
         let thinned = |r: &Recording| Ok(thin(body.behind(r)?, self.stride));
         let heated: Result<Vec<Recording>> = self.recordings.iter().map(thinned).collect();

@@ -1,5 +1,167 @@
-//! Identifies the stages in front of the operators, together with the weights. `body` is the
-//! thermal body; `nelder_mead` is its search.
+//! Identifies the stages around the operators, together with the weights.
+//!
+//! `body` is the thermal body, `load` the shift by the load, `spacing` the place of the levels,
+//! `after` creep and lag. Each finds its constants and hands on recordings as the next stage sees
+//! them. `nelder_mead` is the search of the body.
 
-pub(super) mod body;
+mod after;
+mod body;
+mod load;
 mod nelder_mead;
+mod spacing;
+
+use crate::error::Result;
+use crate::identify::history::find_start;
+use crate::identify::options::{FitOptions, LoadLaw, Spacing};
+use crate::identify::weights::experiment::plane_of_all;
+use crate::identify::weights::fit::fit_weights;
+use crate::model::{Found, LoadShift, Model, Plane, Start, Surroundings, Validation};
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::{Errors, range};
+use hysteron_core::Axis;
+use serde_json::json;
+use std::borrow::Cow;
+
+/// Chooses levels, smoothness and replicates for recordings as the operators see them.
+type Chosen<'a> = &'a dyn Fn(&[Recording], &FitOptions) -> Result<(FitOptions, Option<Validation>)>;
+
+/// Identifies stages and weights. With `body`, a thermal body too.
+pub(crate) fn fit(
+    recordings: &[Recording],
+    options: &FitOptions,
+    body: bool,
+    chosen: Chosen<'_>,
+    progress: Progress<'_>,
+) -> Result<Model> {
+    let mut found = Found::default();
+    let mut notes = std::collections::BTreeMap::new();
+    let mut seen: Cow<'_, [Recording]> = Cow::Borrowed(recordings);
+    if body {
+        let (first_order, told_apart) = body::find(recordings, options, progress)?;
+        let heated = recordings
+            .iter()
+            .map(|recording| first_order.behind(recording));
+        seen = Cow::Owned(heated.collect::<Result<_>>()?);
+        found.thermal = Some(first_order);
+        let ranges = recordings.iter().map(|recording| range(&recording.input));
+        found.drive = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        notes.insert("thermal".to_owned(), json!({"told_apart": told_apart}));
+    }
+    let mut options = options.clone();
+    let loaded = seen.iter().any(|recording| recording.load.is_some());
+    if loaded && options.load_law == LoadLaw::Shift {
+        let law = load::find(&seen, &options, progress)?;
+        options.load_degree = Some(law.degree);
+        seen = Cow::Owned(load::behind(&law.shift, &seen));
+        notes.insert("load".to_owned(), json!(law.report));
+        found.shift = Some(law.shift);
+    }
+    let (mut options, validation) = chosen(&seen, &options)?;
+    if options.spacing == Spacing::Auto {
+        let plane = plane_of_all(&seen, &options)?;
+        found.spacing = spacing::corners(&seen, &plane);
+        options.range = Some((plane.min(), plane.max()));
+        seen = Cow::Owned(spacing::behind(&found.spacing, &plane, &seen));
+    }
+    if options.creep != crate::identify::Choice::Fixed(0)
+        || options.lag != crate::identify::Choice::Fixed(0.0)
+    {
+        let (after, report) = after::find(&seen, &options, progress)?;
+        notes.insert("after".to_owned(), json!(report));
+        seen = Cow::Owned(after::before(&after, &seen)?);
+        found.after = after;
+    }
+    let changed = !found.after.taus.is_empty() || found.after.lag > 0.0;
+    let mut model = fit_weights(&seen, &options, progress)?.with_stages(found)?;
+    if options.start == Start::Unknown && recordings.len() == 1 && model.load.is_none() {
+        model = with_found_start(model, &seen[0], &recordings[0], &mut notes)?;
+    }
+    if changed && options.start != Start::Unknown {
+        refresh_errors(&mut model, recordings, options.start)?;
+    }
+    if let Some(fit) = &mut model.fit {
+        fit.validation = validation;
+        fit.other.extend(notes);
+    }
+    Ok(model)
+}
+
+/// Keeps the state that explains the beginning of the recording, and says how well the model then
+/// simulates the recording.
+fn with_found_start(
+    model: Model,
+    _seen: &Recording,
+    recording: &Recording,
+    notes: &mut std::collections::BTreeMap<String, serde_json::Value>,
+) -> Result<Model> {
+    let (start, samples) = find_start(&model, recording)?;
+    let model = model.with_start(Some(start))?;
+    let around = Surroundings::of(&model, recording);
+    let simulated = model.simulate_in(&recording.input, around)?;
+    if let Some(errors) = Errors::between(&recording.output, &simulated, |_| true) {
+        let said = json!({
+            "samples": samples,
+            "rmse": errors.rmse,
+            "nrmse_percent": errors.nrmse_percent,
+        });
+        notes.insert("start_found".into(), said);
+    }
+    Ok(model)
+}
+
+/// Creep and lag act after the fit of the weights: the errors are those of the whole model.
+fn refresh_errors(model: &mut Model, recordings: &[Recording], start: Start) -> Result<()> {
+    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
+    for recording in recordings {
+        let mut state = match start {
+            Start::On => model.saturated(),
+            _ => model.off(),
+        };
+        let mut output = vec![0.0; recording.len()];
+        let around = Surroundings::of(model, recording);
+        model.run_in(&mut state, &recording.input, around, &mut output)?;
+        modelled.extend(output);
+        measured.extend_from_slice(&recording.output);
+    }
+    if let (Some(fit), Some(errors)) = (
+        &mut model.fit,
+        Errors::between(&measured, &modelled, |_| true),
+    ) {
+        fit.rmse = errors.rmse;
+        fit.max_abs = errors.max_abs;
+        fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
+    }
+    Ok(())
+}
+
+/// The recordings with another input.
+fn with_inputs(recordings: &[Recording], input: impl Fn(&Recording) -> Vec<f64>) -> Vec<Recording> {
+    let with = |recording: &Recording| Recording {
+        input: input(recording),
+        ..recording.clone()
+    };
+    recordings.iter().map(with).collect()
+}
+
+/// The inputs of a recording behind shift and spacing. Without a shift the load does not matter.
+fn through_axis(
+    shift: Option<&LoadShift>,
+    spacing: &[f64],
+    plane: &Plane,
+    recording: &Recording,
+) -> Vec<f64> {
+    let plain = Axis {
+        spacing,
+        ..Axis::PLAIN
+    };
+    let axis = shift.map_or(plain, |shift| shift.axis(spacing));
+    let loads = recording.load.as_deref();
+    let inputs = recording.input.iter().enumerate();
+    inputs
+        .map(|(n, &t)| match axis.at(loads.map(|loads| loads[n])) {
+            Ok(placed) => axis.forward(plane, placed, t),
+            Err(_) => f64::NAN,
+        })
+        .collect()
+}

@@ -23,6 +23,8 @@ pub(crate) struct Experiment {
     pub(crate) load_range: Option<(f64, f64)>,
     /// Functions of the load at each sample; a single constant 1 without a load.
     pub(crate) parts: Vec<Vec<f64>>,
+    /// The same for the offset, whose order is at least 1.
+    pub(crate) offsets: Vec<Vec<f64>>,
 }
 
 impl Experiment {
@@ -43,6 +45,7 @@ impl Experiment {
             branch: Vec::new(),
             load_range: None,
             parts: Vec::new(),
+            offsets: Vec::new(),
         };
         let mut load = first.load.as_ref().map(|_| Vec::new());
         for recording in recordings {
@@ -63,7 +66,10 @@ impl Experiment {
         }
         experiment.find_branches();
         match load {
-            None => experiment.parts = vec![vec![1.0; experiment.input.len()]],
+            None => {
+                experiment.parts = vec![vec![1.0; experiment.input.len()]];
+                experiment.offsets = experiment.parts.clone();
+            }
             Some(load) => {
                 let (low, high) = range(&load);
                 // Loads that differ only by rounding are one load.
@@ -73,7 +79,7 @@ impl Experiment {
                          fit without it"
                     )));
                 }
-                let (loads, degree) = (different(&load), options.load_degree);
+                let (loads, degree) = (different(&load), options.load_degree.unwrap_or(1));
                 if loads <= degree {
                     let what = format!(
                         "{loads} different loads cannot tell weights of order {degree} in the load"
@@ -83,16 +89,10 @@ impl Experiment {
                     return Err(Error::Fit(what).remedied(remedy));
                 }
                 experiment.load_range = Some((low, high));
-                let functions = load
-                    .iter()
-                    .map(|f| bernstein(options.load_degree, (f - low) / (high - low)));
-                let mut parts = vec![Vec::with_capacity(load.len()); options.load_degree + 1];
-                for values in functions {
-                    for (part, value) in parts.iter_mut().zip(values) {
-                        part.push(value);
-                    }
-                }
-                experiment.parts = parts;
+                let share = |load: &f64| (load - low) / (high - low);
+                let of_order = |degree| functions(load.iter().map(share), degree);
+                experiment.parts = of_order(degree);
+                experiment.offsets = of_order(degree.max(1));
             }
         }
         Ok(experiment)
@@ -176,6 +176,17 @@ impl Experiment {
     }
 }
 
+/// The Bernstein polynomials of a degree at each of the shares of the load range.
+fn functions(shares: impl Iterator<Item = f64>, degree: usize) -> Vec<Vec<f64>> {
+    let mut functions = vec![Vec::new(); degree + 1];
+    for share in shares {
+        for (function, value) in functions.iter_mut().zip(bernstein(degree, share)) {
+            function.push(value);
+        }
+    }
+    functions
+}
+
 /// Number of loads that differ by more than a thousandth of their range.
 fn different(load: &[f64]) -> usize {
     let mut sorted = load.to_vec();
@@ -226,6 +237,11 @@ pub fn plane_of(recording: &Recording, levels: usize) -> Result<Plane> {
     })?;
     let (low, high) = range(&recording.input);
     active_plane(low, high, levels)
+}
+
+/// The plane of a fit with these options to all the recordings.
+pub(crate) fn plane_of_all(recordings: &[Recording], options: &FitOptions) -> Result<Plane> {
+    Experiment::new(recordings, options)?.plane(recordings, options)
 }
 
 fn active_plane(low: f64, high: f64, levels: usize) -> Result<Plane> {

@@ -3,14 +3,12 @@
 //! `experiment` joins the recordings and `problem` sets up the fit. `sparse` and `rows` apply the
 //! regressor of one recording without forming it; `regressor` combines recordings, starts and
 //! loads. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`. `initial` estimates the start state for a
-//! known model.
+//! equations with `nnls`, `pivoting` and `cholesky`.
 
 pub(super) mod cholesky;
 pub(super) mod experiment;
 pub(super) mod fit;
 pub(super) mod free;
-pub(super) mod initial;
 pub(super) mod nnls;
 pub(super) mod pivoting;
 pub(super) mod problem;

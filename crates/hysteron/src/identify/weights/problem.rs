@@ -62,14 +62,14 @@ impl Problem {
     pub(crate) fn free(&self, kept: Option<&[f64]>) -> Result<FreeColumns> {
         match self.options.offset {
             Some(_) => Ok(FreeColumns::none()),
-            None => FreeColumns::new(&self.experiment.parts, kept),
+            None => FreeColumns::new(&self.experiment.offsets, kept),
         }
     }
 
     /// `A x` plus the free columns at every sample, whether it was kept or not.
     pub(crate) fn predict(&self, solution: &Solution) -> Result<Vec<f64>> {
         let mut output = self.regressor.forward(&self.experiment, &solution.x)?;
-        for (part, value) in self.experiment.parts.iter().zip(&solution.free) {
+        for (part, value) in self.experiment.offsets.iter().zip(&solution.free) {
             output
                 .iter_mut()
                 .zip(part)
@@ -81,7 +81,12 @@ impl Problem {
     /// Offset and weights for each function of the load, converted from states in `[0, 1]` to the
     /// operator's own outputs.
     pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
-        let weights = self.regressor.weights(x).into_iter().enumerate();
+        let mut weights = self.regressor.weights(x);
+        // Weights that do not depend on the load are the same in each part of the offset.
+        if let ([constant], true) = (weights.as_slice(), self.experiment.load_range.is_some()) {
+            weights = vec![constant.clone(); self.experiment.offsets.len()];
+        }
+        let weights = weights.into_iter().enumerate();
         let part = |(part, mut weights): (usize, Vec<f64>)| {
             let identified = sign.factor() * free.get(part).copied().unwrap_or(0.0);
             let mut offset = self.options.offset.unwrap_or(identified);
@@ -201,9 +206,15 @@ fn check(options: &FitOptions) -> Result<()> {
             "the smoothness {smooth} is not between 0 and 1e6"
         )));
     }
-    if *load_degree > 5 {
+    if options.start == Start::Fitted {
+        return Err(Error::Fit(
+            "a fit finds the start, and cannot begin from a fitted one: take off, on or unknown"
+                .into(),
+        ));
+    }
+    if let Some(degree) = load_degree.filter(|degree| *degree > 5) {
         return Err(Error::Fit(format!(
-            "weights of order {load_degree} in the load: take 5 at most"
+            "weights of order {degree} in the load: take 5 at most"
         )));
     }
     if *bootstrap > 10_000 {

@@ -1,0 +1,222 @@
+//! Identifies creep and lag after the operators, where they predict parts of the recordings that
+//! were left out.
+
+use crate::error::{Error, Result};
+use crate::identify::options::{Choice, FitOptions};
+use crate::identify::weights::problem::Problem;
+use crate::model::{After, CreepTerm, Model, Operators, needs_time};
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::range;
+use hysteron_core::MAX_CREEP;
+use serde::Serialize;
+
+/// Each recording is divided into this many blocks of time; those with an odd number are left out
+/// first, then the others.
+const BLOCKS: usize = 6;
+
+/// Creep and lag have to reduce the error on blocks left out by this share.
+const WORTH: f64 = 0.02;
+
+/// Coefficients of creep that are tried, for all terms together, and lags in sampling steps.
+const COEFFICIENTS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
+const LAGS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
+
+/// Terms that are tried by `auto`.
+const TERMS: [usize; 3] = [1, 2, 3];
+
+/// What was tried, for the model file.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Report {
+    /// Error on blocks left out without creep and lag, in percent of the range.
+    without: f64,
+    /// The same with the creep and the lag taken.
+    with: f64,
+}
+
+pub(super) fn find(
+    recordings: &[Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<(After, Report)> {
+    if let Choice::Fixed(count) = options.creep
+        && count > MAX_CREEP
+    {
+        return Err(Error::Fit(format!(
+            "{count} creep terms: take {MAX_CREEP} at most"
+        )));
+    }
+    if let Choice::Fixed(lag) = options.lag
+        && !(lag >= 0.0 && lag.is_finite())
+    {
+        return Err(Error::Fit(format!(
+            "a lag of {lag} s: it must be a finite number from 0 on"
+        )));
+    }
+    let search = Search::new(recordings, options, progress)?;
+    let without = search.rated(&After::default())?;
+    let (mut best, mut least) = (After::default(), without);
+    let lags = match options.lag {
+        Choice::Fixed(lag) => vec![lag],
+        Choice::Auto => LAGS.iter().map(|steps| steps * search.step).collect(),
+    };
+    for lag in lags.into_iter().filter(|lag| *lag > 0.0) {
+        let after = After::new(&[], lag);
+        let error = search.rated(&after)?;
+        if matches!(options.lag, Choice::Fixed(_)) || error < (1.0 - WORTH) * least {
+            (best, least) = (after, error);
+        }
+    }
+    let lag = best.lag;
+    let counts = match options.creep {
+        Choice::Fixed(count) => vec![count],
+        Choice::Auto => TERMS.to_vec(),
+    };
+    // A number of terms that was asked for is taken with its best coefficients.
+    let mut bar = match options.creep {
+        Choice::Fixed(_) => f64::INFINITY,
+        Choice::Auto => (1.0 - WORTH) * least,
+    };
+    for count in counts.into_iter().filter(|count| *count > 0) {
+        for coefficient in COEFFICIENTS {
+            let after = After::new(&search.terms(count, coefficient), lag);
+            let error = search.rated(&after)?;
+            if error < bar {
+                (best, least, bar) = (after, error, error);
+            }
+        }
+    }
+    Ok((
+        best,
+        Report {
+            without,
+            with: least,
+        },
+    ))
+}
+
+/// The recordings with the output as it was before creep and lag.
+pub(super) fn before(after: &After, recordings: &[Recording]) -> Result<Vec<Recording>> {
+    let around = around(after, recordings)?;
+    let undone = |recording: &Recording| {
+        Ok(Recording {
+            output: around.before_creep(recording)?,
+            ..recording.clone()
+        })
+    };
+    recordings.iter().map(undone).collect()
+}
+
+/// A model of any operators with creep and lag.
+fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
+    let plane = crate::identify::plane_of(&recordings[0], 2)?;
+    let operator = hysteron_core::Operator::Mkp;
+    let operators = Operators::new(operator, plane, vec![0.0; 3], 0.0, Default::default())?;
+    Model::from(operators).with_after(&after.terms(), after.lag)
+}
+
+struct Search<'a> {
+    recordings: &'a [Recording],
+    options: FitOptions,
+    progress: Progress<'a>,
+    /// Sampling step, and the time that the longest recording takes.
+    step: f64,
+    longest: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        recordings: &'a [Recording],
+        options: &FitOptions,
+        progress: Progress<'a>,
+    ) -> Result<Self> {
+        let (mut step, mut longest) = (f64::INFINITY, 0.0_f64);
+        for recording in recordings {
+            let (start, end) = range(recording.time.as_ref().ok_or_else(needs_time)?);
+            step = step.min((end - start) / recording.len().max(2).saturating_sub(1) as f64);
+            longest = longest.max(end - start);
+        }
+        if !(step > 0.0) {
+            let what = "time does not pass in a recording, so creep and lag cannot be identified";
+            return Err(Error::Thermal(what.into()));
+        }
+        let options = FitOptions {
+            bootstrap: 0,
+            ..options.clone()
+        };
+        Ok(Self {
+            recordings,
+            options,
+            progress,
+            step,
+            longest,
+        })
+    }
+
+    /// Terms with time constants spread evenly over the logarithm, from ten samples to a third of
+    /// the recording.
+    fn terms(&self, count: usize, coefficient: f64) -> Vec<CreepTerm> {
+        let (from, to) = ((10.0 * self.step).ln(), (self.longest / 3.0).ln());
+        let tau = |k: usize| (from + (to - from) * (k as f64 + 0.5) / count as f64).exp();
+        let term = |k| CreepTerm {
+            coefficient: coefficient / count as f64,
+            tau: tau(k),
+        };
+        (0..count).map(term).collect()
+    }
+
+    /// The error on blocks of time left out, in percent of the range.
+    fn rated(&self, after: &After) -> Result<f64> {
+        self.progress.tell("creep and lag", f64::NAN)?;
+        let seen = before(after, self.recordings)?;
+        let mut problem = Problem::new(&seen, &self.options)?;
+        let blocks: Vec<usize> = seen
+            .iter()
+            .flat_map(|recording| (0..recording.len()).map(|n| n * BLOCKS / recording.len()))
+            .collect();
+        let measured: Vec<f64> = self
+            .recordings
+            .iter()
+            .flat_map(|recording| recording.output.clone())
+            .collect();
+        let mut squares = 0.0;
+        for parity in 0..2 {
+            let kept: Vec<f64> = blocks.iter().map(|b| f64::from(b % 2 != parity)).collect();
+            let fitted = problem.solve(Some(&kept), Progress::NONE)?;
+            let predicted = problem.predict(&fitted.solution)?;
+            let sign = fitted.sign.factor();
+            let offset = self.options.offset.unwrap_or(0.0);
+            let sums: Vec<f64> = predicted.iter().map(|h| offset + sign * h).collect();
+            let outputs = self.forward(after, &sums)?;
+            squares += outputs
+                .iter()
+                .zip(&measured)
+                .zip(&blocks)
+                .filter(|(_, block)| **block % 2 == parity)
+                .map(|((h, y), _)| (h - y).powi(2))
+                .sum::<f64>();
+        }
+        let (low, high) = range(&measured);
+        Ok(100.0 * (squares / measured.len() as f64).sqrt() / (high - low))
+    }
+
+    /// Outputs after creep and lag, from those of the operators.
+    fn forward(&self, after: &After, sums: &[f64]) -> Result<Vec<f64>> {
+        let model = around(after, self.recordings)?;
+        let stages = model.stages();
+        let mut output = Vec::with_capacity(sums.len());
+        let mut from = 0;
+        for recording in self.recordings {
+            let time = recording.time.as_ref().ok_or_else(needs_time)?;
+            let mut past = None;
+            for n in 0..recording.len() {
+                let dt = time[n] - time[n.saturating_sub(1)];
+                let (y, next) = stages.after(past, dt, sums[from + n]);
+                past = Some(next);
+                output.push(y);
+            }
+            from += recording.len();
+        }
+        Ok(output)
+    }
+}

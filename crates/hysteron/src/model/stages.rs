@@ -1,0 +1,137 @@
+//! The stages of a model, in the form that the core runs.
+
+use crate::error::{Error, Result};
+use crate::model::after::After;
+use crate::model::{CreepTerm, Model, Sample};
+use hysteron_core::{Axis, StageState, Stages};
+
+impl Model {
+    /// The stages around the operators. The offset is that of the operators; with a load, that of
+    /// the middle of its range.
+    pub(crate) fn stages(&self) -> Stages<'_, f64> {
+        let shift = self.load.as_ref().and_then(|load| load.shift.as_ref());
+        let plain = Axis {
+            spacing: &self.spacing,
+            ..Axis::PLAIN
+        };
+        Stages {
+            body: self.thermal.map(|body| body.core()),
+            axis: shift.map_or(plain, |shift| shift.axis(&self.spacing)),
+            creep: self.after.creep(),
+            lag: self.after.lag,
+            offset: self.offset(),
+            falling: self.sign().factor() < 0.0,
+        }
+    }
+
+    /// Checks the constants of all stages.
+    pub(crate) fn check_stages(&self) -> Result<()> {
+        Ok(self.stages().check(&self.operators().core)?)
+    }
+
+    /// Whether the model has no stage: its output depends on the input alone.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.load.is_none()
+            && self.thermal.is_none()
+            && self.spacing.is_empty()
+            && self.after.is_none()
+    }
+
+    /// Whether a stage depends on time: each sample then needs the time since the one before.
+    #[must_use]
+    pub fn is_timed(&self) -> bool {
+        self.stages().is_timed()
+    }
+
+    /// The inputs at the `K + 1` corners of the grid, ascending: level 0, which is the bottom of
+    /// the plane, to level `K`. Empty for levels with equal distances.
+    #[must_use]
+    pub fn spacing(&self) -> &[f64] {
+        &self.spacing
+    }
+
+    /// The same model with its levels at these inputs. The plane then numbers the levels; the
+    /// weights stay.
+    ///
+    /// # Errors
+    /// [`Error::Core`] if there are not `K + 1` ascending corners; empty for equal distances.
+    pub fn with_spacing(mut self, corners: Vec<f64>) -> Result<Self> {
+        self.spacing = corners;
+        self.check_stages()?;
+        Ok(self)
+    }
+
+    /// The terms of the creep after the operators.
+    #[must_use]
+    pub fn creep(&self) -> Vec<CreepTerm> {
+        self.after.terms()
+    }
+
+    /// Time constant of the lag after the operators, in seconds; 0 for none.
+    #[must_use]
+    pub fn lag(&self) -> f64 {
+        self.after.lag
+    }
+
+    /// The same model with creep and lag after the operators.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for more than [`hysteron_core::MAX_CREEP`] terms, a negative coefficient, a
+    /// time constant that is not above zero, and a negative lag.
+    pub fn with_after(mut self, creep: &[CreepTerm], lag: f64) -> Result<Self> {
+        self.after = After::new(creep, lag);
+        self.check_stages()?;
+        Ok(self)
+    }
+
+    /// The input where the operators are at their lowest and at their highest: the temperature
+    /// with a body, at the middle load with a load.
+    #[must_use]
+    pub fn active_range(&self) -> (f64, f64) {
+        let plane = self.plane();
+        let (low, high) = match self.spacing.as_slice() {
+            [low, .., high] => (*low, *high),
+            _ => (plane.bottom(), plane.max()),
+        };
+        let Some(load) = &self.load else {
+            return (low, high);
+        };
+        let (from, to) = load.range();
+        let middle = 0.5 * (from + to);
+        let (scale, shift) = load.shift.as_ref().map_or((1.0, 0.0), |law| law.at(middle));
+        ((low + shift) / scale, (high + shift) / scale)
+    }
+
+    /// The range of the drive if none is given: that of the drives fitted. Without a record of
+    /// them it ends at the drives that hold the lowest and the highest level. A model without a
+    /// thermal body has no limits.
+    #[must_use]
+    pub fn drive_range(&self) -> (f64, f64) {
+        let Some(body) = self.thermal else {
+            return (f64::NEG_INFINITY, f64::INFINITY);
+        };
+        let (low, high) = self.active_range();
+        let body = body.core();
+        self.drive
+            .unwrap_or_else(|| (body.hold(low), body.hold(high)))
+    }
+
+    /// Whether time and load of a sample can be, whatever the state is.
+    pub(crate) fn accepts(&self, sample: Sample) -> Result<()> {
+        let accepted = self.stages().accepts(&StageState::default(), sample);
+        accepted.map_err(|error| self.worded(error))?;
+        match (&self.load, sample.load) {
+            (Some(dependence), Some(load)) => dependence.factors(load).map(|_| ()),
+            _ => Ok(()),
+        }
+    }
+
+    /// The error of the core in words that name the model's stage.
+    pub(crate) fn worded(&self, error: hysteron_core::Error) -> Error {
+        match error {
+            hysteron_core::Error::TimeStep => crate::model::needs_time(),
+            other => other.into(),
+        }
+    }
+}

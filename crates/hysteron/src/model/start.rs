@@ -1,0 +1,57 @@
+//! The state that a model starts from.
+
+use crate::error::Result;
+use crate::model::{Model, State};
+use serde::{Deserialize, Serialize};
+
+/// The state of the operators that was found before the first sample of the recording fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object in braces")]
+pub struct FittedStart {
+    /// The turning points, normalised to `[0, K]` ([`State::turning_points`]).
+    pub turning_points: Vec<f64>,
+    /// The input of the operators.
+    pub input: f64,
+}
+
+impl Model {
+    /// The state that the model starts from: the one found by its fit, or else every operator off.
+    /// Body, creep and lag are at rest with the first input.
+    #[must_use]
+    pub fn start(&self) -> State {
+        self.fitted().unwrap_or_else(|| self.off())
+    }
+
+    /// The state that the fit found before the first sample; `None` if there is none.
+    #[must_use]
+    pub fn fitted(&self) -> Option<State> {
+        let start = self.start.as_ref()?;
+        let operators = self.operators().restore(&start.turning_points, start.input);
+        Some(State::new(self, operators.ok()?))
+    }
+
+    /// A state with every operator off.
+    #[must_use]
+    pub fn off(&self) -> State {
+        State::new(self, self.operators().start())
+    }
+
+    /// A state with every operator on, at the top of the plane.
+    #[must_use]
+    pub fn saturated(&self) -> State {
+        State::new(self, self.operators().saturated())
+    }
+
+    /// The same model, which starts where `start` says.
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] for turning points that are not nested.
+    pub fn with_start(mut self, start: Option<FittedStart>) -> Result<Self> {
+        if let Some(start) = &start {
+            self.operators()
+                .restore(&start.turning_points, start.input)?;
+        }
+        self.start = start;
+        Ok(self)
+    }
+}

@@ -1,0 +1,100 @@
+//! A recording as the operators see it, without the stages around them. What learns weights works
+//! on such a recording, and its result goes back between the stages.
+
+use crate::error::{Error, Result};
+use crate::model::after::After;
+use crate::model::{FirstOrder, LoadShift, Model, Operators, Surroundings};
+use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
+use std::borrow::Cow;
+
+/// The stages that a fit found.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Found {
+    pub(crate) thermal: Option<FirstOrder>,
+    pub(crate) drive: Option<(f64, f64)>,
+    pub(crate) shift: Option<LoadShift>,
+    pub(crate) spacing: Vec<f64>,
+    pub(crate) after: After,
+}
+
+impl Model {
+    /// The model of the operators alone.
+    #[must_use]
+    pub(crate) fn within(&self) -> Self {
+        let mut model = Self::from(self.operators().clone());
+        model.input = self.input.clone();
+        model.output = self.output.clone();
+        model.fit = self.fit.clone();
+        model.start = self.start.clone();
+        model
+    }
+
+    /// The recording as [`Model::within`] sees it: its input behind body, load and spacing, its
+    /// output before creep and lag. For a model at one load.
+    ///
+    /// # Errors
+    /// As [`Model::run_in`]; [`Error::Thermal`] where time stands still and the model has a lag.
+    pub(crate) fn recording_within<'r>(
+        &self,
+        recording: &'r Recording,
+    ) -> Result<Cow<'r, Recording>> {
+        if self.is_plain() {
+            return Ok(Cow::Borrowed(recording));
+        }
+        let around = Surroundings::of(self, recording);
+        Ok(Cow::Owned(Recording {
+            input: self.seen(&recording.input, around)?.into_owned(),
+            output: self.before_creep(recording)?,
+            load: None,
+            ..recording.clone()
+        }))
+    }
+
+    /// The same model, with the stages that its fit found.
+    pub(crate) fn with_stages(mut self, found: Found) -> Result<Self> {
+        self.thermal = found.thermal;
+        self.drive = found.drive;
+        if let Some(load) = &mut self.load {
+            load.shift = found.shift;
+        }
+        self.spacing = found.spacing;
+        self.after = found.after;
+        self.check_stages()?;
+        Ok(self)
+    }
+
+    /// The same stages around other operators.
+    #[must_use]
+    pub(crate) fn around(&self, operators: Operators) -> Self {
+        let mut model = self.clone();
+        model.operators = operators;
+        model
+    }
+
+    /// The measured output without creep and lag: what the operators must have given.
+    pub(crate) fn before_creep(&self, recording: &Recording) -> Result<Vec<f64>> {
+        let stages = self.stages();
+        if self.after.is_none() {
+            return Ok(recording.output.clone());
+        }
+        let time = recording
+            .time
+            .as_ref()
+            .ok_or_else(crate::model::needs_time)?;
+        let mut past = None;
+        let measured = recording.output.iter().enumerate();
+        let sums = measured.map(|(n, &y)| {
+            let dt = time[n] - time[n.saturating_sub(1)];
+            let (h, next) = stages.undo_after(past, dt, y);
+            past = Some(next);
+            h.is_finite().then_some(h).ok_or_else(|| {
+                let what =
+                    "time stands still in the recording, which a model with a lag cannot have";
+                let remedy = Remedy::new("repair it ({})", [Setting::any("repair")]);
+                Error::Thermal(what.into()).remedied(remedy)
+            })
+        });
+        sums.collect()
+    }
+}
