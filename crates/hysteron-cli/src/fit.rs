@@ -190,31 +190,34 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
 /// What the load does.
 fn load_line(model: &Model) -> Option<String> {
     let load = model.load.as_ref()?;
-    let shift = load.shift.as_ref()?;
+    let curves = load.curves.as_ref()?;
     let unit = |quantity: &hysteron::Quantity| {
-        quantity
-            .unit
-            .clone()
-            .unwrap_or_else(|| quantity.name.clone())
+        let name = || quantity.name.clone();
+        quantity.unit.clone().unwrap_or_else(name)
     };
-    let scaled = match shift.scales.is_empty() {
-        true => "",
-        false => ", which is also scaled",
-    };
+    let (input, weight) = (unit(&model.input), unit(&load.quantity));
+    let [low, high] = [load.range().0, load.range().1].map(text::number);
     // The field states the slope of the phase diagram: load per temperature.
-    let slope = shift.slope();
+    let slope = match curves.slope() {
+        0.0 => "does not shift the axis".into(),
+        slope => format!(
+            "shifts the axis by {} {input}/{weight} ({} {weight}/{input})",
+            text::number(slope),
+            text::number(1.0 / slope),
+        ),
+    };
+    let scaled = if curves.scales.is_empty() {
+        ""
+    } else {
+        ", scales it"
+    };
+    let weights = match (curves.gains.is_empty(), load.weights_order()) {
+        (false, _) => "changes stroke and offset".into(),
+        (true, order) => format!("changes the weights with order {order}"),
+    };
+    let name = &load.quantity.name;
     Some(format!(
-        "{} from {} to {}: it shifts the axis by {} {}/{} ({} {}/{}){scaled}; weights of order {}",
-        load.quantity.name,
-        text::number(load.range().0),
-        text::number(load.range().1),
-        text::number(slope),
-        unit(&model.input),
-        unit(&load.quantity),
-        text::number(1.0 / slope),
-        unit(&load.quantity),
-        unit(&model.input),
-        load.weights_order(),
+        "{name} from {low} to {high}: it {slope}{scaled}, and {weights}"
     ))
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn run(args: &args::Prepare) -> Result<()> {
         ..Columns::new(&args.input, &args.output)
     };
     let (recording, others) = recording::read_with_others(&args.data, columns, &args.repair)?;
-    let options = options(&args.steps, PrepareOptions::default());
+    let options = options(&args.steps, args.sensor_lag, PrepareOptions::default());
     let (prepared, report) = hysteron::prepare(&recording, &options, hysteron::Progress::NONE)?;
     let rate = hysteron::rate_dependence(&prepared)?;
     let left_out = others.write_to(&prepared, recording.time.as_deref(), table)?;
@@ -59,7 +59,7 @@ pub(crate) fn before_fit(
         true => PrepareOptions::default(),
         false => PrepareOptions::all(Step::Off),
     };
-    let options = options(&args.steps, defaults);
+    let options = options(&args.steps, args.sensor_lag, defaults);
     let (recording, report) = match options == PrepareOptions::all(Step::Off) {
         true => (recording, None),
         false => {
@@ -82,12 +82,12 @@ fn is_material(rate: &Option<RateDependence>) -> Option<bool> {
     rate.as_ref().map(RateDependence::is_material)
 }
 
-fn options(steps: &args::Steps, defaults: PrepareOptions) -> PrepareOptions {
+fn options(steps: &args::Steps, lag: Option<Step>, defaults: PrepareOptions) -> PrepareOptions {
     PrepareOptions {
         spikes: steps.spikes.unwrap_or(defaults.spikes),
         resample: steps.resample.unwrap_or(defaults.resample),
         low_pass: steps.low_pass.unwrap_or(defaults.low_pass),
-        lag: steps.lag.unwrap_or(defaults.lag),
+        lag: lag.unwrap_or(defaults.lag),
         dead_band: steps.dead_band.unwrap_or(defaults.dead_band),
     }
 }

@@ -56,6 +56,8 @@ pub use operator::{Operator, mkp, relay, ridge};
 pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
-pub use stages::{Axis, Body, Creep, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted, mix};
+pub use stages::{
+    Axis, Body, Creep, Load, Loaded, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted, mix,
+};
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

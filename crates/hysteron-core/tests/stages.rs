@@ -5,7 +5,7 @@ mod common;
 
 use common::{OPERATORS, build, build_f32, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Axis, Body, Creep, Definition, Direction, Error, Model, Operator, Plane, Real, Sample,
+    Axis, Body, Creep, Definition, Direction, Error, Load, Model, Operator, Plane, Real, Sample,
     StageState, Stages, Status, Target, Turn, Wanted, mix, table_len, turn_capacity,
 };
 use rand::RngExt;
@@ -18,6 +18,8 @@ struct Constants {
     loads: Vec<f64>,
     shifts: Vec<f64>,
     scales: Vec<f64>,
+    gains: Vec<f64>,
+    offsets: Vec<f64>,
     spacing: Vec<f64>,
     coefficients: Vec<f64>,
     taus: Vec<f64>,
@@ -55,12 +57,14 @@ impl Constants {
         };
         let shifts = numbers(count, -0.2 * span, 0.2 * span);
         let scales = numbers(count, 0.7, 1.4);
+        let gains = numbers(count, 0.3, 3.0);
+        let offsets = numbers(count, -4.0, 4.0);
         let coefficients = numbers(creeps, 0.0, 0.2);
         let taus = numbers(creeps, 0.05, 20.0);
         let body = numbers(4, 0.3, 3.0);
         let offset = numbers(1, -5.0, 5.0)[0];
         let lag = numbers(1, 0.01, 1.0)[0];
-        let (spaced, scaled) = (rng.random(), rng.random());
+        let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
         let corners = plane.levels() + 1;
         Self {
             body: rng
@@ -69,6 +73,8 @@ impl Constants {
             loads: ascending(rng, count, -3.0, 10.0),
             shifts,
             scales: if scaled { scales } else { Vec::new() },
+            gains: if gained { gains } else { Vec::new() },
+            offsets: if gained { offsets } else { Vec::new() },
             spacing: match spaced {
                 true => ascending(rng, corners, plane.bottom(), span),
                 false => Vec::new(),
@@ -96,6 +102,8 @@ impl Constants {
                 &self.loads,
                 &self.shifts,
                 &self.scales,
+                &self.gains,
+                &self.offsets,
                 &self.spacing,
                 &self.coefficients,
                 &self.taus,
@@ -110,7 +118,7 @@ impl Constants {
 
 struct Owned<T> {
     body: Option<Body<T>>,
-    lists: [Vec<T>; 6],
+    lists: [Vec<T>; 8],
     lag: T,
     offset: T,
     falling: bool,
@@ -118,13 +126,26 @@ struct Owned<T> {
 
 impl<T: Real> Owned<T> {
     fn stages(&self) -> Stages<'_, T> {
-        let [loads, shifts, scales, spacing, coefficients, taus] = &self.lists;
+        let [
+            loads,
+            shifts,
+            scales,
+            gains,
+            offsets,
+            spacing,
+            coefficients,
+            taus,
+        ] = &self.lists;
         Stages {
             body: self.body,
             axis: Axis {
-                loads,
-                shifts,
-                scales,
+                load: Load {
+                    loads,
+                    shifts,
+                    scales,
+                    gains,
+                    offsets,
+                },
                 spacing,
             },
             creep: Creep { coefficients, taus },
@@ -201,7 +222,7 @@ fn the_chain_is_its_formulas() {
                 let levels: Vec<f64> = (0..=k).map(|n| plane.level(n)).collect();
                 x = line(&constants.spacing, &levels, x);
             }
-            let h = plain.step(x).unwrap();
+            let h = of(&constants.gains, 1.0) * plain.step(x).unwrap();
             if crept.is_empty() {
                 crept = vec![h; constants.taus.len()];
             }
@@ -221,7 +242,8 @@ fn the_chain_is_its_formulas() {
             };
             let y = sum + (lagged.unwrap_or(sum) - sum) * fade;
             lagged = Some(y);
-            let expected = constants.offset + if constants.falling { -y } else { y };
+            let shifted = constants.offset + of(&constants.offsets, 0.0);
+            let expected = shifted + if constants.falling { -y } else { y };
             // The slope of the output is up to the sum of the weights for a tenth of a cell, and
             // positions have rounding of some ulps.
             assert!(
@@ -280,11 +302,13 @@ fn attack<T: Real>(
                 .unwrap();
             continue;
         }
-        let sum = off + share * (on - off);
+        let loaded = stages.axis.load.at(load).unwrap();
+        let sum = loaded.gain * (off + share * (on - off));
+        let offset = owned.offset + loaded.offset;
         let output = if owned.falling {
-            owned.offset - sum
+            offset - sum
         } else {
-            owned.offset + sum
+            offset + sum
         };
         let heading = [None, Some(Direction::Rising), Some(Direction::Falling)];
         let target = Target::new(output)
@@ -325,7 +349,9 @@ fn attack<T: Real>(
             let error = magnitude(reached.output - output);
             // Rounding of positions, times the steepest slope that the weights can have there.
             let place = magnitude(plane.max()) + magnitude(plane.bottom());
-            let size = magnitude(on) + magnitude(off) + magnitude(owned.offset);
+            let size = loaded.gain * (magnitude(on) + magnitude(off))
+                + magnitude(owned.offset)
+                + magnitude(loaded.offset);
             let slope = T::ONE + place / plane.step();
             let rounding = number(2000.0) * T::EPSILON * size * slope;
             assert!(
@@ -388,12 +414,14 @@ fn without_limits_every_target_in_range_is_met() {
         let on = case.0.total();
         for _ in 0..50 {
             let sum = rng.random_range(0.0..1.0) * on;
-            let output = if owned.falling {
-                owned.offset - sum
-            } else {
-                owned.offset + sum
-            };
             let load = Some(rng.random_range(-4.0..8.0));
+            let loaded = stages.axis.load.at(load).unwrap();
+            let (sum, offset) = (loaded.gain * sum, owned.offset + loaded.offset);
+            let output = if owned.falling {
+                offset - sum
+            } else {
+                offset + sum
+            };
             let wanted = Wanted {
                 dt: Some(0.1),
                 load,
@@ -456,9 +484,12 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     let stages = Stages {
         body: Some(body),
         axis: Axis {
-            loads: &[1.0, 2.0],
-            shifts: &[0.0, 0.5],
-            ..Axis::PLAIN
+            load: Load {
+                loads: &[1.0, 2.0],
+                shifts: &[0.0, 0.5],
+                ..Load::NONE
+            },
+            spacing: &[],
         },
         ..Stages::NONE
     };
@@ -581,7 +612,10 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     wrong(
         Stages {
             axis: Axis {
-                loads: &[2.0, 1.0],
+                load: Load {
+                    loads: &[2.0, 1.0],
+                    ..axis.load
+                },
                 ..axis
             },
             ..stages
@@ -591,7 +625,10 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     wrong(
         Stages {
             axis: Axis {
-                shifts: &[2.0],
+                load: Load {
+                    shifts: &[2.0],
+                    ..axis.load
+                },
                 ..axis
             },
             ..stages
@@ -601,7 +638,10 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     wrong(
         Stages {
             axis: Axis {
-                scales: &[1.0, 0.0],
+                load: Load {
+                    scales: &[1.0, 0.0],
+                    ..axis.load
+                },
                 ..axis
             },
             ..stages
@@ -627,6 +667,32 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
             ..stages
         },
         "spacing",
+    );
+    wrong(
+        Stages {
+            axis: Axis {
+                load: Load {
+                    gains: &[1.0, -1.0],
+                    ..axis.load
+                },
+                ..axis
+            },
+            ..stages
+        },
+        "gains",
+    );
+    wrong(
+        Stages {
+            axis: Axis {
+                load: Load {
+                    offsets: &[1.0],
+                    ..axis.load
+                },
+                ..axis
+            },
+            ..stages
+        },
+        "offsets",
     );
     let creep = Creep {
         coefficients: &[0.1],

@@ -64,8 +64,8 @@ pub use inspect::{
 };
 pub use model::{
     Band, BandEvaluation, Confidence, CreepTerm, Excitation, FirstOrder, FitSummary, FittedStart,
-    INTERVAL, Inverse, LoadDependence, LoadPart, LoadShift, Model, OperatorState, Operators, Plane,
-    Policy, Sample, Score, Sign, Solver, Start, State, Surroundings, Validation, Wanted,
+    INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState, Operators,
+    Plane, Policy, Sample, Score, Sign, Solver, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

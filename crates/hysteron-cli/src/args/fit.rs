@@ -121,6 +121,10 @@ pub(crate) struct Prepare {
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) steps: Steps,
+    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend
+    /// on rate), `off` or its time constant in s [default: off]
+    #[arg(long = "sensor-lag", alias = "lag", help_heading = "Preparation", value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) sensor_lag: Option<Step>,
     /// Where the prepared recording goes
     #[arg(short, value_name = "OUT")]
     pub(crate) out: PathBuf,
@@ -141,6 +145,10 @@ pub(crate) struct PrepareBeforeFit {
     pub(crate) prepare: bool,
     #[command(flatten)]
     pub(crate) steps: Steps,
+    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend
+    /// on rate), `off` or its time constant in s [default: off]
+    #[arg(long = "sensor-lag", help_heading = "Preparation", value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
+    pub(crate) sensor_lag: Option<Step>,
 }
 
 #[derive(Args)]
@@ -158,10 +166,6 @@ pub(crate) struct Steps {
     /// time in cycles a sample
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) low_pass: Option<Step>,
-    /// Undo the lag of the input's sensor: `auto` (right only for a material that does not depend
-    /// on rate), `off` or its time constant in s [default: off]
-    #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
-    pub(crate) lag: Option<Step>,
     /// Remove reversals of the input up to a dead band: `auto` (as far as the noise reaches),
     /// `off`, or the dead band in the input's unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]

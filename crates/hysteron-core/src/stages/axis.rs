@@ -1,92 +1,150 @@
-//! The axis of the operators: the load shifts and scales it, the spacing places the levels on it.
+//! The load and the spacing: what stands between the temperature and the operators' uniform grid.
 
 use crate::error::Error;
 use crate::plane::Plane;
 use crate::scalar::Real;
 
+/// What a load `σ` does: curves over the load, piecewise linear between the loads `loads`.
+///
+/// - It shifts and scales the axis of the operators: `a(σ) · T − s(σ)`. Under stress a shape-memory
+///   alloy transforms at a higher temperature (Clausius and Clapeyron), so `s` rises with the load.
+/// - It changes stroke and offset: the output is `o(σ) + g(σ) · h`.
+///
+/// A curve that is empty has no effect: `s = o = 0`, `a = g = 1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load<'a, T> {
+    /// The loads at which the curves are known, ascending; empty without a load.
+    pub loads: &'a [T],
+    /// The shift `s` at each of these loads, in the unit of the temperature.
+    pub shifts: &'a [T],
+    /// The scale `a` of the axis, above zero.
+    pub scales: &'a [T],
+    /// The gain `g`, above zero.
+    pub gains: &'a [T],
+    /// The offset `o`, in the unit of the output.
+    pub offsets: &'a [T],
+}
+
+/// The values of all curves at one load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loaded<T> {
+    /// The scale `a(σ)`.
+    pub scale: T,
+    /// The shift `s(σ)`.
+    pub shift: T,
+    /// The gain `g(σ)`.
+    pub gain: T,
+    /// The offset `o(σ)`.
+    pub offset: T,
+}
+
+impl<T: Real> Load<'_, T> {
+    /// No load.
+    pub const NONE: Self = Load {
+        loads: &[],
+        shifts: &[],
+        scales: &[],
+        gains: &[],
+        offsets: &[],
+    };
+
+    /// The curves at a load. Beyond the outermost loads they are those of the nearest one.
+    ///
+    /// ```
+    /// use hysteron_core::Load;
+    /// let load = Load { loads: &[0.0, 100.0], shifts: &[0.0, 10.0], ..Load::NONE };
+    /// let at = load.at(Some(50.0))?;
+    /// assert_eq!((at.shift, at.scale), (5.0, 1.0));
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Load`] where a load is needed and `load` is `None` or not finite.
+    pub fn at(&self, load: Option<T>) -> Result<Loaded<T>, Error> {
+        let (Some(&first), Some(&last)) = (self.loads.first(), self.loads.last()) else {
+            return Ok(Loaded {
+                scale: T::ONE,
+                shift: T::ZERO,
+                gain: T::ONE,
+                offset: T::ZERO,
+            });
+        };
+        let load = load.filter(|load| load.is_finite()).ok_or(Error::Load)?;
+        let load = load.clamp(first, last);
+        let of = |values: &[T], none: T| match values {
+            [] => none,
+            values => between(self.loads, |k| values[k], load),
+        };
+        Ok(Loaded {
+            scale: of(self.scales, T::ONE),
+            shift: of(self.shifts, T::ZERO),
+            gain: of(self.gains, T::ONE),
+            offset: of(self.offsets, T::ZERO),
+        })
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let fault = |stage| Err(Error::Stage { stage });
+        let finite = |values: &[T]| values.iter().all(|v| v.is_finite());
+        let ascending = |values: &[T]| values.windows(2).all(|pair| pair[0] < pair[1]);
+        if !(finite(self.loads) && ascending(self.loads)) {
+            return fault("loads");
+        }
+        let fits = |values: &[T]| {
+            (values.is_empty() || values.len() == self.loads.len()) && finite(values)
+        };
+        let positive = |values: &[T]| values.iter().all(|v| *v > T::ZERO);
+        if !fits(self.shifts) {
+            return fault("shifts");
+        }
+        if !(fits(self.scales) && positive(self.scales)) {
+            return fault("scales");
+        }
+        if !(fits(self.gains) && positive(self.gains)) {
+            return fault("gains");
+        }
+        if !fits(self.offsets) {
+            return fault("offsets");
+        }
+        Ok(())
+    }
+}
+
 /// From the temperature `T` (or voltage, or current) to the input `x` of the operators:
 /// `x = W(a(σ) · T − s(σ))`.
-///
-/// `s` is the shift by the load `σ` and `a` the scale. Both are piecewise linear between the loads
-/// `loads`. Under stress a shape-memory alloy transforms at a higher temperature (Clausius and
-/// Clapeyron), so `s` rises with the load.
 ///
 /// `W` is piecewise linear. It takes corner `k` of `spacing` to level `k` of the plane, for
 /// `k = 0…K` (level 0 is the bottom of the plane). Levels are then close together where the output
 /// moves.
 ///
 /// ```
-/// use hysteron_core::{Axis, Plane};
+/// use hysteron_core::{Axis, Load, Plane};
 /// let plane = Plane::new(1.0, 2.0, 2)?; // its bottom is 0
-/// let axis = Axis {
-///     loads: &[0.0, 100.0],
-///     shifts: &[0.0, 10.0],
-///     spacing: &[20.0, 28.0, 30.0],
-///     ..Axis::PLAIN
-/// };
-/// let placed = axis.at(Some(50.0))?;
-/// assert_eq!(axis.forward(&plane, placed, 33.0), 1.0);
-/// assert_eq!(axis.backward(&plane, placed, 1.0), 33.0);
+/// let axis = Axis { load: Load::NONE, spacing: &[20.0, 28.0, 30.0] };
+/// let unloaded = axis.load.at(None)?;
+/// assert_eq!(axis.forward(&plane, unloaded, 28.0), 1.0);
+/// assert_eq!(axis.backward(&plane, unloaded, 1.5), 29.0);
 /// # Ok::<(), hysteron_core::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis<'a, T> {
-    /// The loads at which shift and scale are known, ascending; empty without a load.
-    pub loads: &'a [T],
-    /// The shift at each of these loads, in the unit of the temperature.
-    pub shifts: &'a [T],
-    /// The scale at each of these loads, above zero; empty for a scale of 1.
-    pub scales: &'a [T],
+    /// What the load does.
+    pub load: Load<'a, T>,
     /// The `K + 1` corners of the grid, ascending; empty for equal spacing.
     pub spacing: &'a [T],
-}
-
-/// Shift and scale at one load.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placed<T> {
-    /// The scale `a(σ)`.
-    pub scale: T,
-    /// The shift `s(σ)`.
-    pub shift: T,
 }
 
 impl<T: Real> Axis<'_, T> {
     /// No load and equal spacing: `x = T`.
     pub const PLAIN: Self = Axis {
-        loads: &[],
-        shifts: &[],
-        scales: &[],
+        load: Load::NONE,
         spacing: &[],
     };
 
-    /// Shift and scale at a load. Beyond the outermost loads they are those of the nearest one.
-    ///
-    /// # Errors
-    /// [`Error::Load`] where a load is needed and `load` is `None` or not finite.
-    pub fn at(&self, load: Option<T>) -> Result<Placed<T>, Error> {
-        if self.loads.is_empty() {
-            return Ok(Placed {
-                scale: T::ONE,
-                shift: T::ZERO,
-            });
-        }
-        let load = load.filter(|load| load.is_finite()).ok_or(Error::Load)?;
-        let ends = [self.loads[0], self.loads[self.loads.len() - 1]];
-        let load = load.clamp(ends[0], ends[1]);
-        let scale = match self.scales {
-            [] => T::ONE,
-            scales => between(self.loads, |k| scales[k], load),
-        };
-        Ok(Placed {
-            scale,
-            shift: between(self.loads, |k| self.shifts[k], load),
-        })
-    }
-
     /// The input of the operators at a `temperature`.
     #[must_use]
-    pub fn forward(&self, plane: &Plane<T>, placed: Placed<T>, temperature: T) -> T {
-        let effective = placed.scale * temperature - placed.shift;
+    pub fn forward(&self, plane: &Plane<T>, loaded: Loaded<T>, temperature: T) -> T {
+        let effective = loaded.scale * temperature - loaded.shift;
         match self.spacing {
             [] => effective,
             corners => between(corners, |k| plane.level(k), effective),
@@ -95,18 +153,19 @@ impl<T: Real> Axis<'_, T> {
 
     /// The temperature at an input of the operators. The inverse of [`Axis::forward`].
     #[must_use]
-    pub fn backward(&self, plane: &Plane<T>, placed: Placed<T>, input: T) -> T {
+    pub fn backward(&self, plane: &Plane<T>, loaded: Loaded<T>, input: T) -> T {
         let effective = match self.spacing {
             [] => input,
             corners => inverse_between(corners, plane, input),
         };
-        (effective + placed.shift) / placed.scale
+        (effective + loaded.shift) / loaded.scale
     }
 
-    /// How far `x` may be from the exact one by rounding, on the way there and back.
-    pub(crate) fn rounding(&self, plane: &Plane<T>, placed: Placed<T>, temperature: T) -> T {
+    /// How far `x` may be from the exact one by rounding, on the way there and back. The temperature
+    /// comes from numbers of the size `size`.
+    pub(crate) fn rounding(&self, plane: &Plane<T>, loaded: Loaded<T>, size: T) -> T {
         let magnitude = |v: T| v.max(-v);
-        let effective = magnitude(placed.scale * temperature) + magnitude(placed.shift);
+        let effective = loaded.scale * size + magnitude(loaded.shift);
         let widest = |steepest: T, pair: &[T]| steepest.max(plane.step() / (pair[1] - pair[0]));
         let slope = match self.spacing {
             [] => T::ONE,
@@ -118,32 +177,18 @@ impl<T: Real> Axis<'_, T> {
 
     /// Checks lengths, order and finiteness.
     pub(crate) fn check(&self, plane: &Plane<T>) -> Result<(), Error> {
-        let fault = |stage| Err(Error::Stage { stage });
-        let finite = |values: &[T]| values.iter().all(|v| v.is_finite());
-        let ascending = |values: &[T]| values.windows(2).all(|pair| pair[0] < pair[1]);
-        if !(finite(self.loads) && ascending(self.loads)) {
-            return fault("loads");
-        }
-        if self.shifts.len() != self.loads.len() || !finite(self.shifts) {
-            return fault("shifts");
-        }
-        let positive = |scales: &[T]| finite(scales) && scales.iter().all(|a| *a > T::ZERO);
-        if !(self.scales.is_empty() || self.scales.len() == self.loads.len())
-            || !positive(self.scales)
-        {
-            return fault("scales");
-        }
+        self.load.check()?;
         // Corners that are several rounding units apart have finite slopes.
         let apart = |pair: &[T]| {
             let size = pair[0].max(-pair[0]).max(pair[1].max(-pair[1]));
             pair[1] - pair[0] > size * T::EPSILON * T::from_index(4)
         };
         let placed = self.spacing.len() == plane.levels() + 1
-            && finite(self.spacing)
+            && self.spacing.iter().all(|corner| corner.is_finite())
             && self.spacing.windows(2).all(apart);
         match self.spacing.is_empty() || placed {
             true => Ok(()),
-            false => fault("spacing"),
+            false => Err(Error::Stage { stage: "spacing" }),
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::state::State;
 /// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
 ///
 /// ```text
-/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + sign · lag(creep(h))
+/// T = body(drive)    x = W(a(σ) T − s(σ))    h = operators(x)    y = offset + o(σ) + sign · lag(creep(g(σ) h))
 /// ```
 ///
 /// ```
@@ -261,7 +261,7 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::InputNotFinite { index: 0 });
         }
         self.rates_of(memory, sample.dt)?;
-        self.axis.at(sample.load).map(|_| ())
+        self.axis.load.at(sample.load).map(|_| ())
     }
 
     /// Moves by one sample and returns the output. `clipped` tells whether the operators' input was
@@ -311,21 +311,19 @@ impl<T: Real> Stages<'_, T> {
         if !(input.is_finite() && temperature.is_finite()) {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let placed = self.axis.at(load)?;
-        let seen = self.axis.forward(model.plane(), placed, temperature);
+        let loaded = self.axis.load.at(load)?;
+        let seen = self.axis.forward(model.plane(), loaded, temperature);
         let step = model.step(state, seen)?;
-        let (sum, past) = self.creep.forward(
-            self.past(memory, step.output),
-            self.fade(memory, rates),
-            step.output,
-        );
+        let h = loaded.gain * step.output;
+        let fade = self.fade(memory, rates);
+        let (sum, past) = self.creep.forward(self.past(memory, h), fade, h);
         *memory = StageState {
             started: true,
             temperature,
             past,
         };
         Ok(Output {
-            output: self.outward(sum),
+            output: loaded.offset + self.outward(sum),
             clipped: step.clipped,
         })
     }

@@ -7,6 +7,7 @@ use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::scalar::Real;
 use crate::solution::{Solution, Status};
+use crate::stages::axis::Loaded;
 use crate::stages::chain::{Rates, StageState, Stages};
 use crate::state::State;
 use crate::target::{Direction, Target};
@@ -115,8 +116,8 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
-        let placed = self.axis.at(load)?;
-        let aim = self.aim(memory, rates, target);
+        let loaded = self.axis.load.at(load)?;
+        let aim = self.aim(memory, rates, loaded, target);
         let solution = match aim.output.is_finite() {
             true => inverse.solve(state, aim)?,
             // A lag in a step without length cannot move: stay.
@@ -125,18 +126,17 @@ impl<T: Real> Stages<'_, T> {
                 status: Status::Limited,
             },
         };
-        let mut temperature = self.axis.backward(plane, placed, solution.input);
+        let mut temperature = self.axis.backward(plane, loaded, solution.input);
         if model.operator() == Operator::Relay {
             // A relay switches at its level and not an ulp before it.
             let rising = solution.input > state.input();
             for _ in 0..4 {
-                let seen = self.axis.forward(plane, placed, temperature);
+                let seen = self.axis.forward(plane, loaded, temperature);
                 if seen == solution.input || (seen > solution.input) == rising {
                     break;
                 }
-                let nudge = plane
-                    .nudge()
-                    .max(self.axis.rounding(plane, placed, temperature));
+                let size = temperature.max(-temperature);
+                let nudge = plane.nudge().max(self.axis.rounding(plane, loaded, size));
                 temperature = if rising {
                     temperature + nudge
                 } else {
@@ -146,16 +146,20 @@ impl<T: Real> Stages<'_, T> {
         }
         let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
         let input = self.drive(memory, rates, wanted, temperature);
-        let slack = self.axis.rounding(plane, placed, temperature);
+        let slack = self
+            .axis
+            .rounding(plane, loaded, self.size(temperature, input));
         let reached = self
             .step_at(model, state, memory, rates, input, load)?
             .output;
-        let gain = self.creep.gain();
+        let gain = loaded.gain * self.creep.gain();
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));
         let error = (reached - target.output).max(target.output - reached);
-        let spread = T::from_index(4) * T::EPSILON * self.offset.max(-self.offset);
+        let magnitude = |v: T| v.max(-v);
+        let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
+        let spread = T::from_index(8) * T::EPSILON * offsets;
         let met = error <= target.tolerance.max(T::ZERO) + rounding + spread;
-        let static_reach = self.reach(inverse, target);
+        let static_reach = self.reach(inverse, loaded, target);
         let status = match solution.status {
             _ if met => Status::Ok,
             _ if static_reach != Status::Ok => static_reach,
@@ -166,7 +170,13 @@ impl<T: Real> Stages<'_, T> {
     }
 
     /// The operators' sum that gives the target in this sample.
-    fn aim(&self, memory: &StageState<T>, rates: &Rates<T>, target: Target<T>) -> Target<T> {
+    fn aim(
+        &self,
+        memory: &StageState<T>,
+        rates: &Rates<T>,
+        loaded: Loaded<T>,
+        target: Target<T>,
+    ) -> Target<T> {
         let heading = match (self.falling, target.heading) {
             (true, Some(Direction::Rising)) => Some(Direction::Falling),
             (true, Some(Direction::Falling)) => Some(Direction::Rising),
@@ -177,10 +187,20 @@ impl<T: Real> Stages<'_, T> {
             false => (T::ZERO, self.creep.gain()),
         };
         Target {
-            output: (self.inward(target.output) - base) / gain,
+            output: (self.inward(target.output - loaded.offset) - base) / (gain * loaded.gain),
             heading,
-            tolerance: target.tolerance / gain,
+            tolerance: target.tolerance / (gain * loaded.gain),
         }
+    }
+
+    /// The size of the numbers that a temperature is made from: a body that is driven fast is aimed
+    /// far beyond it.
+    fn size(&self, temperature: T, drive: T) -> T {
+        let magnitude = |v: T| v.max(-v);
+        let body = self.body.map_or(T::ZERO, |body| {
+            magnitude(body.ambient) + magnitude(body.gain * drive)
+        });
+        magnitude(temperature) + body
     }
 
     /// The drive for a temperature, within its range.
@@ -215,11 +235,16 @@ impl<T: Real> Stages<'_, T> {
     }
 
     /// Whether the target lies beyond the outputs at rest.
-    fn reach<C: AsRef<[T]>>(&self, inverse: &Inverse<'_, T, C>, target: Target<T>) -> Status {
-        let gain = self.creep.gain();
+    fn reach<C: AsRef<[T]>>(
+        &self,
+        inverse: &Inverse<'_, T, C>,
+        loaded: Loaded<T>,
+        target: Target<T>,
+    ) -> Status {
+        let gain = loaded.gain * self.creep.gain();
         let (off, on) = inverse.model.output_range();
         let reach = target.tolerance.max(gain * inverse.rounding());
-        let sum = self.inward(target.output);
+        let sum = self.inward(target.output - loaded.offset);
         let status = if sum > gain * on + reach {
             Status::High
         } else if sum < gain * off - reach {

@@ -6,6 +6,7 @@
 //!
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.
 //! - [`Axis`]: the load shifts the temperature axis; the spacing places the levels.
+//! - [`Load`]: what the load does to axis, stroke and offset.
 //! - [`Creep`]: the output goes on moving after the operators have come to rest.
 //! - [`Stages`]: the whole chain. It steps forward, and its inverse is exact for the sample.
 //!
@@ -16,11 +17,11 @@ mod axis;
 mod body;
 mod chain;
 mod invert;
-mod load;
+mod mix;
 
 pub use after::{Creep, MAX_CREEP};
-pub use axis::Axis;
+pub use axis::{Axis, Load, Loaded};
 pub use body::Body;
 pub use chain::{Rates, Sample, StageState, Stages};
 pub use invert::Wanted;
-pub use load::mix;
+pub use mix::mix;

@@ -1,6 +1,6 @@
 //! The options of a fit.
 
-use crate::model::Sign;
+use crate::model::{LoadCurves, Sign};
 use crate::model::{Solver, Start};
 use hysteron_core::Operator;
 
@@ -94,6 +94,8 @@ pub struct FitOptions {
     pub start: Start,
     /// What a load changes.
     pub load_law: LoadLaw,
+    /// Gain and offset over the load, if they are known; the weights then do not depend on it.
+    pub load_curves: Option<LoadCurves>,
     /// Order of the weights as a function of the load; `None` to choose it: by loads left out where
     /// there are three or more, otherwise 1.
     pub load_degree: Option<usize>,
@@ -128,6 +130,7 @@ impl Default for FitOptions {
             smooth: 0.0,
             start: Start::Off,
             load_law: LoadLaw::Shift,
+            load_curves: None,
             load_degree: None,
             spacing: Spacing::Uniform,
             creep: Choice::Fixed(0),

@@ -1,13 +1,13 @@
 //! The model file: JSON with a version. Every error names the field.
 //!
-//! Version 2 adds the stages and the start: `load.shift`, `thermal.ambient`, `drive`, `spacing`,
+//! Version 2 adds the stages and the start: `load.curves`, `thermal.ambient`, `drive`, `spacing`,
 //! `creep`, `lag` and `start`. A model that needs none of them is written as version 1.
 
 use crate::error::{Error, Result};
 use crate::model::Plane;
 use crate::model::after::{After, CreepTerm};
 use crate::model::body::{FirstOrder, range_of};
-use crate::model::load::{LoadDependence, LoadPart, LoadShift};
+use crate::model::load::{LoadCurves, LoadDependence, LoadPart};
 use crate::model::start::FittedStart;
 use crate::model::summary::FitSummary;
 use crate::model::{Model, Sign};
@@ -52,10 +52,10 @@ struct File {
 impl File {
     /// The first entry that only version 2 has.
     fn beyond_version_1(&self) -> Option<&'static str> {
-        let shift = self.load.as_ref().is_some_and(|load| load.shift.is_some());
+        let curves = self.load.as_ref().is_some_and(|load| load.curves.is_some());
         let ambient = |ThermalEntry::FirstOrder(body): &ThermalEntry| body.ambient != 0.0;
         [
-            ("load.shift", shift),
+            ("load.curves", curves),
             (
                 "thermal.ambient",
                 self.thermal.as_ref().is_some_and(ambient),
@@ -137,7 +137,7 @@ struct LoadEntry {
     /// One entry for each Bernstein polynomial, from the smallest load on.
     parts: Vec<LoadPart>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    shift: Option<LoadShift>,
+    curves: Option<LoadCurves>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -254,7 +254,9 @@ impl Model {
         model.check_stages().map_err(|error| {
             let field = match &error {
                 Error::Core(hysteron_core::Error::Stage { stage }) => match *stage {
-                    stage @ ("loads" | "shifts" | "scales") => format!("load.shift.{stage}"),
+                    stage @ ("loads" | "shifts" | "scales" | "gains" | "offsets") => {
+                        format!("load.curves.{stage}")
+                    }
                     stage => stage.to_owned(),
                 },
                 _ => "spacing".into(),
@@ -332,7 +334,7 @@ impl LoadEntry {
             min,
             max,
             parts: load.parts().to_vec(),
-            shift: load.shift.clone(),
+            curves: load.curves.clone(),
         }
     }
 
@@ -354,13 +356,13 @@ impl LoadEntry {
         let mut load =
             load.map_err(|(n, error)| fault(&format!("load.parts[{n}]"), error.to_string()))?;
         if self
-            .shift
+            .curves
             .as_ref()
-            .is_some_and(|shift| shift.loads.is_empty())
+            .is_some_and(|curves| curves.loads.is_empty())
         {
-            return Err(fault("load.shift.loads", "there are none".into()));
+            return Err(fault("load.curves.loads", "there are none".into()));
         }
-        load.shift = self.shift;
+        load.curves = self.curves;
         Ok(load)
     }
 }
@@ -381,9 +383,13 @@ impl DriveEntry {
 /// What a stage has to be.
 fn hint(field: &str) -> &'static str {
     match field {
-        "load.shift.loads" => ": loads ascend and are finite numbers",
-        "load.shift.shifts" => ": it has a finite number for each load",
-        "load.shift.scales" => ": it has a number above zero for each load, or none at all",
+        "load.curves.loads" => ": loads ascend and are finite numbers",
+        "load.curves.shifts" | "load.curves.offsets" => {
+            ": it has a finite number for each load, or none at all"
+        }
+        "load.curves.scales" | "load.curves.gains" => {
+            ": it has a number above zero for each load, or none at all"
+        }
         "spacing" => ": it has K + 1 finite numbers, one above the other",
         "creep" => ": at most 4 terms, coefficients from 0 on, time constants above zero",
         "lag" => ": a finite number of seconds, 0 or more",

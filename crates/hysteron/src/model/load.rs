@@ -38,41 +38,108 @@ impl LoadPart {
     }
 }
 
-/// How the load moves the axis of the operators: `x = a(σ) · T − s(σ)`, with shift `s` and scale `a`
-/// piecewise linear between the loads given.
+/// What a load does, as curves over the load: piecewise linear between the loads given.
 ///
-/// Under stress a shape-memory alloy transforms at a higher temperature (Clausius and Clapeyron).
-/// Weights alone cannot follow that, because they do not move along the axis.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The load shifts and scales the axis of the operators, `x = a(σ) · T − s(σ)`, and changes stroke
+/// and offset, `y = offset + o(σ) ± g(σ) · Σ μ γ`. Under stress a shape-memory alloy transforms at a
+/// higher temperature (Clausius and Clapeyron), and its stroke grows. Weights alone cannot follow
+/// the first, because they do not move along the axis.
+///
+/// A curve that is empty has no effect.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
-pub struct LoadShift {
+pub struct LoadCurves {
     /// The loads, ascending.
     pub loads: Vec<f64>,
-    /// The shift at each load, in the input's unit.
+    /// The shift `s` at each load, in the input's unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shifts: Vec<f64>,
-    /// The scale at each load, above zero; empty for a scale of 1.
+    /// The scale `a` at each load, above zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scales: Vec<f64>,
+    /// The gain `g` at each load, above zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gains: Vec<f64>,
+    /// The offset `o` at each load, in the output's unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub offsets: Vec<f64>,
 }
 
-impl LoadShift {
-    /// The axis for the core, with these corners.
-    pub(crate) fn axis<'a>(&'a self, spacing: &'a [f64]) -> hysteron_core::Axis<'a, f64> {
-        hysteron_core::Axis {
+impl LoadCurves {
+    /// The curves for the core.
+    pub(crate) fn core(&self) -> hysteron_core::Load<'_, f64> {
+        hysteron_core::Load {
             loads: &self.loads,
             shifts: &self.shifts,
             scales: &self.scales,
-            spacing,
+            gains: &self.gains,
+            offsets: &self.offsets,
         }
     }
 
-    /// Scale and shift at a load.
-    #[must_use]
-    pub fn at(&self, load: f64) -> (f64, f64) {
-        match self.axis(&[]).at(Some(load)) {
-            Ok(placed) => (placed.scale, placed.shift),
-            Err(_) => (1.0, f64::NAN),
+    /// The values of all curves at a load. Beyond the ends they are those of the nearest load.
+    ///
+    /// # Errors
+    /// [`Error::Core`] for a load that is not finite.
+    pub fn at(&self, load: f64) -> Result<hysteron_core::Loaded<f64>> {
+        Ok(self.core().at(Some(load))?)
+    }
+
+    /// The same curves, known at these loads only. Between their own loads, `power` says over what
+    /// gain and offset are straight: over the load's magnitude to this power.
+    pub(crate) fn resampled(&self, loads: &[f64], power: f64) -> Self {
+        let place = |load: f64| load.abs().powf(power);
+        let of = |values: &Vec<f64>, power: bool| match values.is_empty() {
+            true => Vec::new(),
+            false => loads
+                .iter()
+                .map(|load| {
+                    self.value(values, *load, &|load| match power {
+                        true => place(load),
+                        false => load,
+                    })
+                })
+                .collect(),
+        };
+        Self {
+            loads: loads.to_vec(),
+            shifts: of(&self.shifts, false),
+            scales: of(&self.scales, false),
+            gains: of(&self.gains, true),
+            offsets: of(&self.offsets, true),
         }
+    }
+
+    /// A curve at a load, straight over `place`, and held beyond its ends.
+    fn value(&self, values: &[f64], load: f64, place: &dyn Fn(f64) -> f64) -> f64 {
+        let last = self.loads.len() - 1;
+        let load = load.clamp(self.loads[0], self.loads[last]);
+        if last == 0 {
+            return values[0];
+        }
+        let k = self
+            .loads
+            .partition_point(|knot| *knot <= load)
+            .clamp(1, last)
+            - 1;
+        let (from, to) = (place(self.loads[k]), place(self.loads[k + 1]));
+        let part = (place(load) - from) / (to - from);
+        values[k] + part * (values[k + 1] - values[k])
+    }
+
+    /// The shift at a load, which goes on beyond the ends with the slope of the outermost piece.
+    pub(crate) fn extended(&self, load: f64) -> f64 {
+        let last = self.loads.len() - 1;
+        if last == 0 {
+            return self.shifts[0];
+        }
+        let k = self
+            .loads
+            .partition_point(|knot| *knot <= load)
+            .clamp(1, last)
+            - 1;
+        let slope = (self.shifts[k + 1] - self.shifts[k]) / (self.loads[k + 1] - self.loads[k]);
+        self.shifts[k] + (load - self.loads[k]) * slope
     }
 
     /// The mean slope of the shift, in units of the input per unit of the load. 0 for one load.
@@ -94,8 +161,8 @@ pub struct LoadDependence {
     pub quantity: Quantity,
     range: (f64, f64),
     parts: Vec<LoadPart>,
-    /// How the load moves the axis; `None` where it changes offset and weights only.
-    pub shift: Option<LoadShift>,
+    /// How the load moves axis, stroke and offset; `None` where it changes offset and weights only.
+    pub curves: Option<LoadCurves>,
     /// The Everett table of each part.
     tables: Vec<Vec<f64>>,
     /// Whether a weight of a part is below zero.
@@ -125,7 +192,7 @@ impl LoadDependence {
             quantity,
             range,
             parts,
-            shift: None,
+            curves: None,
             negative: operators
                 .iter()
                 .any(|part| part.core.negative_weights().is_some()),
@@ -220,17 +287,17 @@ impl Model {
             return Err(no_load());
         };
         let LoadPart { offset, weights } = dependence.at(load)?;
-        let (scale, shift) = dependence
-            .shift
-            .as_ref()
-            .map_or((1.0, 0.0), |law| law.at(load));
-        let moved = |x: f64| (x + shift) / scale;
+        let curves = dependence.curves.clone().unwrap_or_default();
+        let loaded = curves.at(load)?;
+        let moved = |x: f64| (x + loaded.shift) / loaded.scale;
         let plane = self.plane();
         let plane = match self.spacing.is_empty() {
             true => Plane::new(moved(plane.min()), moved(plane.max()), plane.levels())?,
             // The corners move; the plane behind them stays.
             false => *plane,
         };
+        let weights = weights.iter().map(|mu| loaded.gain * mu).collect();
+        let offset = offset + loaded.offset;
         let operators = Operators::new(self.operator(), plane, weights, offset, self.sign())?;
         let start = self.start.as_ref().map(|start| {
             let spaced = !self.spacing.is_empty();

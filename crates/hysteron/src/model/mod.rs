@@ -35,7 +35,7 @@ pub(crate) use body::needs_time;
 pub use confidence::{Confidence, INTERVAL};
 pub use excitation::Excitation;
 pub use inverse::{Inverse, Wanted};
-pub use load::{LoadDependence, LoadPart, LoadShift};
+pub use load::{LoadCurves, LoadDependence, LoadPart};
 pub(crate) use load::{bernstein, no_load};
 pub use operators::{OperatorState, Operators};
 pub use policy::Policy;

@@ -3,20 +3,19 @@
 use crate::error::{Error, Result};
 use crate::model::after::After;
 use crate::model::{CreepTerm, Model, Sample};
-use hysteron_core::{Axis, StageState, Stages};
+use hysteron_core::{Axis, Load, StageState, Stages};
 
 impl Model {
     /// The stages around the operators. The offset is that of the operators; with a load, that of
     /// the middle of its range.
     pub(crate) fn stages(&self) -> Stages<'_, f64> {
-        let shift = self.load.as_ref().and_then(|load| load.shift.as_ref());
-        let plain = Axis {
-            spacing: &self.spacing,
-            ..Axis::PLAIN
-        };
+        let curves = self.load.as_ref().and_then(|load| load.curves.as_ref());
         Stages {
             body: self.thermal.map(|body| body.core()),
-            axis: shift.map_or(plain, |shift| shift.axis(&self.spacing)),
+            axis: Axis {
+                load: curves.map_or(Load::NONE, |curves| curves.core()),
+                spacing: &self.spacing,
+            },
             creep: self.after.creep(),
             lag: self.after.lag,
             offset: self.offset(),
@@ -99,8 +98,10 @@ impl Model {
         };
         let (from, to) = load.range();
         let middle = 0.5 * (from + to);
-        let (scale, shift) = load.shift.as_ref().map_or((1.0, 0.0), |law| law.at(middle));
-        ((low + shift) / scale, (high + shift) / scale)
+        match load.curves.as_ref().map(|curves| curves.at(middle)) {
+            Some(Ok(at)) => ((low + at.shift) / at.scale, (high + at.shift) / at.scale),
+            _ => (low, high),
+        }
     }
 
     /// The range of the drive if none is given: that of the drives fitted. Without a record of

@@ -37,7 +37,8 @@ impl From<OperatorState> for State {
 
 impl State {
     pub(super) fn new(model: &Model, operators: OperatorState) -> Self {
-        let mixed = model.load.as_ref().map(|_| {
+        let depends = model.load.as_ref().filter(|load| load.parts().len() > 1);
+        let mixed = depends.map(|_| {
             Box::new(Mixed {
                 core: model.operators().core.clone(),
                 offset: model.offset(),
@@ -111,6 +112,10 @@ impl State {
             (Some(dependence), Some(load)) => (dependence, load),
         };
         let factors = dependence.factors(load)?;
+        if factors.len() == 1 {
+            // The weights do not depend on the load.
+            return Ok(None);
+        }
         // A state of the operators alone, or of another model, has no room for the load.
         let fits = |mixed: &&mut Box<Mixed>| mixed.core.plane() == model.plane();
         let Some(mixed) = self.mixed.as_mut().filter(fits) else {

@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::after::After;
-use crate::model::{FirstOrder, LoadShift, Model, Operators, Surroundings};
+use crate::model::{FirstOrder, LoadCurves, Model, Operators, Surroundings};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use std::borrow::Cow;
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 pub(crate) struct Found {
     pub(crate) thermal: Option<FirstOrder>,
     pub(crate) drive: Option<(f64, f64)>,
-    pub(crate) shift: Option<LoadShift>,
+    pub(crate) curves: Option<LoadCurves>,
     pub(crate) spacing: Vec<f64>,
     pub(crate) after: After,
 }
@@ -56,7 +56,7 @@ impl Model {
         self.thermal = found.thermal;
         self.drive = found.drive;
         if let Some(load) = &mut self.load {
-            load.shift = found.shift;
+            load.curves = found.curves;
         }
         self.spacing = found.spacing;
         self.after = found.after;

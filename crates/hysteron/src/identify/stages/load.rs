@@ -10,7 +10,7 @@ use crate::identify::options::FitOptions;
 use crate::identify::stages::with_inputs;
 use crate::identify::weights::fit::fit_weights;
 use crate::identify::weights::problem::Problem;
-use crate::model::LoadShift;
+use crate::model::LoadCurves;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -22,6 +22,16 @@ const SAME: f64 = 0.03;
 /// With more loads than this the load changes all the time, and the shift has `EVEN_KNOTS` knots.
 const MOST: usize = 8;
 const EVEN_KNOTS: usize = 3;
+
+/// A plateau of the load has at least this share of the samples, and at most this share lies on none.
+const RESTING: f64 = 0.08;
+const MOVING: f64 = 0.25;
+
+/// The shift of a load is found only if the output moves by this share of the largest stroke.
+const TELLING: f64 = 0.12;
+
+/// Smoothness of the weights in the search, so that operators that few data touch stay small.
+const SMOOTH: f64 = 1e-6;
 
 /// Levels of the search. Shifts do not need more.
 const LEVELS: usize = 14;
@@ -36,9 +46,15 @@ const HALVINGS: usize = 6;
 /// A more complex law has to predict loads left out better by this factor.
 const WORTH: f64 = 0.9;
 
+/// Knots for each pair of neighbouring loads, where gain and offset between them are not straight.
+const FINE: usize = 6;
+
 /// The law of the load, and what chose it.
 pub(super) struct Law {
-    pub(super) shift: LoadShift,
+    pub(super) curves: LoadCurves,
+    /// Whether gain and offset are among the curves. Otherwise the weights depend on the load, with
+    /// the order `degree`.
+    pub(super) uses_curves: bool,
     pub(super) degree: usize,
     pub(super) report: Report,
 }
@@ -50,9 +66,18 @@ pub(super) struct Report {
     loads: Vec<f64>,
     /// Mean slope of the shift.
     slope: f64,
-    /// For each law tried: order of the weights, whether the axis is scaled, and the error on loads
-    /// left out, in percent of the range.
-    tried: Vec<(usize, bool, f64)>,
+    /// The laws tried, and their errors on loads left out, in percent of the range.
+    tried: Vec<(Tried, f64)>,
+}
+
+/// How stroke and offset follow the load.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Tried {
+    /// One set of weights; its gain and offset are straight over the load to this power.
+    Gain { power: f64, scaled: bool },
+    /// Weights of this order in the load.
+    Weights { degree: usize, scaled: bool },
 }
 
 pub(super) fn find(
@@ -61,7 +86,7 @@ pub(super) fn find(
     progress: Progress<'_>,
 ) -> Result<Law> {
     let samples = Samples::new(recordings)?;
-    let groups = Groups::new(&samples.load);
+    let groups = Groups::new(recordings, &samples);
     let search = Search {
         recordings,
         samples: &samples,
@@ -69,6 +94,7 @@ pub(super) fn find(
         options: FitOptions {
             levels: options.levels.min(LEVELS),
             bootstrap: 0,
+            smooth: options.smooth.max(SMOOTH),
             load_degree: Some(0),
             range: None,
             offset: None,
@@ -76,64 +102,108 @@ pub(super) fn find(
         },
         progress,
     };
-    let plain = search.shifts(false)?;
-    let mut tried = Vec::new();
-    let inner = groups.knots.len().saturating_sub(2);
-    let highest = groups.knots.len().saturating_sub(2).min(2);
-    let degrees = match options.load_degree {
-        Some(degree) => degree..=degree,
-        None if inner == 0 => 1..=1,
-        None => 0..=highest,
+    let plain = search.curves(false)?;
+    let inner = match groups.group {
+        Some(_) => groups.knots.len().saturating_sub(2),
+        None => 0,
     };
-    let mut best: Option<(LoadShift, usize, f64)> = None;
-    let scaled = if inner > 0 {
-        vec![false, true]
-    } else {
-        vec![false]
-    };
-    for scale in scaled {
-        let shift = match scale {
-            false => plain.clone(),
-            true => search.shifts(true)?,
-        };
-        for degree in degrees.clone() {
-            progress.tell("loads left out", f64::NAN)?;
-            let error = match inner {
-                0 => 0.0,
-                _ => search.left_out(&shift, degree)?,
-            };
-            tried.push((degree, scale, error));
-            if best
-                .as_ref()
-                .is_none_or(|(.., least)| error < WORTH * least)
-            {
-                best = Some((shift.clone(), degree, error));
+    // A stroke that saturates is nearly straight over the root of the load. Without loads to leave
+    // out, that is what to expect of a stress; a load that goes through zero has no root.
+    let rooted = groups.knots.iter().all(|load| *load >= 0.0)
+        || groups.knots.iter().all(|load| *load <= 0.0);
+    let powers: &[f64] = if rooted { &[0.5, 1.0] } else { &[1.0] };
+    let mut candidates = Vec::new();
+    for scaled in [false, true] {
+        match (options.load_degree, &groups.group) {
+            (Some(degree), _) => candidates.push(Tried::Weights { degree, scaled }),
+            (None, None) => candidates.push(Tried::Weights { degree: 1, scaled }),
+            (None, Some(_)) => {
+                candidates.extend(powers.iter().map(|&power| Tried::Gain { power, scaled }));
+                let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
+                candidates.extend(degrees.map(|degree| Tried::Weights { degree, scaled }));
             }
         }
     }
-    let (shift, degree, _) = best.unwrap_or((plain, 1, 0.0));
+    let stretched = match inner {
+        0 => None,
+        _ => Some(search.curves(true)?),
+    };
+    let mut tried: Vec<(Tried, f64)> = Vec::new();
+    for candidate in candidates {
+        let (Tried::Gain { scaled, .. } | Tried::Weights { scaled, .. }) = candidate;
+        let curves = match (scaled, &stretched) {
+            (false, _) => &plain,
+            (true, Some(curves)) => curves,
+            (true, None) => continue,
+        };
+        progress.tell("loads left out", f64::NAN)?;
+        let error = if inner == 0 {
+            0.0
+        } else {
+            search.left_out(curves, candidate)?
+        };
+        tried.push((candidate, error));
+    }
+    let mut best = tried[0];
+    for next in &tried[1..] {
+        if next.1 < WORTH * best.1 {
+            best = *next;
+        }
+    }
+    let (Tried::Gain { scaled, .. } | Tried::Weights { scaled, .. }) = best.0;
+    let curves = match (scaled, stretched) {
+        (true, Some(curves)) => curves,
+        _ => plain,
+    };
+    let (curves, uses_curves, degree) = match best.0 {
+        Tried::Gain { power, .. } => (refined(&curves, power), true, 0),
+        Tried::Weights { degree, .. } => (moving_only(&curves), false, degree),
+    };
     let report = Report {
         loads: groups.knots.clone(),
-        slope: shift.slope(),
+        slope: curves.slope(),
         tried,
     };
     Ok(Law {
-        shift,
+        curves,
+        uses_curves,
         degree,
         report,
     })
 }
 
+/// The curves with more knots, where gain and offset between the loads are not straight.
+fn refined(curves: &LoadCurves, power: f64) -> LoadCurves {
+    if power == 1.0 {
+        return curves.clone();
+    }
+    let mut loads = Vec::new();
+    for pair in curves.loads.windows(2) {
+        let knot = |n: usize| pair[0] + (pair[1] - pair[0]) * n as f64 / FINE as f64;
+        loads.extend((0..FINE).map(knot));
+    }
+    loads.extend(curves.loads.last());
+    curves.resampled(&loads, power)
+}
+
+/// The curves without gain and offset.
+fn moving_only(curves: &LoadCurves) -> LoadCurves {
+    LoadCurves {
+        gains: Vec::new(),
+        offsets: Vec::new(),
+        ..curves.clone()
+    }
+}
+
 /// The recordings with the load's shift taken off their inputs.
-pub(super) fn behind(shift: &LoadShift, recordings: &[Recording]) -> Vec<Recording> {
-    // Without spacing, the plane has no part in it.
+pub(super) fn behind(curves: &LoadCurves, recordings: &[Recording]) -> Vec<Recording> {
     with_inputs(recordings, |recording| {
         let load = recording.load.iter().flatten();
         let pairs = recording.input.iter().zip(load);
         pairs
-            .map(|(t, load)| {
-                let (scale, shift) = shift.at(*load);
-                scale * t - shift
+            .map(|(t, load)| match curves.at(*load) {
+                Ok(at) => at.scale * t - at.shift,
+                Err(_) => f64::NAN,
             })
             .collect()
     })
@@ -180,48 +250,112 @@ struct Groups {
     knots: Vec<f64>,
     /// The group of each sample; `None` for loads that change all the time.
     group: Option<Vec<usize>>,
+    /// Whether the output moves enough in a group to tell its shift.
+    telling: Vec<bool>,
 }
 
 impl Groups {
-    fn new(load: &[f64]) -> Self {
-        let (low, high) = range(load);
-        let mut sorted = load.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let mut starts = vec![0];
-        for n in 1..sorted.len() {
-            if sorted[n] - sorted[n - 1] > SAME * (high - low) {
-                starts.push(n);
-            }
-        }
-        let ends = starts.iter().skip(1).copied().chain([sorted.len()]);
-        let spans: Vec<(usize, usize)> = starts.iter().copied().zip(ends).collect();
-        let wide = |(from, to): &(usize, usize)| {
-            sorted[to - 1] - sorted[*from] > 4.0 * SAME * (high - low)
+    fn new(recordings: &[Recording], samples: &Samples) -> Self {
+        let (low, high) = range(&samples.load);
+        let loads = match recordings.len() {
+            1 => plateaus(&samples.load),
+            _ => apart(
+                recordings.iter().map(middle_load).collect(),
+                SAME * (high - low),
+            ),
         };
-        if spans.len() < 2 || spans.len() > MOST || spans.iter().any(wide) {
+        if !(2..=MOST).contains(&loads.len()) {
             let knot = |n: usize| low + (high - low) * n as f64 / (EVEN_KNOTS - 1) as f64;
             return Self {
                 knots: (0..EVEN_KNOTS).map(knot).collect(),
                 group: None,
+                telling: vec![true; EVEN_KNOTS],
             };
         }
-        let knots: Vec<f64> = spans
-            .iter()
-            .map(|(from, to)| sorted[(from + to) / 2])
-            .collect();
-        let nearest = |load: &f64| {
+        let nearest = |load: f64| {
             let by = |a: &usize, b: &usize| {
-                (knots[*a] - load)
+                (loads[*a] - load)
                     .abs()
-                    .total_cmp(&(knots[*b] - load).abs())
+                    .total_cmp(&(loads[*b] - load).abs())
             };
-            (0..knots.len()).min_by(by).unwrap_or(0)
+            (0..loads.len()).min_by(by).unwrap_or(0)
         };
-        let group = load.iter().map(nearest).collect();
+        let group: Vec<usize> = match recordings.len() {
+            1 => samples.load.iter().map(|load| nearest(*load)).collect(),
+            // The load of a recording may waver, but it is one load.
+            _ => recordings
+                .iter()
+                .flat_map(|recording| vec![nearest(middle_load(recording)); recording.len()])
+                .collect(),
+        };
+        let strokes: Vec<f64> = (0..loads.len())
+            .map(|g| {
+                let own = samples
+                    .output
+                    .iter()
+                    .zip(&group)
+                    .filter(|(_, at)| **at == g);
+                let (low, high) = range(&own.map(|(y, _)| *y).collect::<Vec<_>>());
+                high - low
+            })
+            .collect();
+        let most = strokes.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let mut telling: Vec<bool> = strokes
+            .iter()
+            .map(|stroke| *stroke > TELLING * most)
+            .collect();
+        if telling.iter().filter(|telling| **telling).count() < 2 {
+            telling.fill(true);
+        }
         Self {
-            knots,
+            telling,
+            knots: loads,
             group: Some(group),
         }
+    }
+}
+
+/// The median load of a recording.
+fn middle_load(recording: &Recording) -> f64 {
+    let mut load = recording.load.clone().unwrap_or_default();
+    load.sort_by(f64::total_cmp);
+    load.get(load.len() / 2).copied().unwrap_or_default()
+}
+
+/// Ascending, and those that are closer than `same` merged.
+fn apart(mut loads: Vec<f64>, same: f64) -> Vec<f64> {
+    loads.sort_by(f64::total_cmp);
+    loads.dedup_by(|b, a| *b - *a <= same);
+    loads
+}
+
+/// The loads at which a load that changes in steps rests; none if it does not rest most of the time.
+fn plateaus(load: &[f64]) -> Vec<f64> {
+    let (low, high) = range(load);
+    let width = 2.0 * SAME * (high - low);
+    let mut left = load.to_vec();
+    left.sort_by(f64::total_cmp);
+    let mut found = Vec::new();
+    while found.len() <= MOST {
+        // The window with the most samples.
+        let (mut end, mut best) = (0, (0, 0));
+        for begin in 0..left.len() {
+            while end < left.len() && left[end] - left[begin] <= width {
+                end += 1;
+            }
+            if end - begin > best.1 - best.0 {
+                best = (begin, end);
+            }
+        }
+        if (best.1 - best.0) as f64 <= RESTING * load.len() as f64 {
+            break;
+        }
+        found.push(left[(best.0 + best.1) / 2]);
+        left.drain(best.0..best.1);
+    }
+    match left.len() as f64 > MOVING * load.len() as f64 {
+        true => Vec::new(),
+        false => apart(found, width),
     }
 }
 
@@ -234,11 +368,12 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The shift of each load against the lowest one; with `scaled`, the scale too.
-    fn shifts(&self, scaled: bool) -> Result<LoadShift> {
+    /// The shift of each load against the lowest one; with `scaled`, the scale too. Then gain and
+    /// offset of each load.
+    fn curves(&self, scaled: bool) -> Result<LoadCurves> {
         let loads = self.groups.knots.clone();
         let (low, high) = range(&self.samples.input);
-        let mut shift = LoadShift {
+        let mut shift = LoadCurves {
             shifts: self.half_heights(),
             scales: if scaled {
                 vec![1.0; loads.len()]
@@ -246,9 +381,11 @@ impl Search<'_> {
                 Vec::new()
             },
             loads,
+            ..LoadCurves::default()
         };
+        self.fill_in(&mut shift);
         let normalised = self.normalised();
-        let rated = |shift: &LoadShift| self.rated(&normalised, shift);
+        let rated = |shift: &LoadCurves| self.rated(&normalised, shift);
         let mut error = rated(&shift)?;
         let centre = 0.5 * (low + high);
         let mut step = FIRST * (high - low);
@@ -259,7 +396,11 @@ impl Search<'_> {
                     break;
                 }
                 again = false;
-                for n in 1..shift.loads.len() {
+                let reference = self.groups.telling.iter().position(|telling| *telling);
+                for n in 0..shift.loads.len() {
+                    if !self.groups.telling[n] || Some(n) == reference {
+                        continue;
+                    }
                     self.progress.tell("shift by the load", f64::NAN)?;
                     for change in [-step, step] {
                         let mut moved = shift.clone();
@@ -285,7 +426,102 @@ impl Search<'_> {
             }
             step *= 0.5;
         }
+        self.fill_in(&mut shift);
+        self.find_gains(&mut shift)?;
         Ok(shift)
+    }
+
+    /// Gain and offset of each load: the line from the outputs of one set of weights, which fits the
+    /// loops scaled to their own height, to the outputs measured at that load. Gains count from that
+    /// of the largest one.
+    fn find_gains(&self, curves: &mut LoadCurves) -> Result<()> {
+        let Some(group) = &self.groups.group else {
+            return Ok(());
+        };
+        let spans = self.spans(group);
+        let mut seen = behind(curves, self.recordings);
+        let mut at = 0;
+        for recording in &mut seen {
+            recording.load = None;
+            for y in &mut recording.output {
+                let (low, high) = spans[group[at]];
+                *y = (*y - low) / (high - low).max(f64::MIN_POSITIVE);
+                at += 1;
+            }
+        }
+        let mut problem = Problem::new(&seen, &self.options)?;
+        let telling = group.iter().map(|g| f64::from(self.groups.telling[*g]));
+        let kept: Vec<f64> = telling.collect();
+        let fitted = problem.solve(Some(&kept), Progress::NONE)?;
+        let predicted = problem.predict(&fitted.solution)?;
+        let sign = fitted.sign.factor();
+        // The offset of a load is its output with every operator off.
+        let off = fitted.solution.free.first().copied().unwrap_or_default();
+        let sum = |n: usize| sign * (predicted[n] - off);
+        let count = curves.loads.len();
+        let (mut gains, mut offsets) = (vec![0.0; count], vec![0.0; count]);
+        for g in 0..count {
+            let own: Vec<usize> = (0..group.len()).filter(|n| group[*n] == g).collect();
+            let mean = |of: &dyn Fn(usize) -> f64| {
+                own.iter().map(|n| of(*n)).sum::<f64>() / own.len().max(1) as f64
+            };
+            let (h, y) = (mean(&sum), mean(&|n| self.samples.output[n]));
+            let slope = |n: usize| sum(n) - h;
+            let square = mean(&|n| slope(n) * slope(n));
+            let product = mean(&|n| slope(n) * (self.samples.output[n] - y));
+            // A load with hardly any stroke has a small gain, and none has a gain below zero.
+            let (low, high) = spans[g];
+            gains[g] = (product / square.max(f64::MIN_POSITIVE)).max(0.05 * (high - low));
+            offsets[g] = y - gains[g] * h;
+        }
+        let most = gains.iter().fold(f64::MIN_POSITIVE, |a, b| a.max(*b));
+        gains
+            .iter_mut()
+            .for_each(|gain| *gain = (*gain / most).max(1e-6));
+        (curves.gains, curves.offsets) = (gains, offsets);
+        Ok(())
+    }
+
+    /// Smallest and largest output of each group.
+    fn spans(&self, group: &[usize]) -> Vec<(f64, f64)> {
+        let of = |g| {
+            let own = self
+                .samples
+                .output
+                .iter()
+                .zip(group)
+                .filter(|(_, at)| **at == g);
+            range(&own.map(|(y, _)| *y).collect::<Vec<_>>())
+        };
+        (0..self.groups.knots.len()).map(of).collect()
+    }
+
+    /// Makes the shift monotone, gives the loads that do not tell theirs the one that follows from
+    /// their neighbours, and counts from the lowest load.
+    fn fill_in(&self, shift: &mut LoadCurves) {
+        let told: Vec<usize> = (0..shift.loads.len())
+            .filter(|n| self.groups.telling[*n])
+            .collect();
+        let (Some(&first), Some(&last)) = (told.first(), told.last()) else {
+            return;
+        };
+        let falls = shift.shifts[last] < shift.shifts[first];
+        let mut values: Vec<f64> = told.iter().map(|n| shift.shifts[*n]).collect();
+        make_monotone(&mut values, falls);
+        let loads: Vec<f64> = told.iter().map(|n| shift.loads[*n]).collect();
+        let line = LoadCurves {
+            loads,
+            shifts: values,
+            ..LoadCurves::default()
+        };
+        for n in 0..shift.loads.len() {
+            shift.shifts[n] = line.extended(shift.loads[n]);
+            if let (false, Some(scale)) = (self.groups.telling[n], shift.scales.get_mut(n)) {
+                *scale = 1.0;
+            }
+        }
+        let lowest = shift.shifts[0];
+        shift.shifts.iter_mut().for_each(|s| *s -= lowest);
     }
 
     /// The mean input at half the height of each load's loop, against the lowest load. Zero where
@@ -333,18 +569,7 @@ impl Search<'_> {
     /// The recordings without much of their samples, each load's loop scaled to its own height.
     fn normalised(&self) -> Vec<Recording> {
         let stride = self.samples.input.len().div_ceil(SAMPLES);
-        let spans: Option<Vec<(f64, f64)>> = self.groups.group.as_ref().map(|group| {
-            let of = |g| {
-                let own = self
-                    .samples
-                    .output
-                    .iter()
-                    .zip(group)
-                    .filter(|(_, at)| **at == g);
-                range(&own.map(|(y, _)| *y).collect::<Vec<_>>())
-            };
-            (0..self.groups.knots.len()).map(of).collect()
-        });
+        let spans = self.groups.group.as_ref().map(|group| self.spans(group));
         let mut begin = 0;
         let each = |recording: &Recording| {
             let from = begin;
@@ -374,7 +599,7 @@ impl Search<'_> {
 
     /// Error of one set of weights behind this shift. Where the load changes all the time, the
     /// weights follow it in the first order.
-    fn rated(&self, recordings: &[Recording], shift: &LoadShift) -> Result<f64> {
+    fn rated(&self, recordings: &[Recording], shift: &LoadCurves) -> Result<f64> {
         let mut seen = behind(shift, recordings);
         let options = match self.groups.group {
             Some(_) => {
@@ -392,33 +617,45 @@ impl Search<'_> {
 
     /// The error on each load that was left out, between those next to it, in percent of the range
     /// of its output; the root of the mean square.
-    fn left_out(&self, shift: &LoadShift, degree: usize) -> Result<f64> {
+    fn left_out(&self, curves: &LoadCurves, tried: Tried) -> Result<f64> {
         let Some(group) = &self.groups.group else {
             return Ok(0.0);
         };
         let last = self.groups.knots.len() - 1;
+        let output = &self.samples.output;
         let mut squares = 0.0;
         for g in 1..last {
-            let mut others = shift.clone();
-            others.loads.remove(g);
-            others.shifts.remove(g);
-            if !others.scales.is_empty() {
-                others.scales.remove(g);
-            }
+            let mut loads = curves.loads.clone();
+            loads.remove(g);
+            let (others, degree, load_curves) = match tried {
+                Tried::Gain { power, .. } => {
+                    let others = curves.resampled(&loads, power);
+                    // What lies between them follows from the neighbours.
+                    let others = others.resampled(&curves.loads, power);
+                    (others.clone(), 0, Some(others))
+                }
+                Tried::Weights { degree, .. } => {
+                    (moving_only(&curves.resampled(&loads, 1.0)), degree, None)
+                }
+            };
             let seen = behind(&others, self.recordings);
             let options = FitOptions {
                 load_degree: Some(degree),
+                load_curves: load_curves.clone(),
                 ..self.options.clone()
             };
             let mut problem = Problem::new(&seen, &options)?;
             let kept: Vec<f64> = group.iter().map(|at| f64::from(*at != g)).collect();
             let fitted = problem.solve(Some(&kept), Progress::NONE)?;
             let predicted = problem.predict(&fitted.solution)?;
-            let own = (0..group.len()).filter(|n| group[*n] == g);
-            let output = &self.samples.output;
             let (mut sum, mut count, mut ends) = (0.0, 0.0, (f64::INFINITY, f64::NEG_INFINITY));
-            for n in own {
-                sum += (output[n] - fitted.sign.factor() * predicted[n]).powi(2);
+            for n in (0..group.len()).filter(|n| group[*n] == g) {
+                let offset = match &load_curves {
+                    Some(curves) => curves.at(self.samples.load[n])?.offset,
+                    None => 0.0,
+                };
+                let error = output[n] - offset - fitted.sign.factor() * predicted[n];
+                sum += error * error;
                 count += 1.0;
                 ends = (ends.0.min(output[n]), ends.1.max(output[n]));
             }
@@ -426,6 +663,32 @@ impl Search<'_> {
         }
         Ok(100.0 * (squares / (last - 1) as f64).sqrt())
     }
+}
+
+/// The nearest monotone values: neighbours in the wrong order take their mean (pool adjacent
+/// violators, Barlow et al. 1972).
+fn make_monotone(values: &mut [f64], falls: bool) {
+    let sign = if falls { -1.0 } else { 1.0 };
+    let mut pools: Vec<(f64, usize)> = Vec::new();
+    for value in values.iter() {
+        let mut pool = (sign * value, 1);
+        while let Some(&(mean, count)) = pools.last().filter(|(mean, _)| *mean > pool.0) {
+            let total = count + pool.1;
+            pool = (
+                (mean * count as f64 + pool.0 * pool.1 as f64) / total as f64,
+                total,
+            );
+            pools.pop();
+        }
+        pools.push(pool);
+    }
+    let all = pools
+        .into_iter()
+        .flat_map(|(mean, count)| vec![sign * mean; count]);
+    values
+        .iter_mut()
+        .zip(all)
+        .for_each(|(value, pooled)| *value = pooled);
 }
 
 /// Of each run of `stride` samples the first one and those with extreme inputs, so that the turning

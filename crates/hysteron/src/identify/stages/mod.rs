@@ -15,7 +15,7 @@ use crate::identify::history::find_start;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
 use crate::identify::weights::experiment::plane_of_all;
 use crate::identify::weights::fit::fit_weights;
-use crate::model::{Found, LoadShift, Model, Plane, Start, Surroundings, Validation};
+use crate::model::{Found, Model, Plane, Start, Surroundings, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::{Errors, range};
@@ -53,9 +53,10 @@ pub(crate) fn fit(
     if loaded && options.load_law == LoadLaw::Shift {
         let law = load::find(&seen, &options, progress)?;
         options.load_degree = Some(law.degree);
-        seen = Cow::Owned(load::behind(&law.shift, &seen));
+        seen = Cow::Owned(load::behind(&law.curves, &seen));
         notes.insert("load".to_owned(), json!(law.report));
-        found.shift = Some(law.shift);
+        found.curves = Some(law.curves.clone());
+        options.load_curves = law.uses_curves.then_some(law.curves);
     }
     let (mut options, validation) = chosen(&seen, &options)?;
     if options.spacing == Spacing::Auto {
@@ -144,24 +145,18 @@ fn with_inputs(recordings: &[Recording], input: impl Fn(&Recording) -> Vec<f64>)
     recordings.iter().map(with).collect()
 }
 
-/// The inputs of a recording behind shift and spacing. Without a shift the load does not matter.
-fn through_axis(
-    shift: Option<&LoadShift>,
-    spacing: &[f64],
-    plane: &Plane,
-    recording: &Recording,
-) -> Vec<f64> {
-    let plain = Axis {
+/// The inputs of a recording on the uniform grid of the plane.
+fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> Vec<f64> {
+    let axis = Axis {
         spacing,
         ..Axis::PLAIN
     };
-    let axis = shift.map_or(plain, |shift| shift.axis(spacing));
-    let loads = recording.load.as_deref();
-    let inputs = recording.input.iter().enumerate();
-    inputs
-        .map(|(n, &t)| match axis.at(loads.map(|loads| loads[n])) {
-            Ok(placed) => axis.forward(plane, placed, t),
-            Err(_) => f64::NAN,
-        })
-        .collect()
+    let unloaded = hysteron_core::Loaded {
+        scale: 1.0,
+        shift: 0.0,
+        gain: 1.0,
+        offset: 0.0,
+    };
+    let inputs = recording.input.iter();
+    inputs.map(|t| axis.forward(plane, unloaded, *t)).collect()
 }

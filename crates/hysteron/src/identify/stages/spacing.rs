@@ -1,6 +1,6 @@
 //! Places the levels where the output moves.
 
-use crate::identify::stages::{through_axis, with_inputs};
+use crate::identify::stages::{on_grid, with_inputs};
 use crate::model::Plane;
 use crate::recording::Recording;
 
@@ -73,7 +73,5 @@ fn spread(bins: &mut [f64], [a, b]: [f64; 2], amount: f64) {
 
 /// The recordings on the uniform grid of the plane.
 pub(super) fn behind(corners: &[f64], plane: &Plane, recordings: &[Recording]) -> Vec<Recording> {
-    with_inputs(recordings, |recording| {
-        through_axis(None, corners, plane, recording)
-    })
+    with_inputs(recordings, |recording| on_grid(corners, plane, recording))
 }

@@ -23,7 +23,8 @@ pub(crate) struct Experiment {
     pub(crate) load_range: Option<(f64, f64)>,
     /// Functions of the load at each sample; a single constant 1 without a load.
     pub(crate) parts: Vec<Vec<f64>>,
-    /// The same for the offset, whose order is at least 1.
+    /// The same for the offset, whose order is at least 1. Where gain and offset over the load are
+    /// known, that offset is taken off the outputs, and a constant is left.
     pub(crate) offsets: Vec<Vec<f64>>,
 }
 
@@ -89,6 +90,15 @@ impl Experiment {
                     return Err(Error::Fit(what).remedied(remedy));
                 }
                 experiment.load_range = Some((low, high));
+                if let Some(curves) = &options.load_curves {
+                    let at = load.iter().map(|load| curves.at(*load));
+                    let at = at.collect::<Result<Vec<_>>>()?;
+                    experiment.parts = vec![at.iter().map(|at| at.gain).collect()];
+                    experiment.offsets = vec![vec![1.0; load.len()]];
+                    let outputs = experiment.output.iter_mut().zip(&at);
+                    outputs.for_each(|(y, at)| *y -= at.offset);
+                    return Ok(experiment);
+                }
                 let share = |load: &f64| (load - low) / (high - low);
                 let of_order = |degree| functions(load.iter().map(share), degree);
                 experiment.parts = of_order(degree);

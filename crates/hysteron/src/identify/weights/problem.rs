@@ -83,7 +83,7 @@ impl Problem {
     pub(crate) fn load_parts(&self, x: &[f64], free: &[f64], sign: Sign) -> Vec<LoadPart> {
         let mut weights = self.regressor.weights(x);
         // Weights that do not depend on the load are the same in each part of the offset.
-        if let ([constant], true) = (weights.as_slice(), self.experiment.load_range.is_some()) {
+        if let [constant] = weights.as_slice() {
             weights = vec![constant.clone(); self.experiment.offsets.len()];
         }
         let weights = weights.into_iter().enumerate();
