@@ -218,7 +218,10 @@ fn fit_options(
             "start" => options.start = start_of(&text()?)?,
             "sign" => options.sign = Some(sign_of(value.extract()?)?),
             "offset" => options.offset = Some(named(&name, "a number", &value)?),
-            "load_degree" => options.load_degree = value.extract::<Integer>()?.of("load_degree")?,
+            "load_degree" if is_auto(&value) => options.load_degree = None,
+            "load_degree" => {
+                options.load_degree = Some(value.extract::<Integer>()?.of("load_degree")?);
+            }
             _ => return Err(no_argument(call, &name, &[names, &OPTIONS].concat())),
         }
     }
@@ -249,6 +252,7 @@ pub(crate) fn start_of(name: &str) -> PyResult<Start> {
         ("off", Start::Off),
         ("on", Start::On),
         ("unknown", Start::Unknown),
+        ("fitted", Start::Fitted),
     ];
     choice("start", name, &starts)
 }

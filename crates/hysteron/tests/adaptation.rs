@@ -259,6 +259,7 @@ fn what_cannot_be_adapted_is_refused() {
     };
     let mut heated = model.clone();
     heated.thermal = Some(FirstOrder {
+        ambient: 0.0,
         gain: 1.0,
         tau_heating: 1.0,
         tau_cooling: 2.0,

@@ -27,6 +27,7 @@ fn drive() -> (Vec<f64>, Vec<f64>) {
 }
 
 const BODY: FirstOrder = FirstOrder {
+    ambient: 0.0,
     gain: 1.0,
     tau_heating: 3.0,
     tau_cooling: 6.0,
@@ -243,6 +244,7 @@ fn a_long_recording_of_a_fast_drive_keeps_its_turning_points() {
     };
     let input: Vec<f64> = time.iter().map(height).collect();
     let body = FirstOrder {
+        ambient: 0.0,
         gain: 1.0,
         tau_heating: 1.0,
         tau_cooling: 2.0,

@@ -242,9 +242,10 @@ pub(crate) struct Invert {
     /// the target does not send the drive from one end to the other
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_tolerance)]
     pub(crate) horizon: f64,
-    /// With a thermal body: how long before a target the drive may start for it
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_tolerance)]
-    pub(crate) preview: f64,
+    /// With a thermal body: how long before a target the drive may start for it, 0 for a reference
+    /// that is not known ahead [default: twice the longer time constant]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_tolerance)]
+    pub(crate) preview: Option<f64>,
     /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
     /// standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]

@@ -162,8 +162,9 @@ pub struct Invert<'a> {
     pub drive_range: Option<(f64, f64)>,
     /// Time in which a temperature is to be reached, s ([`Inverse::horizon`]).
     pub horizon: f64,
-    /// For a model with a thermal body: how many seconds ahead of a target the drive may start.
-    pub preview: f64,
+    /// For a model with a thermal body: how many seconds ahead of a target the drive may start;
+    /// `None` for twice the longer time constant.
+    pub preview: Option<f64>,
 }
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
@@ -185,18 +186,13 @@ pub fn invert_table(
     let mut samples = Samples::new(model, table, what.target, what.around)?;
     let drive = what.drive_range.unwrap_or_else(|| model.drive_range());
     let inner = model.without_body();
-    let preview = match model.thermal.filter(|_| what.preview > 0.0) {
+    let usual = model
+        .thermal
+        .map(|body| 2.0 * body.tau_heating.max(body.tau_cooling));
+    let seconds = what.preview.or(usual).unwrap_or_default();
+    let preview = match model.thermal.filter(|_| seconds > 0.0) {
         None => None,
-        Some(body) => {
-            let state = state.clone();
-            Some(Preview::new(
-                &inner,
-                body.core(),
-                drive,
-                what.preview,
-                state,
-            )?)
-        }
+        Some(_) => Some(Preview::new(model, &inner, drive, seconds, state.clone())?),
     };
     let heated = model.thermal.is_some();
     let added = match heated {
@@ -285,33 +281,43 @@ struct Inverting<'m> {
 impl Inverting<'_> {
     fn row(&mut self, row: Row, wanted: Wanted) -> Result<()> {
         let Some(preview) = &mut self.preview else {
-            return self.write(&row, wanted);
+            return self.write(&row, wanted, wanted.target.output);
         };
         let ready = preview.push(wanted)?;
         self.waiting.push_back(row);
-        for wanted in ready {
-            self.write_next(wanted)?;
+        for (wanted, asked) in ready {
+            self.write_next(wanted, asked)?;
         }
         Ok(())
     }
 
-    fn write_next(&mut self, wanted: Wanted) -> Result<()> {
+    fn write_next(&mut self, wanted: Wanted, asked: f64) -> Result<()> {
         match self.waiting.pop_front() {
-            Some(row) => self.write(&row, wanted),
+            Some(row) => self.write(&row, wanted, asked),
             None => Ok(()),
         }
     }
 
     fn finish(mut self) -> Result<Counts> {
-        while let Some(wanted) = self.preview.as_mut().and_then(Preview::next) {
-            self.write_next(wanted)?;
+        while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
+            self.write_next(wanted, asked)?;
         }
         self.sink.finish()
     }
 
-    fn write(&mut self, row: &Row, wanted: Wanted) -> Result<()> {
+    /// `asked` is the output that the row asks for; a preview may want a little less of it.
+    fn write(&mut self, row: &Row, wanted: Wanted, asked: f64) -> Result<()> {
+        let wanted = match &self.preview {
+            Some(preview) => preview.allowed(&self.state, wanted)?,
+            None => wanted,
+        };
         let solution = self.inverse.step(&mut self.state, wanted)?;
         let hysteron_core::Solution { input, status } = solution;
+        let missed = (asked - wanted.target.output).abs() > wanted.target.tolerance;
+        let status = match status {
+            Status::Ok if missed => Status::Limited,
+            status => status,
+        };
         match status {
             Status::Ok => {}
             Status::Low => self.sink.counts.low += 1,

@@ -147,6 +147,7 @@ impl Inverse<'_> {
             let raw = model.sign().factor() * (output - model.offset());
             let target = model.sign().inward(wanted.target, raw);
             let solution = self.core.step(&mut state.operators, target)?;
+            state.forget_stages();
             return Ok(model.sign().outward(solution));
         }
         let worded = |error| model.worded(error);
@@ -187,6 +188,14 @@ impl Inverse<'_> {
         };
         state.mixed = Some(mixed);
         solution.map_err(worded)
+    }
+
+    /// The outputs with every operator off and with every operator on, at a load.
+    pub(crate) fn output_range(&self, load: Option<f64>) -> Result<(f64, f64)> {
+        match load.filter(|_| self.model.load.is_some()) {
+            Some(load) => Ok(self.model.at_load(load)?.output_range()),
+            None => Ok(self.model.output_range()),
+        }
     }
 
     /// Whether the operators alone give the input: there is no stage and no limit.
@@ -296,13 +305,10 @@ impl Inverse<'_> {
     ) -> Result<Vec<Solution<f64>>> {
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
         let pairs = targets.iter().zip(headings);
-        let target = |(&output, heading)| {
-            Target {
-                output,
-                heading,
-                tolerance,
-            }
-            .into()
+        let target = |(&output, heading)| Target {
+            output,
+            heading,
+            tolerance,
         };
         self.through(state, &pairs.map(target).collect::<Vec<_>>())
     }
@@ -311,12 +317,16 @@ impl Inverse<'_> {
     ///
     /// # Errors
     /// As [`Inverse::series`]. An error of time or load comes when its sample is reached.
-    pub fn through(&self, state: &mut State, wanted: &[Wanted]) -> Result<Vec<Solution<f64>>> {
+    pub fn through(
+        &self,
+        state: &mut State,
+        wanted: &[impl Into<Wanted> + Copy],
+    ) -> Result<Vec<Solution<f64>>> {
+        let wanted = || wanted.iter().map(|&wanted| wanted.into());
         let finite = |wanted: &Wanted| (wanted.target.output - self.model.offset()).is_finite();
-        if let Some(index) = wanted.iter().position(|wanted| !finite(wanted)) {
+        if let Some(index) = wanted().position(|wanted| !finite(&wanted)) {
             return Err(hysteron_core::Error::InputNotFinite { index }.into());
         }
-        let steps = wanted.iter().map(|&wanted| self.step(state, wanted));
-        steps.collect()
+        wanted().map(|wanted| self.step(state, wanted)).collect()
     }
 }

@@ -3,17 +3,24 @@
 
 use crate::error::Result;
 use crate::model::inverse::{Inverse, Wanted};
-use crate::model::{Model, State};
+use crate::model::{Model, Sign, State};
+use hysteron_core::Status;
 use std::collections::VecDeque;
 
 /// Bounds the temperature by the targets of the next seconds. A body heats and cools no faster than
 /// its drive allows. So to be at a temperature in time, it has to be on the way before.
 ///
-/// The temperatures ahead are those of a plan: the inverse without the body, from the same start.
+/// A plan runs ahead: the inverse without preview, from the same start. Where its drive is at an end
+/// of its range and the target is missed, the temperature that the target needs is a bound for the
+/// samples before.
 pub(crate) struct Preview<'m> {
     plan: Inverse<'m>,
+    /// The inverse without the body: it tells the temperature that a target needs.
+    needed: Inverse<'m>,
     state: State,
     body: hysteron_core::Body<f64>,
+    /// Whether the output rises with the temperature.
+    rises: bool,
     /// Temperatures at rest with the lowest and with the highest drive.
     rest: (f64, f64),
     seconds: f64,
@@ -22,26 +29,43 @@ pub(crate) struct Preview<'m> {
     span: f64,
 }
 
+/// Near the ends of its range the output hardly moves, but the temperature does. On the way back
+/// from there the body would be late. So targets keep this share of the output's range from its
+/// ends.
+const MARGIN: f64 = 0.01;
+
+/// For the sake of later targets the output may be off its present target by this share of its range,
+/// no more: a target that no drive reaches must not cost those before it.
+const GIVEN_UP: f64 = 0.1;
+
 struct Planned {
+    /// What the drive is to do.
     wanted: Wanted,
+    /// The output that was asked for.
+    asked: f64,
     dt: f64,
-    temperature: f64,
+    /// The temperature that this sample needs and the plan does not reach.
+    missed: Option<f64>,
 }
 
 impl<'m> Preview<'m> {
-    /// A preview of `seconds`, for an inverse of a model whose `inner` model has no body. The state
-    /// is the one that the inverse starts from.
+    /// A preview of `seconds`, for an inverse with this range of drives of a `model` with a body.
+    /// `inner` is the same model without the body. The state is the one that the inverse starts
+    /// from.
     pub(crate) fn new(
+        model: &'m Model,
         inner: &'m Model,
-        body: hysteron_core::Body<f64>,
         drive: (f64, f64),
         seconds: f64,
         state: State,
     ) -> Result<Self> {
+        let body = model.thermal.unwrap_or_default().core();
         Ok(Self {
-            plan: inner.inverse()?,
+            plan: model.inverse()?.drive_range(drive.0, drive.1)?,
+            needed: inner.inverse()?,
             state,
             body,
+            rises: model.sign() == Sign::Positive,
             rest: (body.rest(drive.0), body.rest(drive.1)),
             seconds,
             ahead: VecDeque::new(),
@@ -49,18 +73,27 @@ impl<'m> Preview<'m> {
         })
     }
 
-    /// Takes the next sample and returns those whose preview is complete.
-    pub(crate) fn push(&mut self, wanted: Wanted) -> Result<Vec<Wanted>> {
-        self.plan.step(&mut self.state, wanted)?;
+    /// Takes the next sample and returns those whose preview is complete, each with the output that
+    /// was asked for.
+    pub(crate) fn push(&mut self, wanted: Wanted) -> Result<Vec<(Wanted, f64)>> {
+        let planned = self.planned(wanted)?;
+        let mut there = self.state.clone();
+        self.needed.step(&mut there, planned)?;
+        let found = self.plan.step(&mut self.state, planned)?;
+        let (cold, hot) = self.rest;
+        let needed = there.temperature().clamp(cold, hot);
         let dt = wanted.dt.unwrap_or_default();
         if !self.ahead.is_empty() {
             self.span += dt;
         }
-        let temperature = self.state.temperature();
+        let missed = (found.status == Status::Limited).then_some(needed);
+        let asked = wanted.target.output;
+        let wanted = planned;
         self.ahead.push_back(Planned {
             wanted,
+            asked,
             dt,
-            temperature,
+            missed,
         });
         let mut ready = Vec::new();
         while self.span > self.seconds {
@@ -69,14 +102,64 @@ impl<'m> Preview<'m> {
         Ok(ready)
     }
 
+    /// The same with bounds that cost little now: no more of the output than `GIVEN_UP`.
+    pub(crate) fn allowed(&self, state: &State, wanted: Wanted) -> Result<Wanted> {
+        let (low, high) = wanted.temperature;
+        let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+        let free = Wanted {
+            temperature: everywhere,
+            ..wanted
+        };
+        let mut there = state.clone();
+        self.needed.step(&mut there, free)?;
+        let needed = there.temperature();
+        if (low..=high).contains(&needed) {
+            return Ok(wanted);
+        }
+        let cooler = needed > high;
+        let (off, on) = self.plan.output_range(wanted.load)?;
+        let given_up = GIVEN_UP * (on - off).abs();
+        let mut target = wanted.target;
+        target.output += if cooler == self.rises {
+            -given_up
+        } else {
+            given_up
+        };
+        let mut edge = state.clone();
+        self.needed.step(&mut edge, Wanted { target, ..free })?;
+        let edge = edge.temperature();
+        let temperature = match cooler {
+            true => (f64::NEG_INFINITY, high.max(edge.min(needed))),
+            false => (low.min(edge.max(needed)), f64::INFINITY),
+        };
+        Ok(Wanted {
+            temperature,
+            ..wanted
+        })
+    }
+
+    fn planned(&self, wanted: Wanted) -> Result<Wanted> {
+        let (off, on) = self.plan.output_range(wanted.load)?;
+        let (low, high) = (off.min(on), off.max(on));
+        let mut target = wanted.target;
+        let margin = MARGIN * (high - low);
+        target.output = target.output.clamp(low + margin, high - margin);
+        // What is given up here counts as an error.
+        let given_up = (wanted.target.output - target.output).abs();
+        target.tolerance = (target.tolerance - given_up).max(0.0);
+        Ok(Wanted { target, ..wanted })
+    }
+
     /// The next sample that waits, with the bounds of its temperature.
-    pub(crate) fn next(&mut self) -> Option<Wanted> {
+    pub(crate) fn next(&mut self) -> Option<(Wanted, f64)> {
+        let (cold, hot) = self.rest;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for planned in self.ahead.iter().skip(1).rev() {
-            low = low.max(planned.temperature);
-            high = high.min(planned.temperature);
+            if let Some(needed) = planned.missed {
+                low = low.max(needed);
+                high = high.min(needed);
+            }
             let decay = self.body.decay(planned.dt);
-            let (cold, hot) = self.rest;
             // The highest temperature from which it still cools down to `high`, and so on.
             high = cold + (high - cold) / decay.cooling;
             low = hot + (low - hot) / decay.heating;
@@ -84,9 +167,10 @@ impl<'m> Preview<'m> {
         let first = self.ahead.pop_front()?;
         self.span -= self.ahead.front().map_or(self.span, |next| next.dt);
         let bounds = (low.min(high), high);
-        Some(Wanted {
+        let wanted = Wanted {
             temperature: bounds,
             ..first.wanted
-        })
+        };
+        Some((wanted, first.asked))
     }
 }

@@ -86,6 +86,7 @@ impl State {
                 return Err(no_load());
             }
             let step = model.operators().step(&mut self.operators, sample.input)?;
+            self.forget_stages();
             return Ok(step);
         }
         let mut stages = model.stages();
@@ -100,6 +101,13 @@ impl State {
         let step = stages.step(&mixed.core, &mut self.operators, &mut self.stages, sample);
         self.mixed = Some(mixed);
         step.map_err(worded)
+    }
+
+    /// After a step of the operators alone, what a stage remembered is of the past.
+    pub(super) fn forget_stages(&mut self) {
+        if self.stages.is_started() {
+            self.stages = StageState::default();
+        }
     }
 
     /// Brings the operators to a load, and lends the model at that load; `None` for a model without

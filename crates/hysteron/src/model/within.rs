@@ -60,6 +60,14 @@ impl Model {
         }
         self.spacing = found.spacing;
         self.after = found.after;
+        // The weights were fitted to outputs without creep, whose offset did not creep either.
+        let gain = self.after.creep().gain();
+        if gain != 1.0 {
+            let offset = gain * self.offset();
+            let (operator, plane) = (self.operator(), *self.plane());
+            let weights = self.weights().to_vec();
+            self.operators = Operators::new(operator, plane, weights, offset, self.sign())?;
+        }
         self.check_stages()?;
         Ok(self)
     }

@@ -61,7 +61,7 @@ pub(crate) fn fit(
     let (mut options, validation) = chosen(&seen, &options)?;
     if options.spacing == Spacing::Auto {
         let plane = plane_of_all(&seen, &options)?;
-        found.spacing = spacing::corners(&seen, &plane);
+        found.spacing = spacing::find(&seen, &plane, &options, progress)?;
         options.range = Some((plane.min(), plane.max()));
         seen = Cow::Owned(spacing::behind(&found.spacing, &plane, &seen));
     }

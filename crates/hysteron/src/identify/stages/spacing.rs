@@ -1,39 +1,85 @@
 //! Places the levels where the output moves.
 
+use crate::error::Result;
+use crate::identify::options::FitOptions;
 use crate::identify::stages::{on_grid, with_inputs};
+use crate::identify::weights::fit::fit_weights;
 use crate::model::Plane;
+use crate::progress::Progress;
 use crate::recording::Recording;
 
-/// Share of the levels that are at equal distances. Without them, a stretch of the input where the
+/// Shares of the levels that are at equal distances. Without them, a stretch of the input where the
 /// output rests would have no level, and the output could not move there in another recording.
-const EVEN: f64 = 0.3;
+const EVEN: [f64; 3] = [0.1, 0.3, 0.6];
+
+/// The levels follow the path of the output to these powers.
+const POWERS: [f64; 3] = [0.5, 0.7, 1.0];
 
 /// The input axis is divided into this many bins for each level.
 const BINS: usize = 50;
 
-/// The `K + 1` corners of the grid, ascending, from the bottom of the plane to its top: quantiles of
-/// the path of the output over the input, mixed with equal distances.
-pub(super) fn corners(recordings: &[Recording], plane: &Plane) -> Vec<f64> {
-    let levels = plane.levels();
-    let bins = BINS * levels;
-    let (low, high) = (plane.bottom(), plane.max());
-    let width = (high - low) / bins as f64;
+/// Other spacings have to fit better than equal distances by this share.
+const WORTH: f64 = 0.05;
+
+/// Finds the `K + 1` corners of the grid, ascending, from the bottom of the plane to its top: those
+/// of the candidates that fit the recordings best. Empty if equal distances fit as well.
+pub(super) fn find(
+    recordings: &[Recording],
+    plane: &Plane,
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<Vec<f64>> {
+    let options = FitOptions {
+        bootstrap: 0,
+        range: Some((plane.min(), plane.max())),
+        ..options.clone()
+    };
+    let rated = |corners: &[f64]| {
+        progress.tell("spacing of the levels", f64::NAN)?;
+        let seen = behind(corners, plane, recordings);
+        let model = fit_weights(&seen, &options, Progress::NONE)?;
+        Ok::<_, crate::error::Error>(model.fit.map_or(f64::INFINITY, |fit| fit.rmse))
+    };
+    let mut best = (Vec::new(), (1.0 - WORTH) * rated(&[])?);
+    let path = path(recordings, plane);
+    for even in EVEN {
+        for power in POWERS {
+            let corners = corners(&path, plane, even, power);
+            let error = rated(&corners)?;
+            if error < best.1 {
+                best = (corners, error);
+            }
+        }
+    }
+    Ok(best.0)
+}
+
+/// The path of the output in each bin of the input.
+fn path(recordings: &[Recording], plane: &Plane) -> Vec<f64> {
+    let bins = BINS * plane.levels();
+    let low = plane.bottom();
+    let width = (plane.max() - low) / bins as f64;
     let mut path = vec![0.0; bins];
     for recording in recordings {
         let pairs = recording.input.windows(2).zip(recording.output.windows(2));
         for (x, y) in pairs {
-            spread(
-                &mut path,
-                [x[0], x[1]].map(|x| (x - low) / width),
-                (y[1] - y[0]).abs(),
-            );
+            let ends = [x[0], x[1]].map(|x| (x - low) / width);
+            spread(&mut path, ends, (y[1] - y[0]).abs());
         }
     }
+    path
+}
+
+/// Quantiles of the path to a power, mixed with equal distances.
+fn corners(path: &[f64], plane: &Plane, even: f64, power: f64) -> Vec<f64> {
+    let (levels, bins) = (plane.levels(), path.len());
+    let (low, high) = (plane.bottom(), plane.max());
+    let width = (high - low) / bins as f64;
+    let path: Vec<f64> = path.iter().map(|path| path.powf(power)).collect();
     let total: f64 = path.iter().sum();
-    let even = 1.0 / bins as f64;
     let share = |path: f64| match total > 0.0 {
-        true => EVEN * even + (1.0 - EVEN) * path / total,
-        false => even,
+        true => even / bins as f64 + (1.0 - even) * path / total,
+        false => 1.0 / bins as f64,
     };
     let mut corners = vec![low];
     let mut sum = 0.0;
