@@ -3,7 +3,10 @@
 use crate::error::Result;
 use crate::model::load::no_load;
 use crate::model::{Model, OperatorState};
-use hysteron_core::{Error, Output, StageState, mix};
+use hysteron_core::{Error, MAX_CREEP, Output, StageState, mix};
+
+/// How many numbers [`State::stage_numbers`] has.
+const STAGE_NUMBERS: usize = MAX_CREEP + 3;
 
 /// One input sample of a model. A plain number converts to a sample with that input only.
 pub type Sample = hysteron_core::Sample<f64>;
@@ -78,6 +81,38 @@ impl State {
     #[must_use]
     pub fn is_rising(&self) -> bool {
         self.operators.is_rising()
+    }
+
+    /// What body, creep and lag remember, for saving: 0 or 1 for whether there was a sample, the
+    /// temperature, the output of each of four creep terms, the lagged sum.
+    #[must_use]
+    pub fn stage_numbers(&self) -> [f64; STAGE_NUMBERS] {
+        self.stages.to_numbers()
+    }
+
+    /// The same state, in which body, creep and lag remember these numbers
+    /// ([`State::stage_numbers`]). With [`Model::restore`] it is the whole state.
+    ///
+    /// ```
+    /// # use hysteron::{CreepTerm, Model, Operator, Plane, Sample, Sign};
+    /// # let plane = Plane::new(1.0, 2.0, 2)?;
+    /// # let model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// let model = model.with_after(&[CreepTerm { coefficient: 0.1, tau: 2.0 }], 0.5)?;
+    /// let mut state = model.start();
+    /// for input in [0.0, 2.0, 1.3] {
+    ///     model.step(&mut state, Sample { dt: Some(0.1), ..input.into() })?;
+    /// }
+    /// let points: Vec<f64> = state.turning_points().collect();
+    /// let restored = model.restore(&points, state.input())?;
+    /// assert_eq!(restored.with_stage_numbers(&state.stage_numbers())?, state);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] with the index of a number that is not finite.
+    pub fn with_stage_numbers(self, numbers: &[f64; STAGE_NUMBERS]) -> Result<Self> {
+        let stages = StageState::from_numbers(numbers)?;
+        Ok(Self { stages, ..self })
     }
 
     pub(super) fn step(&mut self, model: &Model, sample: Sample) -> Result<Output<f64>> {
