@@ -155,11 +155,18 @@ fn every_column_goes_over_as_it_is() {
                 let writer = TableWriter::create(Some((&out).into())).unwrap();
                 let what = Simulate {
                     input: "x",
-                    time: None,
-                    load: None,
+                    around: Default::default(),
                     band: None,
                 };
-                simulate_table(&model, &mut table, what, Some(writer), |_| {}).unwrap();
+                simulate_table(
+                    &model,
+                    model.start(),
+                    &mut table,
+                    what,
+                    Some(writer),
+                    |_| {},
+                )
+                .unwrap();
                 let (new_fields, new_rows) = read(&out);
                 assert_eq!(new_fields[..fields.len()], fields);
                 let mut state = model.start();
@@ -186,17 +193,37 @@ fn an_inverse_that_looks_ahead_adds_its_columns_too() {
     let mut table = TableReader::open(&source).unwrap();
     let writer = TableWriter::create(Some((&out).into())).unwrap();
     let how = Invert {
+        around: Default::default(),
+        drive_range: None,
+        horizon: 0.0,
+        preview: None,
         target: "x",
         policy: Policy::Anticipate,
         tolerance: 0.0,
         look_ahead: 1000,
     };
-    let counts = invert_table(&model(), &mut table, how, Some(writer), |_| {}).unwrap();
+    let counts = invert_table(
+        &model(),
+        model().start(),
+        &mut table,
+        how,
+        Some(writer),
+        |_| {},
+    )
+    .unwrap();
     assert_eq!(counts.samples, 100);
     let csv = folder.path().join("out.csv");
     let mut table = TableReader::open(&source).unwrap();
     let writer = TableWriter::create(Some((&csv).into())).unwrap();
-    invert_table(&model(), &mut table, how, Some(writer), |_| {}).unwrap();
+    invert_table(
+        &model(),
+        model().start(),
+        &mut table,
+        how,
+        Some(writer),
+        |_| {},
+    )
+    .unwrap();
     let csv = fs::read_to_string(csv).unwrap();
     let (rows, expected) = (read(&out).1, read(&source).1);
     for ((row, before), line) in rows.iter().zip(&expected).zip(csv.lines().skip(1)) {
@@ -228,11 +255,18 @@ fn a_column_that_is_there_already_is_refused() {
     let writer = TableWriter::create(Some((&out).into())).unwrap();
     let what = Simulate {
         input: "x",
-        time: None,
-        load: None,
+        around: Default::default(),
         band: None,
     };
-    let said = simulate_table(&model(), &mut table, what, Some(writer), |_| {}).unwrap_err();
+    let said = simulate_table(
+        &model(),
+        model().start(),
+        &mut table,
+        what,
+        Some(writer),
+        |_| {},
+    )
+    .unwrap_err();
     assert!(said.to_string().contains("`output_model`"), "{said}");
     assert!(!out.exists());
 }
@@ -248,11 +282,18 @@ fn csv_becomes_parquet_with_the_kinds_that_its_cells_have() {
     let writer = TableWriter::create(Some((&out).into())).unwrap();
     let what = Simulate {
         input: "x",
-        time: None,
-        load: None,
+        around: Default::default(),
         band: None,
     };
-    simulate_table(&model(), &mut table, what, Some(writer), |_| {}).unwrap();
+    simulate_table(
+        &model(),
+        model().start(),
+        &mut table,
+        what,
+        Some(writer),
+        |_| {},
+    )
+    .unwrap();
     let rows = read(&out).1;
     let text = |text: &str| Field::Str(text.to_owned());
     let expected = [

@@ -6,9 +6,10 @@ use crate::model::{CreepTerm, Model, Sample};
 use hysteron_core::{Axis, Load, StageState, Stages};
 
 impl Model {
-    /// The stages around the operators. The offset is that of the operators; with a load, that of
-    /// the middle of its range.
-    pub(crate) fn stages(&self) -> Stages<'_, f64> {
+    /// The constants of the stages around the operators, as the core takes them. The offset is that
+    /// of the operators; where weights depend on a load, that of the middle of its range.
+    #[must_use]
+    pub fn stages(&self) -> Stages<'_, f64> {
         let curves = self.load.as_ref().and_then(|load| load.curves.as_ref());
         Stages {
             body: self.thermal.map(|body| body.core()),
@@ -132,6 +133,10 @@ impl Model {
     pub(crate) fn worded(&self, error: hysteron_core::Error) -> Error {
         match error {
             hysteron_core::Error::TimeStep => crate::model::needs_time(),
+            hysteron_core::Error::Load => match &self.load {
+                Some(load) => load.one_is_needed(),
+                None => error.into(),
+            },
             other => other.into(),
         }
     }

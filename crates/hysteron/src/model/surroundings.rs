@@ -201,7 +201,6 @@ mod tests {
             load: Some(&load),
         };
         let found = model.simulate_in(&input, around).unwrap();
-        assert_eq!(found, model.simulate_under_load(&input, &load).unwrap());
         let sample = crate::model::Sample {
             load: Some(load[0]),
             ..input[0].into()

@@ -22,10 +22,19 @@ const WORTH: f64 = 0.1;
 
 /// Coefficients of creep that are tried, for all terms together, and lags in sampling steps.
 const COEFFICIENTS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
-const LAGS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
+const LAGS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+
+/// Time constants that are tried for a single term.
+const SINGLE: usize = 5;
+
+/// Rounds in which coefficients and time constants are refined, each with a smaller step.
+const REFINED: i32 = 4;
+
+/// Smoothness of the weights in the search, so that operators that a block left out do not run away.
+const SMOOTH: f64 = 1e-6;
 
 /// Terms that are tried by `auto`.
-const TERMS: [usize; 3] = [1, 2, 3];
+const TERMS: [usize; 2] = [1, 3];
 
 /// What was tried, for the model file.
 #[derive(Debug, Clone, Serialize)]
@@ -57,44 +66,42 @@ pub(super) fn find(
     }
     let search = Search::new(recordings, options, progress)?;
     let without = search.rated(&After::default())?;
-    let (mut best, mut least) = (After::default(), without);
-    let lags = match options.lag {
+    let lags: Vec<f64> = match options.lag {
         Choice::Fixed(lag) => vec![lag],
-        Choice::Auto => LAGS.iter().map(|steps| steps * search.step).collect(),
+        Choice::Auto => [0.0]
+            .into_iter()
+            .chain(LAGS.map(|steps| steps * search.step))
+            .collect(),
     };
-    for lag in lags.into_iter().filter(|lag| *lag > 0.0) {
-        let after = After::new(&[], lag);
-        let error = search.rated(&after)?;
-        if matches!(options.lag, Choice::Fixed(_)) || error < (1.0 - WORTH) * least {
-            (best, least) = (after, error);
-        }
-    }
-    let lag = best.lag;
     let counts = match options.creep {
         Choice::Fixed(count) => vec![count],
-        Choice::Auto => TERMS.to_vec(),
+        Choice::Auto => [0].into_iter().chain(TERMS).collect(),
     };
-    // A number of terms that was asked for is taken with its best coefficients.
-    let mut bar = match options.creep {
-        Choice::Fixed(_) => f64::INFINITY,
-        Choice::Auto => (1.0 - WORTH) * least,
-    };
-    for count in counts.into_iter().filter(|count| *count > 0) {
-        for coefficient in COEFFICIENTS {
-            let after = After::new(&search.terms(count, coefficient), lag);
-            let error = search.rated(&after)?;
-            if error < bar {
-                (best, least, bar) = (after, error, error);
+    // The simpler first. What was asked for is taken with its best constants.
+    let mut best: Option<(After, f64)> = None;
+    for &count in &counts {
+        // A lag that is chosen before creep would stand for it, so the best of each is compared.
+        let mut of_count: Option<(After, f64)> = None;
+        for &lag in &lags {
+            let found = search.creep(count, lag)?;
+            let bar = if lag > 0.0 { 1.0 - WORTH } else { 1.0 };
+            if of_count
+                .as_ref()
+                .is_none_or(|(_, least)| found.1 < bar * least)
+            {
+                of_count = Some(found);
             }
         }
+        if let Some(found) = of_count
+            && best
+                .as_ref()
+                .is_none_or(|(_, least)| found.1 < (1.0 - WORTH) * least)
+        {
+            best = Some(found);
+        }
     }
-    Ok((
-        best,
-        Report {
-            without,
-            with: least,
-        },
-    ))
+    let (after, with) = best.unwrap_or((After::default(), without));
+    Ok((after, Report { without, with }))
 }
 
 /// The recordings with the output as it was before creep and lag.
@@ -144,6 +151,7 @@ impl<'a> Search<'a> {
         }
         let options = FitOptions {
             bootstrap: 0,
+            smooth: options.smooth.max(SMOOTH),
             ..options.clone()
         };
         Ok(Self {
@@ -155,10 +163,60 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Terms with time constants spread evenly over the logarithm, from ten samples to a third of
-    /// the recording.
+    /// The best creep of `count` terms with this lag, and its error on blocks left out.
+    fn creep(&self, count: usize, lag: f64) -> Result<(After, f64)> {
+        let rate = |terms: &[CreepTerm]| {
+            let after = After::new(terms, lag);
+            let error = self.rated(&after)?;
+            Ok::<_, Error>((after, error))
+        };
+        if count == 0 {
+            return rate(&[]);
+        }
+        let mut best = rate(&self.terms(count, COEFFICIENTS[0]))?;
+        for coefficient in COEFFICIENTS {
+            let mut consider = |terms: &[CreepTerm]| {
+                let next = rate(terms)?;
+                if next.1 < best.1 {
+                    best = next;
+                }
+                Ok::<_, Error>(())
+            };
+            match count {
+                // The time constant of a single term is searched too.
+                1 => {
+                    for term in self.terms(SINGLE, coefficient * SINGLE as f64) {
+                        consider(&[term])?;
+                    }
+                }
+                _ => consider(&self.terms(count, coefficient))?,
+            }
+        }
+        for round in 1..=REFINED {
+            let step = 2_f64.powf(1.0 / f64::from(round));
+            for factor in [step, 1.0 / step] {
+                let scaled = |coefficient: f64, tau: f64| {
+                    let scale = |term: CreepTerm| CreepTerm {
+                        coefficient: term.coefficient * coefficient,
+                        tau: term.tau * tau,
+                    };
+                    best.0.terms().into_iter().map(scale).collect::<Vec<_>>()
+                };
+                for terms in [scaled(factor, 1.0), scaled(1.0, factor)] {
+                    let next = rate(&terms)?;
+                    if next.1 < best.1 {
+                        best = next;
+                    }
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// Terms with time constants spread evenly over the logarithm, from a thirtieth to a third of the
+    /// longest recording. Faster ones would not be creep, but stand for other dynamics.
     fn terms(&self, count: usize, coefficient: f64) -> Vec<CreepTerm> {
-        let (from, to) = ((10.0 * self.step).ln(), (self.longest / 3.0).ln());
+        let (from, to) = ((self.longest / 30.0).ln(), (self.longest / 3.0).ln());
         let tau = |k: usize| (from + (to - from) * (k as f64 + 0.5) / count as f64).exp();
         let term = |k| CreepTerm {
             coefficient: coefficient / count as f64,
