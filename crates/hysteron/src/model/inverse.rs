@@ -253,31 +253,8 @@ impl Inverse<'_> {
         tolerance: f64,
         surroundings: Surroundings<'_>,
     ) -> Result<Vec<Solution<f64>>> {
-        let mut headings = policy.headings(targets, tolerance).into_iter();
-        let samples = surroundings.samples(self.model, targets)?;
-        let wanted = samples.map(
-            |(
-                _,
-                Sample {
-                    input: output,
-                    dt,
-                    load,
-                },
-            )| {
-                let heading = headings.next().flatten();
-                let target = Target {
-                    output,
-                    heading,
-                    tolerance,
-                };
-                Wanted {
-                    dt,
-                    load,
-                    ..target.into()
-                }
-            },
-        );
-        self.through(state, &wanted.collect::<Vec<_>>())
+        let headings = policy.headings(targets, tolerance);
+        self.headed_in(state, targets, &headings, tolerance, surroundings)
     }
 
     /// As [`Inverse::series`], with the direction that each target takes next. A target without one
@@ -303,14 +280,36 @@ impl Inverse<'_> {
         headings: &[Option<Direction>],
         tolerance: f64,
     ) -> Result<Vec<Solution<f64>>> {
+        self.headed_in(state, targets, headings, tolerance, Surroundings::default())
+    }
+
+    /// As [`Inverse::headed`], for any model.
+    ///
+    /// # Errors
+    /// As [`Inverse::series_in`].
+    pub fn headed_in(
+        &self,
+        state: &mut State,
+        targets: &[f64],
+        headings: &[Option<Direction>],
+        tolerance: f64,
+        surroundings: Surroundings<'_>,
+    ) -> Result<Vec<Solution<f64>>> {
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
-        let pairs = targets.iter().zip(headings);
-        let target = |(&output, heading)| Target {
-            output,
-            heading,
-            tolerance,
-        };
-        self.through(state, &pairs.map(target).collect::<Vec<_>>())
+        let samples = surroundings.samples(self.model, targets)?.zip(headings);
+        let wanted = samples.map(|((_, sample), heading)| {
+            let target = Target {
+                output: sample.input,
+                heading,
+                tolerance,
+            };
+            Wanted {
+                dt: sample.dt,
+                load: sample.load,
+                ..target.into()
+            }
+        });
+        self.through(state, &wanted.collect::<Vec<_>>())
     }
 
     /// As [`Inverse::series`], with all that is wanted of each sample.

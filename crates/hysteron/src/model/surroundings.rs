@@ -11,7 +11,9 @@ use hysteron_core::Error as CoreError;
 use hysteron_core::{Clipped, ClippedCount};
 use std::borrow::Cow;
 
-/// The series that accompany an input. Each is as long as the input.
+/// The series that accompany an input. Each is as long as the input. The time may have one number
+/// more at its beginning: the time of the sample before the first one, to go on from a state that
+/// has moved.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Surroundings<'a> {
     /// Time in seconds; needed by a model with a thermal body, creep or a lag.
@@ -44,7 +46,7 @@ impl Model {
 
     /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
     /// Returns how many inputs of the operators were clipped. The time step of the first sample is
-    /// zero.
+    /// zero, if `surroundings` does not tell the time before it.
     ///
     /// # Errors
     /// - [`Error::Core`] for an input that is not finite, with its index, a short `output`, and a
@@ -147,7 +149,9 @@ impl<'a> Surroundings<'a> {
             (true, None) => return Err(needs_time()),
             (true, Some(time)) => Some(time),
         };
-        for (name, series) in [("times", time), ("loads", self.load)] {
+        let before = usize::from(time.is_some_and(|time| time.len() == input.len() + 1));
+        let of_samples = time.map(|time| &time[before..]);
+        for (name, series) in [("times", of_samples), ("loads", self.load)] {
             if let Some(series) = series.filter(|series| series.len() != input.len()) {
                 let (found, inputs) = (series.len(), input.len());
                 return Err(Error::Fit(format!("{found} {name} for {inputs} samples")));
@@ -155,7 +159,8 @@ impl<'a> Surroundings<'a> {
         }
         let load = self.load;
         Ok(input.iter().enumerate().map(move |(n, &input)| {
-            let dt = time.map(|time| time[n] - time[n.saturating_sub(1)]);
+            let at = n + before;
+            let dt = time.map(|time| time[at] - time[at.saturating_sub(1)]);
             let load = load.map(|load| load[n]);
             (n, Sample { input, dt, load })
         }))
