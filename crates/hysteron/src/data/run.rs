@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::{Band, Inverse, Model, Policy, Preview, Sample, State, Wanted};
 use crate::model::{needs_time, no_load};
 use crate::series::Headings;
-use hysteron_core::{Direction, Status, Target};
+use hysteron_core::Status;
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -222,7 +222,7 @@ pub fn invert_table(
     let mut unheaded: VecDeque<(Row, Sample)> = VecDeque::new();
     let mut release = |waiting: &mut VecDeque<(Row, Sample)>, heading, count: usize| {
         for (row, sample) in waiting.drain(..count) {
-            inverting.row(row, wanted(sample, heading, what.tolerance))?;
+            inverting.row(row, Wanted::of(sample, heading, what.tolerance))?;
         }
         Ok::<(), Error>(())
     };
@@ -248,24 +248,6 @@ pub fn invert_table(
         release(&mut unheaded, heading, count)?;
     }
     inverting.finish()
-}
-
-fn wanted(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Wanted {
-    let Sample {
-        input: output,
-        dt,
-        load,
-    } = sample;
-    let target = Target {
-        output,
-        heading,
-        tolerance,
-    };
-    Wanted {
-        dt,
-        load,
-        ..target.into()
-    }
 }
 
 struct Inverting<'m> {
@@ -307,16 +289,9 @@ impl Inverting<'_> {
 
     /// `asked` is the output that the row asks for; a preview may want a little less of it.
     fn write(&mut self, row: &Row, wanted: Wanted, asked: f64) -> Result<()> {
-        let wanted = match &self.preview {
-            Some(preview) => preview.allowed(&self.state, wanted)?,
-            None => wanted,
-        };
-        let solution = self.inverse.step(&mut self.state, wanted)?;
-        let hysteron_core::Solution { input, status } = solution;
-        let missed = (asked - wanted.target.output).abs() > wanted.target.tolerance;
-        let status = match status {
-            Status::Ok if missed => Status::Limited,
-            status => status,
+        let hysteron_core::Solution { input, status } = match &self.preview {
+            Some(preview) => preview.step(&self.inverse, &mut self.state, wanted, asked)?,
+            None => self.inverse.step(&mut self.state, wanted)?,
         };
         match status {
             Status::Ok => {}

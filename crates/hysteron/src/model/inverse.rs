@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::policy::Policy;
+use crate::model::preview::Preview;
 use crate::model::{Model, Operators, Sample, Sign, State, Surroundings};
 use hysteron_core::{Direction, Solution, Target};
 
@@ -52,6 +53,27 @@ impl From<Target<f64>> for Wanted {
             dt: None,
             load: None,
             temperature: (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+}
+
+impl Wanted {
+    /// What a sample wants whose input is the target.
+    pub(crate) fn of(sample: Sample, heading: Option<Direction>, tolerance: f64) -> Self {
+        let Sample {
+            input: output,
+            dt,
+            load,
+        } = sample;
+        let target = Target {
+            output,
+            heading,
+            tolerance,
+        };
+        Self {
+            dt,
+            load,
+            ..target.into()
         }
     }
 }
@@ -255,6 +277,41 @@ impl Inverse<'_> {
     ) -> Result<Vec<Solution<f64>>> {
         let headings = policy.headings(targets, tolerance);
         self.headed_in(state, targets, &headings, tolerance, surroundings)
+    }
+
+    /// As [`Inverse::series_in`], for a reference that is known ahead: the drive of a model with a
+    /// thermal body may start up to `seconds` before a target. Earlier targets are missed by up to a
+    /// tenth of the range for that, and targets at the very ends of the range by 1 %.
+    ///
+    /// # Errors
+    /// As [`Inverse::series_in`].
+    pub fn previewed(
+        &self,
+        state: &mut State,
+        targets: &[f64],
+        policy: Policy,
+        tolerance: f64,
+        surroundings: Surroundings<'_>,
+        seconds: f64,
+    ) -> Result<Vec<Solution<f64>>> {
+        if self.model.thermal.is_none() || seconds <= 0.0 {
+            return self.series_in(state, targets, policy, tolerance, surroundings);
+        }
+        let inner = self.model.without_body();
+        let ahead = state.clone();
+        let mut preview = Preview::new(self.model, &inner, self.drive, seconds, ahead)?;
+        let mut headings = policy.headings(targets, tolerance).into_iter();
+        let mut found = Vec::with_capacity(targets.len());
+        for (_, sample) in surroundings.samples(self.model, targets)? {
+            let heading = headings.next().flatten();
+            for (wanted, asked) in preview.push(Wanted::of(sample, heading, tolerance))? {
+                found.push(preview.step(self, state, wanted, asked)?);
+            }
+        }
+        while let Some((wanted, asked)) = preview.next() {
+            found.push(preview.step(self, state, wanted, asked)?);
+        }
+        Ok(found)
     }
 
     /// As [`Inverse::series`], with the direction that each target takes next. A target without one

@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::model::inverse::{Inverse, Wanted};
 use crate::model::{Model, Sign, State};
-use hysteron_core::Status;
+use hysteron_core::{Solution, Status};
 use std::collections::VecDeque;
 
 /// Bounds the temperature by the targets of the next seconds. A body heats and cools no faster than
@@ -148,6 +148,24 @@ impl<'m> Preview<'m> {
         let given_up = (wanted.target.output - target.output).abs();
         target.tolerance = (target.tolerance - given_up).max(0.0);
         Ok(Wanted { target, ..wanted })
+    }
+
+    /// Moves `state` by a sample that is due, and returns its solution: one that misses the output
+    /// `asked` for is not `ok`.
+    pub(crate) fn step(
+        &self,
+        inverse: &Inverse<'_>,
+        state: &mut State,
+        wanted: Wanted,
+        asked: f64,
+    ) -> Result<Solution<f64>> {
+        let wanted = self.allowed(state, wanted)?;
+        let mut solution = inverse.step(state, wanted)?;
+        let missed = (asked - wanted.target.output).abs() > wanted.target.tolerance;
+        if solution.status == Status::Ok && missed {
+            solution.status = Status::Limited;
+        }
+        Ok(solution)
     }
 
     /// The next sample that waits, with the bounds of its temperature.
