@@ -16,6 +16,11 @@ const ABOUT: &str = "\
  * A pointer points to as many elements as the count beside it says, one where there is no count. No
  * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
  *
+ * A model may have stages around its operators: a thermal body, a load, creep, a lag. Samples then
+ * need the time since the sample before, or a load. The functions whose names end with `_in` take
+ * both; NAN stands for one that is not given. The `input` of a sample is the one held since the
+ * sample before.
+ *
  * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
  * used from any thread.
  *
@@ -23,7 +28,7 @@ const ABOUT: &str = "\
  * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
  * that has an object, that object either stays as it is or is refused from then on:
  * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
- * sign. Only one thread at a time may use an object that a call changes.
+ * sign; those of `hysteron_core_stages_...` are the model's, with all of its stages. Only one thread at a time may use an object that a call changes.
  */";
 
 /// The header in the repository.

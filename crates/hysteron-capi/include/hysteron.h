@@ -9,6 +9,11 @@
  * A pointer points to as many elements as the count beside it says, one where there is no count. No
  * two pointers of a call may share memory: HYSTERON_OVERLAP, and nothing is written.
  *
+ * A model may have stages around its operators: a thermal body, a load, creep, a lag. Samples then
+ * need the time since the sample before, or a load. The functions whose names end with `_in` take
+ * both; NAN stands for one that is not given. The `input` of a sample is the one held since the
+ * sample before.
+ *
  * Handles (uint64_t) are numbers. A handle that was freed or never given is refused. Handles may be
  * used from any thread.
  *
@@ -16,7 +21,7 @@
  * object must not be moved, and it ends with its memory. Where an initialisation fails in memory
  * that has an object, that object either stays as it is or is refused from then on:
  * HYSTERON_HANDLE. Outputs of these functions are the sum over the operators, without offset and
- * sign. Only one thread at a time may use an object that a call changes.
+ * sign; those of `hysteron_core_stages_...` are the model's, with all of its stages. Only one thread at a time may use an object that a call changes.
  */
 
 #ifndef HYSTERON_H
@@ -86,6 +91,21 @@
 #define HYSTERON_ADAPTATION 11
 
 /**
+ * The time since the sample before is needed: a finite number of seconds from 0 on.
+ */
+#define HYSTERON_TIME_STEP 12
+
+/**
+ * A load is needed that is a finite number.
+ */
+#define HYSTERON_LOAD 13
+
+/**
+ * A constant of a stage, or a limit of the inverse, is out of its range.
+ */
+#define HYSTERON_STAGE 14
+
+/**
  * A file cannot be read or written.
  */
 #define HYSTERON_FILE 20
@@ -101,7 +121,7 @@
 #define HYSTERON_RECORDING 22
 
 /**
- * The model or the options do not allow this call.
+ * The model or the options do not allow this call: a load is missing, out of range or too much.
  */
 #define HYSTERON_FIT 23
 
@@ -126,7 +146,7 @@
 #define HYSTERON_DESIGN 27
 
 /**
- * A thermal body cannot be run here.
+ * The model depends on time: the time since the sample before is missing or negative.
  */
 #define HYSTERON_THERMAL 28
 
@@ -181,6 +201,11 @@
 #define HYSTERON_INTERNAL 106
 
 /**
+ * The largest number of creep terms.
+ */
+#define HYSTERON_CREEP_TERMS 4
+
+/**
  * Operator: modified Krasnosel'skii-Pokrovskii, 0 to 1.
  */
 #define HYSTERON_MKP 0
@@ -229,6 +254,27 @@
  * The target lies inside a jump of a relay model. The output lies beyond it.
  */
 #define HYSTERON_PASSED 2
+
+/**
+ * The model can give the target, but not in this sample: the input is at an end of its range, or
+ * creep and lag are too slow. The input goes as far as it can.
+ */
+#define HYSTERON_LIMITED 3
+
+/**
+ * Start of a state: as a new one. It is what the fit found before the first sample, or off.
+ */
+#define HYSTERON_START_FITTED 0
+
+/**
+ * Start of a state: every operator off.
+ */
+#define HYSTERON_START_OFF 1
+
+/**
+ * Start of a state: every operator on.
+ */
+#define HYSTERON_START_ON 2
 
 /**
  * Method of adaptation: normalised gradient.
@@ -284,6 +330,11 @@ typedef struct HysteronCoreEstimator HysteronCoreEstimator;
  * A model in the caller's memory.
  */
 typedef struct HysteronCoreModel HysteronCoreModel;
+
+/**
+ * The stages around the operators, in the caller's memory.
+ */
+typedef struct HysteronCoreStages HysteronCoreStages;
 
 /**
  * A state in the caller's memory.
@@ -376,6 +427,148 @@ typedef struct HysteronLearning {
 } HysteronLearning;
 
 /**
+ * The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
+ * stages.
+ *
+ * ```text
+ * T = body(drive)    x = W(a(load) T - s(load))    h = operators(x)
+ * y = offset + o(load) + sign * lag(creep(g(load) h))
+ * ```
+ */
+typedef struct HysteronStages {
+  /**
+   * 1 for a thermal body, whose input is a drive; 0 for none.
+   */
+  int32_t body;
+  /**
+   * 1: the output rises with the operators' sum; −1: it falls.
+   */
+  int32_t sign;
+  /**
+   * The output where the operators' sum is zero.
+   */
+  double offset;
+  /**
+   * Body: temperature at rest without a drive.
+   */
+  double ambient;
+  /**
+   * Body: temperature at rest per unit of the drive, above 0.
+   */
+  double gain;
+  /**
+   * Body: time constant of heating in seconds, above 0.
+   */
+  double tau_heating;
+  /**
+   * Body: time constant of cooling in seconds, above 0.
+   */
+  double tau_cooling;
+  /**
+   * Number of loads at which the curves are known; 0 without a load. Beyond the outermost loads
+   * the curves stay as they are there.
+   */
+  size_t load_count;
+  /**
+   * The loads, ascending.
+   */
+  const double *loads;
+  /**
+   * The shift `s` of the axis at each load, in the unit of the temperature. Null for 0.
+   */
+  const double *shifts;
+  /**
+   * The scale `a` of the axis at each load, above 0. Null for 1.
+   */
+  const double *scales;
+  /**
+   * The gain `g` at each load, above 0. Null for 1.
+   */
+  const double *gains;
+  /**
+   * The offset `o` at each load, in the output's unit. Null for 0.
+   */
+  const double *offsets;
+  /**
+   * Number of corners of the grid: `K + 1`, or 0 for levels at equal distances.
+   */
+  size_t spacing_count;
+  /**
+   * The temperatures at the corners, ascending, from level 0, the bottom of the plane, on.
+   */
+  const double *spacing;
+  /**
+   * Number of creep terms, up to `HYSTERON_CREEP_TERMS`.
+   */
+  size_t creep_count;
+  /**
+   * The share of the operators' sum that creeps, of each term, from 0.
+   */
+  const double *creep;
+  /**
+   * The time constant of each creep term in seconds, above 0.
+   */
+  const double *creep_taus;
+  /**
+   * Time constant of a lag of the whole in seconds; 0 for none.
+   */
+  double lag;
+} HysteronStages;
+
+/**
+ * What body, creep and lag remember from one sample to the next. All zeros: there was no sample
+ * yet. A copy of it is a saved state.
+ */
+typedef struct HysteronStageState {
+  /**
+   * 1 after the first sample, 0 before it. Body, creep and lag are at rest with that sample.
+   */
+  double started;
+  /**
+   * The temperature; without a thermal body, the input itself.
+   */
+  double temperature;
+  /**
+   * The output of each creep term.
+   */
+  double creep[HYSTERON_CREEP_TERMS];
+  /**
+   * The sum of the operators after creep and lag.
+   */
+  double lagged;
+} HysteronStageState;
+
+/**
+ * Limits of the inverse. `hysteron_model_limits` writes those that a model has of its own.
+ */
+typedef struct HysteronLimits {
+  /**
+   * Lowest input, in its unit: the lowest drive of a model with a thermal body. `-INFINITY` for
+   * none.
+   */
+  double drive_min;
+  /**
+   * Highest input. `INFINITY` for none.
+   */
+  double drive_max;
+  /**
+   * Seconds in which a thermal body reaches the temperature it needs, from 0; the time step where
+   * that is longer. With a longer horizon noise of the target moves the drive less, and the
+   * output follows late.
+   */
+  double horizon;
+  /**
+   * Lowest temperature, as what comes next may need it: of the input itself without a thermal
+   * body. `-INFINITY` for none.
+   */
+  double temperature_min;
+  /**
+   * Highest temperature. `INFINITY` for none.
+   */
+  double temperature_max;
+} HysteronLimits;
+
+/**
  * Properties of a model.
  */
 typedef struct HysteronModelInfo {
@@ -396,19 +589,21 @@ typedef struct HysteronModelInfo {
    */
   size_t weights;
   /**
-   * Lowest level, in the input's unit.
+   * Lowest level, in the unit of the operators' input. That is the temperature with a thermal
+   * body; with levels at unequal distances the plane only numbers them.
    */
   double min;
   /**
-   * Highest level, in the input's unit.
+   * Highest level, in the same unit.
    */
   double max;
   /**
-   * One step below the lowest level, in the input's unit. Every operator is off there.
+   * One step below the lowest level, in the same unit. Every operator is off there.
    */
   double bottom;
   /**
-   * Offset: what is added to the sum of the operators.
+   * Offset: what is added to the sum of the operators. Of a model that depends on a load, offset
+   * and outputs are those without its curves, at the middle of the load range.
    */
   double offset;
   /**
@@ -424,6 +619,53 @@ typedef struct HysteronModelInfo {
    */
   double usual_tolerance;
 } HysteronModelInfo;
+
+/**
+ * What a model needs beside its input, and in which ranges.
+ */
+typedef struct HysteronModelNeeds {
+  /**
+   * 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else 0.
+   */
+  int32_t time;
+  /**
+   * 1 if the model depends on a load, which samples then need; else 0.
+   */
+  int32_t load;
+  /**
+   * 1 if the model has a thermal body, so that its input is a drive; else 0.
+   */
+  int32_t body;
+  /**
+   * 1 if the fit found a state before the first sample, in which states start; else 0.
+   */
+  int32_t fitted_start;
+  /**
+   * Smallest load, in its unit. NaN without a load.
+   */
+  double load_min;
+  /**
+   * Largest load. NaN without a load.
+   */
+  double load_max;
+  /**
+   * Lowest drive of the inverse, in the input's unit. `-INFINITY` without a thermal body.
+   */
+  double drive_min;
+  /**
+   * Highest drive of the inverse. `INFINITY` without a thermal body.
+   */
+  double drive_max;
+  /**
+   * Where the operators are at their lowest: the temperature with a thermal body, else the input;
+   * with a load, at the middle of its range.
+   */
+  double active_min;
+  /**
+   * Where the operators are at their highest.
+   */
+  double active_max;
+} HysteronModelNeeds;
 
 #ifdef __cplusplus
 extern "C" {
@@ -485,6 +727,56 @@ int32_t hysteron_adaptive_keep(uint64_t adaptive);
  * Returns to the last good weights.
  */
 int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
+
+/**
+ * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to be
+ * aligned like a `uint64_t`.
+ */
+size_t hysteron_core_stages_size(const struct HysteronStages *stages);
+
+/**
+ * Makes stages around the operators of `model` in `memory`. The constants are copied, with their
+ * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every model
+ * of as many levels.
+ */
+int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
+                                  const struct HysteronStages *constants,
+                                  void *memory,
+                                  size_t bytes,
+                                  struct HysteronCoreStages **stages);
+
+/**
+ * Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load` are
+ * as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is what
+ * the stages remember, zeros before the first sample. `clipped` may be null. After an error nothing
+ * has moved.
+ */
+int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
+                                  const struct HysteronCoreModel *model,
+                                  struct HysteronCoreState *state,
+                                  struct HysteronStageState *memory,
+                                  double input,
+                                  double dt,
+                                  double load,
+                                  double *output,
+                                  int32_t *clipped);
+
+/**
+ * Finds the input for the output `target` and moves there. Arguments are as for
+ * `hysteron_inverse_step_in`; `limits` may be null for none. After an error nothing has moved.
+ */
+int32_t hysteron_core_stages_inverse_step(const struct HysteronCoreStages *stages,
+                                          const struct HysteronCoreModel *model,
+                                          struct HysteronCoreState *state,
+                                          struct HysteronStageState *memory,
+                                          double target,
+                                          int32_t heading,
+                                          double tolerance,
+                                          double dt,
+                                          double load,
+                                          const struct HysteronLimits *limits,
+                                          double *input,
+                                          int32_t *status);
 
 /**
  * The text of a status code. It is never null and stays valid. `hysteron_last_error` gives the
@@ -553,6 +845,12 @@ int32_t hysteron_core_state_rebase(const struct HysteronCoreModel *model, struct
  * the size.
  */
 size_t hysteron_last_error(char *text, size_t size);
+
+/**
+ * Writes the limits that the inverse of `model` has where none are given. The drive stays within
+ * that of the recording fitted, and the horizon is 0. A model without a thermal body has no limits.
+ */
+int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
 
 /**
  * Size in bytes of a model with `levels` levels and `tables` tables: 1, or 2 for adaptation by
@@ -686,23 +984,62 @@ int32_t hysteron_model_free(uint64_t model);
 int32_t hysteron_model_info(uint64_t model, struct HysteronModelInfo *info);
 
 /**
- * Copies the weights, row by row. `count` becomes their number, also if `capacity` is too small.
+ * Writes what a model needs beside its input, and in which ranges.
+ */
+int32_t hysteron_model_needs(uint64_t model, struct HysteronModelNeeds *needs);
+
+/**
+ * Copies the weights, row by row. Of a model that depends on a load, they are those without its
+ * curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too small.
  */
 int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity, size_t *count);
 
 /**
- * Copies the name of the input (`quantity` 0) or of the output (1), and its unit in brackets if it
- * has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
+ * Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model that
+ * depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
  * with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
  * byte. `text` may be null with size 0.
  */
-int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
+int32_t hysteron_model_quantity(uint64_t model,
+                                int32_t quantity,
+                                char *text,
+                                size_t size,
+                                size_t *needed);
 
 /**
- * Makes a state of `model` with all operators off. `model` may be freed before the state.
+ * Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole
+ * state. A model without stages needs it not.
+ */
+int32_t hysteron_state_save_stages(uint64_t state, struct HysteronStageState *stages);
+
+/**
+ * Restores, bit for bit, what `hysteron_state_save_stages` gave. Call it after
+ * `hysteron_state_restore`, which puts body, creep and lag at rest with the next sample.
+ */
+int32_t hysteron_state_restore_stages(uint64_t state, const struct HysteronStageState *stages);
+
+/**
+ * Writes the temperature after the last sample: the input itself for a model without a thermal
+ * body, and the bottom of the plane before the first sample.
+ */
+int32_t hysteron_state_temperature(uint64_t state, double *temperature);
+
+/**
+ * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
+ * those of the model: they end when it and its states are freed.
  *
- * A model that depends on a load or has a thermal body has no such state. Use it at one load
+ * A model whose weights depend on a load has other constants at each load: take it at one load
  * (`hysteron_model_at_load`).
+ */
+int32_t hysteron_model_stages(uint64_t model, struct HysteronStages *stages);
+
+/**
+ * Makes a state of `model`, as the fit found it before the first sample, or with all operators off
+ * where it found none. Body, creep and lag are at rest with the first sample. `model` may be freed
+ * before the state.
+ *
+ * The model may have stages: a load, a thermal body, creep, a lag. Move the state by the functions
+ * whose names end with `_in`, which take time and load. The others refuse what they cannot know.
  */
 int32_t hysteron_state_new(uint64_t model, uint64_t *state);
 
@@ -712,31 +1049,40 @@ int32_t hysteron_state_new(uint64_t model, uint64_t *state);
 int32_t hysteron_state_free(uint64_t state);
 
 /**
- * Switches all operators off, as at the bottom of the plane.
+ * Switches all operators off, as at the bottom of the plane. Body, creep and lag are at rest with
+ * the next sample.
  */
 int32_t hysteron_state_reset(uint64_t state);
 
 /**
- * Switches all operators on, as at the top of the plane.
+ * Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
+ * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the next
+ * sample.
+ */
+int32_t hysteron_state_start(uint64_t state, int32_t start);
+
+/**
+ * Switches all operators on, as at the top of the plane. Body, creep and lag are at rest with the
+ * next sample.
  */
 int32_t hysteron_state_saturate(uint64_t state);
 
 /**
  * Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
- * or `HYSTERON_HIGH` for an input outside the plane. It may be null.
+ * or `HYSTERON_HIGH` for an input of the operators outside the plane. It may be null.
  */
 int32_t hysteron_step(uint64_t state, double input, double *output, int32_t *clipped);
 
 /**
- * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. If an
- * input is not finite, the state stays as it is.
+ * Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
+ * error, as of an input that is not finite, the state stays as it is.
  */
 int32_t hysteron_run(uint64_t state, const double *input, double *output, size_t count);
 
 /**
  * Finds the input that gives `target` and moves the state there. `status` becomes
- * `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH` or
- * `HYSTERON_PASSED`.
+ * `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH`,
+ * `HYSTERON_PASSED` or `HYSTERON_LIMITED`.
  *
  * `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
  * `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
@@ -772,15 +1118,80 @@ int32_t hysteron_headings(const double *target, size_t count, double tolerance, 
 
 /**
  * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
- * input. `count` becomes the number of turning points, also if `capacity` is too small.
+ * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count` becomes the number of turning points, also if `capacity` is too small.
  */
-int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
+int32_t hysteron_state_save(uint64_t state,
+                            double *points,
+                            size_t capacity,
+                            size_t *count,
+                            double *input);
 
 /**
  * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
- * with the same plane.
+ * with the same plane. Body, creep and lag are at rest with the next sample, unless
+ * `hysteron_state_restore_stages` comes after it.
  */
 int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
+
+/**
+ * As `hysteron_step`, for any model.
+ *
+ * `input` is the one held since the sample before. `dt` is the time since that sample in seconds,
+ * from 0; a model that depends on time needs it from its second sample on. `load` is the load, which
+ * a model that depends on one needs within its range. `NAN` for a `dt` or a `load` that is not
+ * given. `hysteron_model_needs` says what a model needs.
+ */
+int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, double *output, int32_t *clipped);
+
+/**
+ * As `hysteron_run`, for any model. After any error the state stays as it is.
+ *
+ * `time` has the time of each sample in seconds, and `load` its load; each has `count` elements or
+ * is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new state,
+ * whose first sample has none before it.
+ */
+int32_t hysteron_run_in(uint64_t state,
+                        const double *input,
+                        const double *time,
+                        double last_time,
+                        const double *load,
+                        double *output,
+                        size_t count);
+
+/**
+ * As `hysteron_inverse_step`, for any model. `dt` and `load` are as for `hysteron_step_in`.
+ *
+ * With a thermal body `input` becomes the drive to hold since the sample before. `limits` may be
+ * null for those of the model itself (`hysteron_model_limits`). `status` is `HYSTERON_LIMITED`
+ * where the model can give the target, but not in this sample. The state goes where the drive takes
+ * it.
+ */
+int32_t hysteron_inverse_step_in(uint64_t state,
+                                 double target,
+                                 int32_t heading,
+                                 double tolerance,
+                                 double dt,
+                                 double load,
+                                 const struct HysteronLimits *limits,
+                                 double *input,
+                                 int32_t *status);
+
+/**
+ * As `hysteron_inverse_run`, for any model. `time`, `last_time` and `load` are as for
+ * `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays as
+ * it is.
+ */
+int32_t hysteron_inverse_run_in(uint64_t state,
+                                const double *target,
+                                const int32_t *heading,
+                                double tolerance,
+                                const double *time,
+                                double last_time,
+                                const double *load,
+                                const struct HysteronLimits *limits,
+                                double *input,
+                                int32_t *status,
+                                size_t count);
 
 /**
  * Fills in the usual options, of the method that `method` names.

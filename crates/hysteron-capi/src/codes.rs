@@ -26,13 +26,19 @@ pub const HYSTERON_STATE_MISMATCH: i32 = 9;
 pub const HYSTERON_OPERATOR: i32 = 10;
 /// An option of an estimator is out of its range.
 pub const HYSTERON_ADAPTATION: i32 = 11;
+/// The time since the sample before is needed: a finite number of seconds from 0 on.
+pub const HYSTERON_TIME_STEP: i32 = 12;
+/// A load is needed that is a finite number.
+pub const HYSTERON_LOAD: i32 = 13;
+/// A constant of a stage, or a limit of the inverse, is out of its range.
+pub const HYSTERON_STAGE: i32 = 14;
 /// A file cannot be read or written.
 pub const HYSTERON_FILE: i32 = 20;
 /// A model file is not valid.
 pub const HYSTERON_MODEL_FILE: i32 = 21;
 /// A recording is not valid.
 pub const HYSTERON_RECORDING: i32 = 22;
-/// The model or the options do not allow this call.
+/// The model or the options do not allow this call: a load is missing, out of range or too much.
 pub const HYSTERON_FIT: i32 = 23;
 /// A filter's arguments do not fit the data.
 pub const HYSTERON_FILTER: i32 = 24;
@@ -42,7 +48,7 @@ pub const HYSTERON_RIG: i32 = 25;
 pub const HYSTERON_PREPARATION: i32 = 26;
 /// No experiment follows from the options.
 pub const HYSTERON_DESIGN: i32 = 27;
-/// A thermal body cannot be run here.
+/// The model depends on time: the time since the sample before is missing or negative.
 pub const HYSTERON_THERMAL: i32 = 28;
 /// A scenario is not valid.
 pub const HYSTERON_SCENARIO: i32 = 29;
@@ -93,6 +99,9 @@ fn text_of(code: i32) -> &'static CStr {
         HYSTERON_STATE_MISMATCH => c"the state belongs to another model",
         HYSTERON_OPERATOR => c"there is no such operator",
         HYSTERON_ADAPTATION => c"an option of the estimator is out of its range",
+        HYSTERON_TIME_STEP => c"the time since the sample before is missing or negative",
+        HYSTERON_LOAD => c"a load is missing or not finite",
+        HYSTERON_STAGE => c"a constant of a stage or a limit is out of its range",
         HYSTERON_FILE => c"a file cannot be read or written",
         HYSTERON_MODEL_FILE => c"the model file is wrong",
         HYSTERON_RECORDING => c"the recording cannot be used as it is",
@@ -101,7 +110,7 @@ fn text_of(code: i32) -> &'static CStr {
         HYSTERON_RIG => c"outside the physics of the virtual rig",
         HYSTERON_PREPARATION => c"a step of the preparation cannot be done",
         HYSTERON_DESIGN => c"no experiment follows from the options",
-        HYSTERON_THERMAL => c"a thermal body cannot be run here",
+        HYSTERON_THERMAL => c"the model depends on time, which is missing or goes back",
         HYSTERON_SCENARIO => c"the scenario is wrong",
         HYSTERON_CONTROL => c"the controller cannot be made as told",
         HYSTERON_EXPORT => c"the model cannot be carried there",
@@ -124,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_code_has_a_text_of_its_own() {
-        let codes = (0..=11).chain(20..=31).chain(100..=106);
+        let codes = (0..=14).chain(20..=31).chain(100..=106);
         let texts: std::collections::HashSet<_> = codes.clone().map(text_of).collect();
         assert_eq!(texts.len(), codes.count());
         assert!(!texts.contains(text_of(-1)));
@@ -136,6 +145,9 @@ mod tests {
         assert_eq!(Error::Levels(0).code(), HYSTERON_LEVELS);
         assert_eq!(Error::StateMismatch.code(), HYSTERON_STATE_MISMATCH);
         assert_eq!(Error::Adaptation { option: "" }.code(), HYSTERON_ADAPTATION);
+        assert_eq!(Error::TimeStep.code(), HYSTERON_TIME_STEP);
+        assert_eq!(Error::Load.code(), HYSTERON_LOAD);
+        assert_eq!(Error::Stage { stage: "" }.code(), HYSTERON_STAGE);
         let file = hysteron::Model::read(std::path::Path::new("/no/such/file"));
         assert_eq!(file.map_err(|e| e.code()), Err(HYSTERON_FILE));
         assert_eq!(

@@ -19,6 +19,8 @@
 
 #[cfg(feature = "handles")]
 mod adaptive;
+#[cfg(feature = "handles")]
+mod chain;
 mod codes;
 #[cfg(feature = "handles")]
 mod estimator;
@@ -29,6 +31,8 @@ pub mod fmi;
 mod handles;
 mod last_error;
 #[cfg(feature = "handles")]
+mod limits;
+#[cfg(feature = "handles")]
 mod memory;
 #[cfg(feature = "handles")]
 mod model;
@@ -36,21 +40,37 @@ mod pointer;
 #[cfg(feature = "handles")]
 mod room;
 #[cfg(feature = "handles")]
+mod stage_state;
+#[cfg(feature = "handles")]
+mod stages;
+#[cfg(feature = "handles")]
 mod state;
+#[cfg(feature = "handles")]
+mod surroundings;
 #[cfg(feature = "handles")]
 mod types;
 
 #[cfg(feature = "handles")]
 pub use adaptive::*;
+#[cfg(feature = "handles")]
+pub use chain::*;
 pub use codes::*;
 #[cfg(feature = "handles")]
 pub use estimator::*;
 pub use last_error::hysteron_last_error;
 #[cfg(feature = "handles")]
+pub use limits::*;
+#[cfg(feature = "handles")]
 pub use memory::*;
 #[cfg(feature = "handles")]
 pub use model::*;
 #[cfg(feature = "handles")]
+pub use stage_state::*;
+#[cfg(feature = "handles")]
+pub use stages::*;
+#[cfg(feature = "handles")]
 pub use state::*;
+#[cfg(feature = "handles")]
+pub use surroundings::*;
 #[cfg(feature = "handles")]
 pub use types::*;

@@ -4,8 +4,10 @@ use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, guard};
 use crate::handles::Table;
 use crate::pointer::Arguments;
-use crate::types::{HysteronModelInfo, operator, operator_kind as kind_of, sign as sign_of};
-use hysteron::{Model, Plane};
+use crate::types::{
+    HysteronModelInfo, HysteronModelNeeds, operator, operator_kind as kind_of, sign as sign_of,
+};
+use hysteron::{LoadDependence, Model, Plane};
 use std::ffi::c_char;
 use std::path::Path;
 
@@ -129,7 +131,35 @@ pub unsafe extern "C" fn hysteron_model_info(model: u64, info: *mut HysteronMode
     })
 }
 
-/// Copies the weights, row by row. `count` becomes their number, also if `capacity` is too small.
+/// Writes what a model needs beside its input, and in which ranges.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_model_needs(model: u64, needs: *mut HysteronModelNeeds) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let needs = unsafe { Arguments::default().out(needs, "needs")? };
+        let model = MODELS.get(model, "model")?;
+        let loads = model.load.as_ref().map(LoadDependence::range);
+        let (load_min, load_max) = loads.unwrap_or((f64::NAN, f64::NAN));
+        let (active_min, active_max) = model.active_range();
+        let (drive_min, drive_max) = model.drive_range();
+        needs.set(HysteronModelNeeds {
+            time: model.is_timed().into(),
+            load: model.load.is_some().into(),
+            body: model.thermal.is_some().into(),
+            fitted_start: model.fitted().is_some().into(),
+            load_min,
+            load_max,
+            drive_min,
+            drive_max,
+            active_min,
+            active_max,
+        });
+        Ok(())
+    })
+}
+
+/// Copies the weights, row by row. Of a model that depends on a load, they are those without its
+/// curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_weights(
     model: u64,
@@ -152,8 +182,8 @@ pub unsafe extern "C" fn hysteron_model_weights(
     })
 }
 
-/// Copies the name of the input (`quantity` 0) or of the output (1), and its unit in brackets if it
-/// has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
+/// Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model that
+/// depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
 /// with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
 /// byte. `text` may be null with size 0.
 #[unsafe(no_mangle)]
@@ -177,6 +207,7 @@ pub unsafe extern "C" fn hysteron_model_quantity(
         let quantity = match quantity {
             0 => &model.input,
             1 => &model.output,
+            2 if let Some(load) = &model.load => &load.quantity,
             _ => return Err(Fault::Call(HYSTERON_VALUE, "quantity")),
         };
         needed.set(text.write_text(&quantity.to_column()));

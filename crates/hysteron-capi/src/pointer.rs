@@ -9,7 +9,7 @@ use std::ffi::{CStr, c_char};
 use std::ops::Range;
 
 /// The largest number of pointers of a function.
-const MOST: usize = 6;
+const MOST: usize = 12;
 
 /// The pointers of one call. Each is checked, and refused if it shares memory with one before it.
 ///
@@ -57,6 +57,20 @@ impl Arguments {
         self.elements(pointer, 1, name)?;
         // SAFETY: the caller's promise, not null and aligned as checked.
         Ok(unsafe { pointer.read() })
+    }
+
+    /// A value that the call replaces: a copy of it, and its place.
+    ///
+    /// # Safety
+    /// As [`Arguments::value`] and [`Arguments::out`].
+    pub(crate) unsafe fn replaced<T: Copy>(
+        &mut self,
+        place: *mut T,
+        name: &'static str,
+    ) -> Result<(T, Out<T>)> {
+        // SAFETY: the caller's promise.
+        let value = unsafe { self.value(place, name)? };
+        Ok((value, Out(place)))
     }
 
     /// A place for a result.

@@ -6,37 +6,47 @@ use crate::handles::Table;
 use crate::model::MODELS;
 use crate::pointer::Arguments;
 use crate::types::{
-    self, HYSTERON_HOLD, clipped as clipped_constant, heading as heading_constant,
-    status as status_constant,
+    self, HYSTERON_HOLD, HYSTERON_START_FITTED, HYSTERON_START_OFF, HYSTERON_START_ON,
+    clipped as clipped_constant, heading as heading_constant, status as status_constant,
 };
 use hysteron::{Model, State, headings};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A state, together with its model.
-struct Running {
-    model: Arc<Model>,
+pub(crate) struct Running {
+    pub(crate) model: Arc<Model>,
     state: Mutex<State>,
 }
 
 impl Running {
-    fn state(&self) -> MutexGuard<'_, State> {
+    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Moves the state by `work`. After an error it is as it was.
+    pub(crate) fn moved<T>(&self, work: impl FnOnce(&Model, &mut State) -> Result<T>) -> Result<T> {
+        let mut state = self.state();
+        let mut moved = state.clone();
+        let done = work(&self.model, &mut moved)?;
+        *state = moved;
+        Ok(done)
     }
 }
 
-static STATES: Table<Running> = Table::new(2);
+pub(crate) static STATES: Table<Running> = Table::new(2);
 
-/// Makes a state of `model` with all operators off. `model` may be freed before the state.
+/// Makes a state of `model`, as the fit found it before the first sample, or with all operators off
+/// where it found none. Body, creep and lag are at rest with the first sample. `model` may be freed
+/// before the state.
 ///
-/// A model that depends on a load or has a thermal body has no such state. Use it at one load
-/// (`hysteron_model_at_load`).
+/// The model may have stages: a load, a thermal body, creep, a lag. Move the state by the functions
+/// whose names end with `_in`, which take time and load. The others refuse what they cannot know.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
         let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
-        model.plain()?;
         let state = Mutex::new(model.start());
         out.set(STATES.insert(Running { model, state })?);
         Ok(())
@@ -49,17 +59,36 @@ pub extern "C" fn hysteron_state_free(state: u64) -> i32 {
     guard(|| STATES.remove(state, "state"))
 }
 
-/// Switches all operators off, as at the bottom of the plane.
+/// Switches all operators off, as at the bottom of the plane. Body, creep and lag are at rest with
+/// the next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
     guard(|| {
         let running = STATES.get(state, "state")?;
-        *running.state() = running.model.start();
+        *running.state() = running.model.off();
         Ok(())
     })
 }
 
-/// Switches all operators on, as at the top of the plane.
+/// Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
+/// (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the next
+/// sample.
+#[unsafe(no_mangle)]
+pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
+    guard(|| {
+        let running = STATES.get(state, "state")?;
+        *running.state() = match start {
+            HYSTERON_START_FITTED => running.model.start(),
+            HYSTERON_START_OFF => running.model.off(),
+            HYSTERON_START_ON => running.model.saturated(),
+            _ => return Err(Fault::Call(HYSTERON_VALUE, "start")),
+        };
+        Ok(())
+    })
+}
+
+/// Switches all operators on, as at the top of the plane. Body, creep and lag are at rest with the
+/// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
     guard(|| {
@@ -70,7 +99,7 @@ pub extern "C" fn hysteron_state_saturate(state: u64) -> i32 {
 }
 
 /// Moves to `input` and writes the output. `clipped` becomes `HYSTERON_INSIDE`, or `HYSTERON_LOW`
-/// or `HYSTERON_HIGH` for an input outside the plane. It may be null.
+/// or `HYSTERON_HIGH` for an input of the operators outside the plane. It may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_step(
     state: u64,
@@ -97,8 +126,8 @@ pub unsafe extern "C" fn hysteron_step(
     })
 }
 
-/// Moves through `count` inputs and writes as many outputs. The arrays must not overlap. If an
-/// input is not finite, the state stays as it is.
+/// Moves through `count` inputs and writes as many outputs. The arrays must not overlap. After an
+/// error, as of an input that is not finite, the state stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_run(
     state: u64,
@@ -117,14 +146,13 @@ pub unsafe extern "C" fn hysteron_run(
         };
         let running = STATES.get(state, "state")?;
         let output = output.zeros();
-        running.model.run(&mut running.state(), input, output)?;
-        Ok(())
+        running.moved(|model, state| Ok(model.run(state, input, output).map(|_| ())?))
     })
 }
 
 /// Finds the input that gives `target` and moves the state there. `status` becomes
-/// `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH` or
-/// `HYSTERON_PASSED`.
+/// `HYSTERON_INSIDE` if the input gives the target, otherwise `HYSTERON_LOW`, `HYSTERON_HIGH`,
+/// `HYSTERON_PASSED` or `HYSTERON_LIMITED`.
 ///
 /// `heading` is `HYSTERON_HOLD` to hold the target, or the direction in which the target goes next,
 /// `HYSTERON_RISING` or `HYSTERON_FALLING`, to anticipate it. A target that goes back by up to
@@ -192,8 +220,8 @@ pub unsafe extern "C" fn hysteron_inverse_run(
         let targets = targets
             .map(|(&target, heading)| types::target(target, heading, tolerance))
             .collect::<Result<Vec<_>>>()?;
-        let inverse = running.model.inverse()?;
-        let solutions = inverse.through(&mut running.state(), &targets)?;
+        let solutions =
+            running.moved(|model, state| Ok(model.inverse()?.through(state, &targets)?))?;
         input.write(solutions.iter().map(|solution| solution.input));
         status.write(solutions.iter().map(|s| status_constant(s.status)));
         Ok(())
@@ -232,7 +260,7 @@ pub unsafe extern "C" fn hysteron_headings(
 }
 
 /// Saves the state: its turning points as normalised positions, at most `capacity`, and the last
-/// input. `count` becomes the number of turning points, also if `capacity` is too small.
+/// input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count` becomes the number of turning points, also if `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_save(
     state: u64,
@@ -261,7 +289,8 @@ pub unsafe extern "C" fn hysteron_state_save(
 }
 
 /// Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
-/// with the same plane.
+/// with the same plane. Body, creep and lag are at rest with the next sample, unless
+/// `hysteron_state_restore_stages` comes after it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_restore(
     state: u64,

@@ -28,6 +28,16 @@ pub const HYSTERON_LOW: i32 = -1;
 pub const HYSTERON_HIGH: i32 = 1;
 /// The target lies inside a jump of a relay model. The output lies beyond it.
 pub const HYSTERON_PASSED: i32 = 2;
+/// The model can give the target, but not in this sample: the input is at an end of its range, or
+/// creep and lag are too slow. The input goes as far as it can.
+pub const HYSTERON_LIMITED: i32 = 3;
+
+/// Start of a state: as a new one. It is what the fit found before the first sample, or off.
+pub const HYSTERON_START_FITTED: i32 = 0;
+/// Start of a state: every operator off.
+pub const HYSTERON_START_OFF: i32 = 1;
+/// Start of a state: every operator on.
+pub const HYSTERON_START_ON: i32 = 2;
 
 /// Method of adaptation: normalised gradient.
 pub const HYSTERON_GRADIENT: i32 = 0;
@@ -61,13 +71,15 @@ pub struct HysteronModelInfo {
     pub levels: usize,
     /// `N = K(K + 1)/2`, the number of operators.
     pub weights: usize,
-    /// Lowest level, in the input's unit.
+    /// Lowest level, in the unit of the operators' input. That is the temperature with a thermal
+    /// body; with levels at unequal distances the plane only numbers them.
     pub min: f64,
-    /// Highest level, in the input's unit.
+    /// Highest level, in the same unit.
     pub max: f64,
-    /// One step below the lowest level, in the input's unit. Every operator is off there.
+    /// One step below the lowest level, in the same unit. Every operator is off there.
     pub bottom: f64,
-    /// Offset: what is added to the sum of the operators.
+    /// Offset: what is added to the sum of the operators. Of a model that depends on a load, offset
+    /// and outputs are those without its curves, at the middle of the load range.
     pub offset: f64,
     /// Output with every operator off.
     pub output_off: f64,
@@ -75,6 +87,33 @@ pub struct HysteronModelInfo {
     pub output_on: f64,
     /// Default tolerance for reversals of a target: 1 % of the output's range.
     pub usual_tolerance: f64,
+}
+
+/// What a model needs beside its input, and in which ranges.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct HysteronModelNeeds {
+    /// 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else 0.
+    pub time: i32,
+    /// 1 if the model depends on a load, which samples then need; else 0.
+    pub load: i32,
+    /// 1 if the model has a thermal body, so that its input is a drive; else 0.
+    pub body: i32,
+    /// 1 if the fit found a state before the first sample, in which states start; else 0.
+    pub fitted_start: i32,
+    /// Smallest load, in its unit. NaN without a load.
+    pub load_min: f64,
+    /// Largest load. NaN without a load.
+    pub load_max: f64,
+    /// Lowest drive of the inverse, in the input's unit. `-INFINITY` without a thermal body.
+    pub drive_min: f64,
+    /// Highest drive of the inverse. `INFINITY` without a thermal body.
+    pub drive_max: f64,
+    /// Where the operators are at their lowest: the temperature with a thermal body, else the input;
+    /// with a load, at the middle of its range.
+    pub active_min: f64,
+    /// Where the operators are at their highest.
+    pub active_max: f64,
 }
 
 /// Options of adaptation. `hysteron_adaptation_default` writes the defaults.
@@ -260,7 +299,8 @@ pub(crate) fn heading(heading: Direction) -> i32 {
     }
 }
 
-/// The numbers of `HYSTERON_INSIDE`, `HYSTERON_LOW`, `HYSTERON_HIGH` and `HYSTERON_PASSED`.
+/// The numbers of `HYSTERON_INSIDE`, `HYSTERON_LOW`, `HYSTERON_HIGH`, `HYSTERON_PASSED` and
+/// `HYSTERON_LIMITED`.
 pub(crate) fn status(status: Status) -> i32 {
     status.number().into()
 }

@@ -1,15 +1,17 @@
 //! The table: one row for a function.
 
 use super::Argument::{
-    Characters, Doubles, Estimator, Integers, Json, Learning, Memory, Model, Options, Path, State,
-    Word,
+    Characters, Constants, Doubles, Estimator, Integers, Json, Learning, Limits, Memory, Model,
+    Options, Path, StageState, Stages, State, Word,
 };
-use super::{Call, LEVELS, WEIGHTS, estimator_size, model_size, state_size};
+use super::{Call, LEVELS, WEIGHTS, estimator_size, model_size, stages_size, state_size};
 use hysteron_capi::*;
 
 /// One number, of whatever value.
 const ONE: super::Argument = Doubles(&[0.5]);
 const SERIES: super::Argument = Doubles(&[0.5, 1.0, 0.25]);
+const TIMES: super::Argument = Doubles(&[0.0, 1.0, 1.5]);
+const LOADS: super::Argument = Doubles(&[1.0, 2.0, 1.25]);
 const POINTS: super::Argument = Doubles(&[1.5, 0.5]);
 const ROOM: super::Argument = Doubles(&[0.0; 16]);
 const SPRING: super::Argument = Doubles(&WEIGHTS);
@@ -55,6 +57,23 @@ calls! {
     );
     hysteron_core_run(model: Model, state: State, input: SERIES, output: SERIES) |_h|
         (model.cast(), state.cast(), input.cast(), output.cast(), 3);
+    hysteron_core_stages_init(
+        model: Model, constants: Constants, memory: Memory(stages_size), stages: Word
+    ) |_h| (model.cast(), constants.cast(), memory, stages_size(), stages.cast());
+    hysteron_core_stages_inverse_step(
+        stages: Stages, model: Model, state: State, memory: StageState, limits: Limits, input: ONE,
+        status: Integers(1)
+    ) |_h| (
+        stages.cast(), model.cast(), state.cast(), memory.cast(), 1.0, HYSTERON_HOLD, 0.0, 0.1,
+        f64::NAN, limits.cast(), input.cast(), status.cast()
+    );
+    hysteron_core_stages_step(
+        stages: Stages, model: Model, state: State, memory: StageState, output: ONE,
+        clipped: Integers(1)
+    ) |_h| (
+        stages.cast(), model.cast(), state.cast(), memory.cast(), 0.5, 0.1, f64::NAN, output.cast(),
+        clipped.cast()
+    );
     hysteron_core_state_init(model: Model, memory: Memory(state_size), state: Word) |_h|
         (model.cast(), memory, state_size(), state.cast());
     hysteron_core_state_rebase(model: Model, state: State) |_h| (model.cast(), state.cast());
@@ -70,8 +89,18 @@ calls! {
     hysteron_inverse_run(
         target: SERIES, heading: Integers(3), input: SERIES, status: Integers(3)
     ) |h| (h.state, target.cast(), heading.cast(), 0.0, input.cast(), status.cast(), 3);
+    hysteron_inverse_run_in(
+        target: SERIES, heading: Integers(3), time: TIMES, load: LOADS, limits: Limits,
+        input: SERIES, status: Integers(3)
+    ) |h| (
+        h.loaded, target.cast(), heading.cast(), 0.0, time.cast(), 0.0, load.cast(), limits.cast(),
+        input.cast(), status.cast(), 3
+    );
     hysteron_inverse_step(input: ONE, status: Integers(1)) |h|
         (h.state, 1.0, HYSTERON_HOLD, 0.0, input.cast(), status.cast());
+    hysteron_inverse_step_in(limits: Limits, input: ONE, status: Integers(1)) |h| (
+        h.loaded, 1.0, HYSTERON_HOLD, 0.0, 0.1, 1.5, limits.cast(), input.cast(), status.cast()
+    );
     hysteron_model_new(weights: SPRING, model: Word) |_h|
         (HYSTERON_MKP, 0.0, 1.0, LEVELS, weights.cast(), WEIGHTS.len(), 0.0, 1, model.cast());
     hysteron_model_parse(json: Json, model: Word) |_h| (json.cast(), model.cast());
@@ -81,8 +110,12 @@ calls! {
     hysteron_model_weights(weights: ROOM, count: Word) |h|
         (h.model, weights.cast(), 16, count.cast());
     hysteron_run(input: SERIES, output: SERIES) |h| (h.state, input.cast(), output.cast(), 3);
+    hysteron_run_in(input: SERIES, time: TIMES, load: LOADS, output: SERIES) |h|
+        (h.loaded, input.cast(), time.cast(), 0.0, load.cast(), output.cast(), 3);
     hysteron_state_save(points: ROOM, count: Word, input: ONE) |h|
         (h.state, points.cast(), 16, count.cast(), input.cast());
     hysteron_step(output: ONE, clipped: Integers(1)) |h|
         (h.state, 0.5, output.cast(), clipped.cast());
+    hysteron_step_in(output: ONE, clipped: Integers(1)) |h|
+        (h.loaded, 0.5, 0.1, 1.5, output.cast(), clipped.cast());
 }

@@ -4,13 +4,19 @@ mod calls;
 
 pub use calls::CALLS;
 use hysteron_capi::*;
-use std::ffi::c_void;
+use std::ffi::{CStr, c_void};
 use std::ptr::null_mut;
 
 pub const LEVELS: usize = 2;
 pub const WEIGHTS: [f64; 3] = [1.0, 2.0, 1.0];
 const MODEL_TEXT: &str = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
     "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1]}"#;
+
+/// The same behind a load and a lag.
+const LOADED_TEXT: &CStr = cr#"{"format": "hysteron-model", "version": 2, "operator": "mkp",
+    "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1], "lag": 0.5,
+    "load": {"min": 1, "max": 2, "parts": [{"offset": 0, "weights": [1, 2, 1]}],
+        "curves": {"loads": [1, 2], "shifts": [0, 0.5]}}}"#;
 
 /// A function, its pointers by their names in the header, and a call with these pointers.
 pub struct Call {
@@ -29,6 +35,10 @@ pub enum Argument {
     Word,
     Options,
     Learning,
+    /// Limits of the inverse, what stages remember, and constants of stages without arrays.
+    Limits,
+    StageState,
+    Constants,
     /// The path of a model file, and its text.
     Path,
     Json,
@@ -36,6 +46,7 @@ pub enum Argument {
     Model,
     State,
     Estimator,
+    Stages,
     Memory(fn() -> usize),
 }
 
@@ -44,6 +55,7 @@ pub struct Handles {
     folder: tempfile::TempDir,
     pub model: u64,
     pub state: u64,
+    pub loaded: u64,
     pub adaptive: u64,
 }
 
@@ -52,6 +64,7 @@ impl Handles {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
         let (mut model, mut state, mut adaptive) = (0, 0, 0);
+        let (mut other, mut loaded) = (0, 0);
         let count = WEIGHTS.len();
         // SAFETY: live memory of the sizes given.
         let made = unsafe {
@@ -69,13 +82,16 @@ impl Handles {
                 ),
                 hysteron_state_new(model, &mut state),
                 hysteron_adaptive_new(model, std::ptr::null(), &mut adaptive),
+                hysteron_model_parse(LOADED_TEXT.as_ptr(), &mut other),
+                hysteron_state_new(other, &mut loaded),
             ]
         };
-        assert_eq!(made, [HYSTERON_OK; 3]);
+        assert_eq!(made, [HYSTERON_OK; 5]);
         Self {
             folder,
             model,
             state,
+            loaded,
             adaptive,
         }
     }
@@ -108,6 +124,27 @@ pub fn estimator_size() -> usize {
     unsafe { hysteron_core_estimator_size(LEVELS, &options()) }
 }
 
+const LIMITS: HysteronLimits = HysteronLimits {
+    drive_min: f64::NEG_INFINITY,
+    drive_max: f64::INFINITY,
+    horizon: 0.0,
+    temperature_min: f64::NEG_INFINITY,
+    temperature_max: f64::INFINITY,
+};
+
+/// A model with a lag.
+pub fn constants() -> HysteronStages {
+    // SAFETY: all fields are numbers, or pointers that may be null.
+    let mut constants: HysteronStages = unsafe { std::mem::zeroed() };
+    (constants.sign, constants.lag) = (1, 0.5);
+    constants
+}
+
+pub fn stages_size() -> usize {
+    // SAFETY: a live structure.
+    unsafe { hysteron_core_stages_size(&constants()) }
+}
+
 impl Argument {
     pub fn bytes(self, handles: &Handles) -> usize {
         match self {
@@ -117,10 +154,14 @@ impl Argument {
             Self::Word => size_of::<u64>(),
             Self::Options => size_of::<HysteronAdaptation>(),
             Self::Learning => size_of::<HysteronLearning>(),
+            Self::Limits => size_of::<HysteronLimits>(),
+            Self::StageState => size_of::<HysteronStageState>(),
+            Self::Constants => size_of::<HysteronStages>(),
             Self::Path | Self::Json => self.text(handles).map_or(0, |text| text.len()),
             Self::Model => model_size(),
             Self::State => state_size(),
             Self::Estimator => estimator_size(),
+            Self::Stages => stages_size(),
             Self::Memory(bytes) => bytes(),
         }
     }
@@ -134,7 +175,10 @@ impl Argument {
     }
 
     pub fn is_object(self) -> bool {
-        matches!(self, Self::Model | Self::State | Self::Estimator)
+        matches!(
+            self,
+            Self::Model | Self::State | Self::Estimator | Self::Stages
+        )
     }
 
     /// A text with its zero byte.
@@ -159,6 +203,11 @@ impl Argument {
             },
             // SAFETY: the place has room for it.
             Self::Options => unsafe { place.cast::<HysteronAdaptation>().write(options()) },
+            // SAFETY: the place has room for it.
+            Self::Limits => unsafe { place.cast::<HysteronLimits>().write(LIMITS) },
+            // SAFETY: the place has room for it.
+            Self::Constants => unsafe { place.cast::<HysteronStages>().write(constants()) },
+            Self::Stages => core_stages(model.get(), place),
             Self::Model => model.0 = core_model(place),
             Self::State => core_state(model.get(), place),
             Self::Estimator => core_estimator(model.get(), place),
@@ -227,5 +276,13 @@ fn core_estimator(model: *mut HysteronCoreModel, place: *mut c_void) {
             &mut estimator,
         )
     };
+    assert_eq!(made, HYSTERON_OK);
+}
+
+fn core_stages(model: *mut HysteronCoreModel, place: *mut c_void) {
+    let mut stages = null_mut();
+    let (constants, bytes) = (constants(), stages_size());
+    // SAFETY: the place has the size asked for.
+    let made = unsafe { hysteron_core_stages_init(model, &constants, place, bytes, &mut stages) };
     assert_eq!(made, HYSTERON_OK);
 }

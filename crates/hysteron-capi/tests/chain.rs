@@ -1,0 +1,356 @@
+//! The whole signal path over the caller's memory: bit for bit what a state by handle gives, and
+//! without an allocation.
+#![allow(clippy::unwrap_used)]
+
+mod whole;
+
+use hysteron_capi::*;
+use std::ffi::{CString, c_void};
+use std::mem::zeroed;
+use std::ptr::{null, null_mut};
+use whole::{BY_LOAD, Series, WHOLE, series};
+
+const NONE: f64 = f64::NAN;
+
+fn ok(code: i32) {
+    assert_eq!(code, HYSTERON_OK);
+}
+
+/// Operators and stages of a model by handle, in memory of this program.
+struct Own {
+    handle: u64,
+    memory: [Vec<u64>; 3],
+    model: *mut HysteronCoreModel,
+    state: *mut HysteronCoreState,
+    stages: *mut HysteronCoreStages,
+    past: HysteronStageState,
+}
+
+fn constants(handle: u64) -> HysteronStages {
+    // SAFETY: all fields are numbers, or pointers that may be null.
+    let mut constants: HysteronStages = unsafe { zeroed() };
+    // SAFETY: live memory.
+    ok(unsafe { hysteron_model_stages(handle, &mut constants) });
+    constants
+}
+
+fn parsed(text: &str) -> u64 {
+    let (text, mut handle) = (CString::new(text).unwrap(), 0);
+    // SAFETY: live memory.
+    ok(unsafe { hysteron_model_parse(text.as_ptr(), &mut handle) });
+    handle
+}
+
+impl Own {
+    fn new(handle: u64) -> Self {
+        let mut own = Self {
+            handle,
+            memory: [const { Vec::new() }; 3],
+            model: null_mut(),
+            state: null_mut(),
+            stages: null_mut(),
+            past: HysteronStageState::default(),
+        };
+        let constants = constants(handle);
+        // SAFETY: live memory of the sizes given.
+        unsafe {
+            let mut info: HysteronModelInfo = zeroed();
+            ok(hysteron_model_info(handle, &mut info));
+            let mut weights = vec![0.0; info.weights];
+            let (mut count, at) = (0, weights.as_mut_ptr());
+            ok(hysteron_model_weights(handle, at, info.weights, &mut count));
+            let sizes = [
+                hysteron_core_model_size(info.levels, 1),
+                hysteron_core_state_size(info.levels),
+                hysteron_core_stages_size(&constants),
+            ];
+            own.memory = sizes.map(|bytes| vec![0; bytes / 8]);
+            let [model, state, stages] = own.places();
+            ok(hysteron_core_model_init(
+                model,
+                sizes[0],
+                info.operator_kind,
+                info.min,
+                info.max,
+                info.levels,
+                weights.as_ptr(),
+                count,
+                &mut own.model,
+            ));
+            ok(hysteron_core_state_init(
+                own.model,
+                state,
+                sizes[1],
+                &mut own.state,
+            ));
+            ok(hysteron_core_stages_init(
+                own.model,
+                &constants,
+                stages,
+                sizes[2],
+                &mut own.stages,
+            ));
+        }
+        own
+    }
+
+    fn places(&mut self) -> [*mut c_void; 3] {
+        self.memory
+            .each_mut()
+            .map(|memory| memory.as_mut_ptr().cast())
+    }
+
+    fn step(&mut self, input: f64, dt: f64, load: f64) -> (i32, f64) {
+        let mut output = 7.0;
+        // SAFETY: live memory.
+        let code = unsafe {
+            hysteron_core_stages_step(
+                self.stages,
+                self.model,
+                self.state,
+                &mut self.past,
+                input,
+                dt,
+                load,
+                &mut output,
+                null_mut(),
+            )
+        };
+        (code, output)
+    }
+
+    fn invert(
+        &mut self,
+        target: f64,
+        dt: f64,
+        load: f64,
+        limits: *const HysteronLimits,
+    ) -> (i32, f64, i32) {
+        let (mut input, mut status) = (7.0, 7);
+        // SAFETY: live memory.
+        let code = unsafe {
+            hysteron_core_stages_inverse_step(
+                self.stages,
+                self.model,
+                self.state,
+                &mut self.past,
+                target,
+                HYSTERON_HOLD,
+                0.0,
+                dt,
+                load,
+                limits,
+                &mut input,
+                &mut status,
+            )
+        };
+        (code, input, status)
+    }
+}
+
+#[test]
+fn the_path_is_that_of_a_state_by_handle() {
+    let handle = parsed(WHOLE);
+    let mut own = Own::new(handle);
+    let (mut state, mut limits) = (0, unsafe { zeroed::<HysteronLimits>() });
+    // SAFETY: live memory.
+    unsafe {
+        ok(hysteron_state_new(handle, &mut state));
+        ok(hysteron_model_limits(handle, &mut limits));
+    }
+    ok(hysteron_state_start(state, HYSTERON_START_OFF));
+    let Series {
+        input,
+        target,
+        load,
+        step,
+        ..
+    } = series(5, 600);
+    for n in 0..input.len() {
+        let (mut expected, mut status) = (0.0, 0);
+        // Forward and inverse in turns, over one state.
+        if n % 5 < 3 {
+            // SAFETY: live memory.
+            ok(unsafe {
+                hysteron_step_in(state, input[n], step[n], load[n], &mut expected, null_mut())
+            });
+            let (code, found) = own.step(input[n], step[n], load[n]);
+            assert_eq!((code, found.to_bits()), (HYSTERON_OK, expected.to_bits()));
+            continue;
+        }
+        // SAFETY: live memory.
+        ok(unsafe {
+            hysteron_inverse_step_in(
+                state,
+                target[n],
+                HYSTERON_HOLD,
+                0.0,
+                step[n],
+                load[n],
+                null(),
+                &mut expected,
+                &mut status,
+            )
+        });
+        let found = own.invert(target[n], step[n], load[n], &limits);
+        assert_eq!(found, (HYSTERON_OK, expected, status));
+    }
+    // The model's arrays were copied: they are not needed any more.
+    ok(hysteron_state_free(state));
+    ok(hysteron_model_free(own.handle));
+    assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_OK);
+}
+
+#[test]
+fn a_copy_of_the_numbers_is_a_saved_state() {
+    let mut own = Own::new(parsed(WHOLE));
+    let Series {
+        input, load, step, ..
+    } = series(6, 50);
+    for n in 0..40 {
+        ok(own.step(input[n], step[n], load[n]).0);
+    }
+    let (mut points, mut count, mut last, past) = ([0.0; 64], 0, 0.0, own.past);
+    // SAFETY: live memory of the sizes given.
+    ok(unsafe {
+        hysteron_core_state_save(own.state, points.as_mut_ptr(), 64, &mut count, &mut last)
+    });
+    let rest = |own: &mut Own| -> Vec<u64> {
+        let steps = (40..50).map(|n| own.step(input[n], step[n], load[n]).1.to_bits());
+        steps.collect()
+    };
+    let first = rest(&mut own);
+    // SAFETY: live memory of the sizes given.
+    ok(unsafe { hysteron_core_state_restore(own.model, own.state, points.as_ptr(), count, last) });
+    own.past = past;
+    assert_eq!(rest(&mut own), first);
+}
+
+#[test]
+fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
+    let handle = parsed(WHOLE);
+    let (mut own, mut twin) = (Own::new(handle), Own::new(handle));
+    assert_eq!(own.step(0.5, -1.0, 100.0).0, HYSTERON_TIME_STEP);
+    ok(own.step(0.5, NONE, 100.0).0);
+    ok(twin.step(0.5, NONE, 100.0).0);
+    for (input, dt, load, code) in [
+        (NONE, 0.1, 100.0, HYSTERON_INPUT_NOT_FINITE),
+        (f64::INFINITY, 0.1, 100.0, HYSTERON_INPUT_NOT_FINITE),
+        (0.5, NONE, 100.0, HYSTERON_TIME_STEP),
+        (0.5, -0.1, 100.0, HYSTERON_TIME_STEP),
+        (0.5, f64::INFINITY, 100.0, HYSTERON_TIME_STEP),
+        (0.5, 0.1, NONE, HYSTERON_LOAD),
+        (0.5, 0.1, f64::INFINITY, HYSTERON_LOAD),
+    ] {
+        assert_eq!(own.step(input, dt, load), (code, 7.0));
+        assert_eq!(own.invert(input, dt, load, null()), (code, 7.0, 7));
+    }
+    // SAFETY: all fields are numbers.
+    let mut limits: HysteronLimits = unsafe { zeroed() };
+    limits.drive_min = NONE;
+    assert_eq!(own.invert(1.0, 0.1, 100.0, &limits).0, HYSTERON_VALUE);
+    let past = own.past;
+    own.past.creep[2] = NONE;
+    assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_INPUT_NOT_FINITE);
+    own.past = past;
+    let mark = own.memory[2][0];
+    own.memory[2][0] = 0;
+    assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_HANDLE);
+    own.memory[2][0] = mark;
+    assert_eq!(own.step(0.6, 0.1, 90.0), twin.step(0.6, 0.1, 90.0));
+
+    let other = r#"{"format": "hysteron-model", "version": 1, "operator": "mkp",
+        "plane": {"min": 0, "max": 1, "levels": 2}, "weights": [1, 2, 1]}"#;
+    let other = Own::new(parsed(other));
+    (own.model, own.state) = (other.model, other.state);
+    assert_eq!(own.step(0.5, 0.1, 100.0).0, HYSTERON_STATE_MISMATCH);
+}
+
+#[test]
+fn constants_are_checked() {
+    let handle = parsed(WHOLE);
+    let mut own = Own::new(handle);
+    let place = own.places()[2];
+    let bytes = 8 * own.memory[2].len();
+    let mut make = |change: &dyn Fn(&mut HysteronStages)| {
+        let mut constants = constants(handle);
+        change(&mut constants);
+        // SAFETY: live memory of the sizes given.
+        unsafe { hysteron_core_stages_init(own.model, &constants, place, bytes, &mut own.stages) }
+    };
+    static BACK: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+    static NAN: [f64; 4] = [1.0, NONE, 2.0, 3.0];
+    static ONES: [f64; 8] = [1.0; 8];
+    let stage: [&dyn Fn(&mut HysteronStages); 17] = [
+        &|c| c.gain = 0.0,
+        &|c| c.ambient = NONE,
+        &|c| c.tau_heating = -1.0,
+        &|c| c.tau_cooling = NONE,
+        &|c| c.lag = -1.0,
+        &|c| c.lag = NONE,
+        &|c| c.offset = f64::INFINITY,
+        &|c| c.loads = BACK.as_ptr(),
+        &|c| c.shifts = NAN.as_ptr(),
+        &|c| c.scales = BACK[1..].as_ptr(),
+        &|c| c.gains = NAN.as_ptr(),
+        &|c| c.offsets = NAN.as_ptr(),
+        &|c| c.spacing = BACK.as_ptr(),
+        &|c| c.spacing_count = 3,
+        &|c| c.creep_taus = BACK[2..].as_ptr(),
+        &|c| c.creep = NAN.as_ptr(),
+        &|c| (c.creep_count, c.creep, c.creep_taus) = (5, ONES.as_ptr(), NAN.as_ptr()),
+    ];
+    for (n, change) in stage.into_iter().enumerate() {
+        assert_eq!(make(change), HYSTERON_STAGE, "{n}");
+    }
+    assert_eq!(make(&|c| c.body = 2), HYSTERON_VALUE);
+    assert_eq!(make(&|c| c.sign = 0), HYSTERON_VALUE);
+    assert_eq!(make(&|c| c.load_count = usize::MAX), HYSTERON_VALUE);
+    assert_eq!(make(&|c| c.loads = null()), HYSTERON_NULL);
+    assert_eq!(make(&|c| c.spacing = null()), HYSTERON_NULL);
+    assert_eq!(make(&|c| c.creep_taus = null()), HYSTERON_NULL);
+    assert_eq!(make(&|c| c.shifts = c.loads), HYSTERON_OVERLAP);
+    assert_eq!(make(&|c| c.spacing = place.cast::<f64>()), HYSTERON_OVERLAP);
+    let odd = |array: *const f64| array.cast::<u8>().wrapping_add(1).cast::<f64>();
+    assert_eq!(make(&|c| c.gains = odd(c.gains)), HYSTERON_ALIGNMENT);
+    ok(make(&|_| {}));
+    ok(make(&|c| {
+        (c.shifts, c.scales, c.gains, c.offsets) = (null(), null(), null(), null())
+    }));
+    ok(make(&|c| {
+        (c.body, c.load_count, c.spacing_count, c.creep_count) = (0, 0, 0, 0)
+    }));
+
+    let (constants, mut stages) = (constants(handle), null_mut());
+    // SAFETY: live memory of the sizes given.
+    unsafe {
+        let too_small = hysteron_core_stages_size(&constants) - 8;
+        let code = hysteron_core_stages_init(own.model, &constants, place, too_small, &mut stages);
+        assert_eq!(code, HYSTERON_MEMORY_TOO_SMALL);
+        assert_eq!(hysteron_core_stages_size(null()), 0);
+    }
+}
+
+#[test]
+fn weights_by_load_have_no_one_set_of_constants() {
+    let handle = parsed(BY_LOAD);
+    // SAFETY: all fields are numbers, or pointers that may be null.
+    let mut constants: HysteronStages = unsafe { zeroed() };
+    let mut at_load = 0;
+    // SAFETY: live memory.
+    unsafe {
+        assert_eq!(hysteron_model_stages(handle, &mut constants), HYSTERON_FIT);
+        ok(hysteron_model_at_load(handle, 120.0, &mut at_load));
+    }
+    let mut own = Own::new(at_load);
+    let mut state = 0;
+    // SAFETY: live memory.
+    ok(unsafe { hysteron_state_new(at_load, &mut state) });
+    let Series { input, step, .. } = series(7, 100);
+    for (&input, &dt) in input.iter().zip(&step) {
+        let mut output = 0.0;
+        // SAFETY: live memory.
+        ok(unsafe { hysteron_step_in(state, input, dt, NONE, &mut output, null_mut()) });
+        assert_eq!(own.step(input, dt, NONE), (HYSTERON_OK, output));
+    }
+}
