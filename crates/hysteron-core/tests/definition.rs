@@ -164,6 +164,9 @@ fn saved_and_restored_states_go_on_bit_for_bit() {
             model.step(&mut state, input).unwrap();
         }
         let saved: Vec<f64> = state.turning_points().collect();
+        // The last point is the present position. Two points make a corner.
+        let held = saved.len() - 1;
+        assert_eq!((state.held(), state.corners()), (held, held / 2));
         let (_, mut restored) = build(plane, operator, &weights);
         model.restore(&mut restored, &saved, state.input()).unwrap();
         for &input in after {

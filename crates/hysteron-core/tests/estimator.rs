@@ -96,11 +96,6 @@ fn options_out_of_range_are_refused_by_name() {
             "{options:?}"
         );
     }
-    let text = Error::Adaptation { option: "gain" }.to_string();
-    assert_eq!(
-        text,
-        "the estimator's option `gain` must be above 0 and below 2"
-    );
     // Codes never change.
     assert_eq!(Error::Adaptation { option: "gain" }.code(), 11);
 }
@@ -296,5 +291,37 @@ fn memory_may_be_arrays_slices_or_vectors() {
         let one = on_array.step(&mut model, &mut state, input, 3.0).unwrap();
         let other = on_slice.step(&mut other, &mut vector, input, 3.0).unwrap();
         assert_eq!(one, other);
+    }
+}
+
+#[test]
+fn messages_say_the_range() {
+    let ranges = [
+        ("gain", "above 0 and below 2"),
+        ("span", "from 1/8 to 8"),
+        ("forgetting", "above 0 and up to 1"),
+        ("noise", "above 0, and its square a number too"),
+        ("spread", "above 0, and its square a number too"),
+        (
+            "correlation",
+            "a finite number from 0 on, and 0 where the coefficients of a basis are adapted",
+        ),
+        ("offset_share", "a finite number from 0 on"),
+        ("dead_zone", "a finite number from 0 on"),
+        ("leakage", "from 0 to 1"),
+        ("movement", "a finite number from 0 on"),
+        ("trial", "1 or more"),
+        ("gate", "a finite number from 2 on, or 0 for none"),
+        ("burst", "1 or more"),
+        (
+            "method",
+            "gradient or least squares where the coefficients of a basis are adapted",
+        ),
+        ("coefficients", "finite numbers from 0 on, at least one"),
+    ];
+    for (option, range) in ranges {
+        let text = Error::Adaptation { option }.to_string();
+        let expected = format!("the estimator's option `{option}` must be {range}");
+        assert_eq!(text, expected);
     }
 }

@@ -5,8 +5,8 @@
 mod common;
 
 use common::{
-    GRADIENT, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng,
-    strokes, unit_plane, weights,
+    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, dense, inputs,
+    options, rng, strokes, unit_plane, weights,
 };
 use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
 use rand::RngExt;
@@ -244,5 +244,58 @@ fn frozen_it_predicts_and_does_not_learn() {
         assert_eq!(learner.estimator.parameters(), kept);
         learner.model.rebase(&mut learner.state).unwrap();
         assert!((learner.model.output_range().1 - kept.iter().sum::<f64>()).abs() < 1e-12);
+    }
+}
+
+/// A plant whose weights are numbers, but twice their sum is none.
+#[test]
+fn the_models_sum_stays_below_half_the_largest_number() {
+    let k = 3;
+    for method in [GRADIENT, INCREMENTS] {
+        let mut rng = rng(90);
+        let offline = vec![f64::MAX / 6.0 * 0.4; operator_count(k)];
+        let guards = Adaptation {
+            gate: 0.0,
+            ..options(method)
+        };
+        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, guards);
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &[1.0; 6]);
+        let mut refused = 0;
+        for input in strokes(&mut rng, &unit_plane(k), 2000, 10) {
+            let share = plant.step(&mut there, input).unwrap().output / 6.0;
+            let learning = learner.step(input, 0.8 * f64::MAX * share).unwrap();
+            refused += usize::from(learning.outcome == Outcome::RolledBack);
+            assert!((2.0 * learner.model.total()).is_finite(), "{method:?}");
+        }
+        assert!(refused > 0, "{method:?}");
+    }
+}
+
+/// A power of two changes no digit.
+#[test]
+fn a_plant_in_another_unit_is_learned_in_the_same_way() {
+    let (k, unit) = (4, 2.0_f64.powi(600));
+    for method in [GRADIENT, INCREMENTS] {
+        let mut rng = rng(91);
+        let offline = dense(&mut rng, k);
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
+        let guards = Adaptation {
+            gate: 0.0,
+            trial: u32::MAX,
+            ..options(method)
+        };
+        let scaled = |weights: &[f64]| weights.iter().map(|w| unit * w).collect::<Vec<_>>();
+        let learner = |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
+        let (mut one, mut other) = (learner(&offline), learner(&scaled(&offline)));
+        for input in strokes(&mut rng, &unit_plane(k), 500, 20) {
+            let measured = plant.step(&mut there, input).unwrap().output;
+            let expected = one.step(input, measured).unwrap();
+            let found = other.step(input, unit * measured).unwrap();
+            assert_eq!(found.outcome, expected.outcome, "{method:?}");
+            assert_eq!(found.output, unit * expected.output, "{method:?}");
+        }
+        let learned = scaled(one.estimator.parameters());
+        assert_eq!(other.estimator.parameters(), learned);
+        assert_ne!(learned, scaled(&offline));
     }
 }

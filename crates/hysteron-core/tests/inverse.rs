@@ -229,6 +229,9 @@ fn anticipation_crosses_the_dead_band_to_its_edge() {
     assert!((inverse.solve(&state, loose(y)).unwrap().input - (edge.input - 1.0)).abs() < 1e-9);
     let moved = inverse.solve(&state, loose(y + 0.5)).unwrap();
     assert_eq!(moved, inverse.solve(&state, Target::new(y + 0.5)).unwrap());
+    // The right ridge rises as steeply, so upwards the edge moves as far.
+    let loose = inverse.solve(&state, rising.tolerance(0.3)).unwrap();
+    assert!((loose.input - (up.input + 1.0)).abs() < 1e-9);
 }
 
 #[test]
@@ -264,6 +267,182 @@ fn on_a_flat_stretch_the_first_input_is_returned() {
     model.step(&mut state, 80.0).unwrap();
     // Zero is reached at α_1 = 20.
     assert!((inverse.step(&mut state, Target::new(0.0)).unwrap().input - 20.0).abs() < 1e-9);
+}
+
+/// Whole numbers, most of them zero, so that flat stretches are common.
+fn sparse(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
+    let weight = |rng: &mut _| match Rng::next_u32(rng) % 4 {
+        0 => f64::from(1 + Rng::next_u32(rng) % 3),
+        _ => 0.0,
+    };
+    (0..operator_count(levels)).map(|_| weight(rng)).collect()
+}
+
+#[test]
+fn shortly_before_the_solution_the_target_is_not_reached() {
+    let mut found = 0;
+    for seed in 0..600 {
+        let mut rng = rng(600 + seed);
+        let k = levels(&mut rng, 8);
+        // Inputs equal positions. They are eighths, so that nothing is rounded.
+        let plane = Plane::new(1.0, k as f64, k).unwrap();
+        let operator = [Operator::Mkp, Operator::Kp][seed as usize % 2];
+        let (model, mut state) = build(plane, operator, &sparse(&mut rng, k));
+        let inverse = model.inverse().unwrap();
+        let mut outputs = Vec::new();
+        for _ in 0..40 {
+            let input = rng.random_range(0..=8 * k) as f64 / 8.0;
+            let now = model.step(&mut state, input).unwrap().output;
+            outputs.push(now);
+            // Past outputs are often those of turning points.
+            let target = outputs[rng.random_range(0..outputs.len())];
+            if target == now {
+                continue;
+            }
+            let input = inverse.solve(&state, Target::new(target)).unwrap().input;
+            let way = (target - now).signum();
+            let before = input - way * 1e-3;
+            let short = model.step(&mut state.clone(), before).unwrap().output;
+            assert!(way * (target - short) > 1e-4, "seed {seed}: {input}");
+            found += 1;
+        }
+    }
+    assert!(found > 5000, "{found}");
+}
+
+/// Weights that make nearly flat stretches beside steep ones.
+fn steep_and_flat(rng: &mut impl Rng, levels: usize) -> Vec<f64> {
+    (0..operator_count(levels))
+        .map(|_| [0.0, 1e-13, 2e-13, 1.0][rng.random_range(0..4)])
+        .collect()
+}
+
+/// An input on a grid line, close to one or halfway between two, where inputs equal positions.
+fn among_lines(rng: &mut impl Rng, levels: usize) -> f64 {
+    let part = [0.0, 0.01, 0.5, 0.99][rng.random_range(0..4)];
+    rng.random_range(0..levels) as f64 + part
+}
+
+/// Behind a nearly flat stretch a step too far would give an output far away.
+#[test]
+fn targets_a_few_rounding_errors_away_are_met() {
+    let mut worst = 0.0_f64;
+    for seed in 0..4000 {
+        let mut rng = rng(700_000 + seed);
+        let k = rng.random_range(2..5);
+        let plane = Plane::new(1.0, k as f64, k).unwrap();
+        let mu = steep_and_flat(&mut rng, k);
+        let (model, mut state) = build(plane, Operator::Mkp, &mu);
+        let inverse = model.inverse().unwrap();
+        for _ in 0..10 {
+            let input = among_lines(&mut rng, k);
+            let now = model.step(&mut state, input).unwrap().output;
+            let away = rng.random_range(-10.0..10.0) * inverse.rounding();
+            let target = (now + away).clamp(0.0, model.total());
+            for heading in [None, Some(Direction::Rising), Some(Direction::Falling)] {
+                let wanted = Target::new(target).heading(heading);
+                let input = inverse.solve(&state, wanted).unwrap().input;
+                let reached = model.step(&mut state.clone(), input).unwrap().output;
+                worst = worst.max((reached - target).abs());
+            }
+        }
+    }
+    assert!(worst <= 1e-13, "{worst:e}");
+}
+
+/// The tolerance is the way to an output that the model can give, up to less than rounding.
+#[test]
+fn at_the_edge_the_output_is_further_by_the_tolerance() {
+    let mut worst = 0.0_f64;
+    for seed in 0..4000 {
+        let mut rng = rng(710_000 + seed);
+        let k = rng.random_range(2..5);
+        let plane = Plane::new(1.0, k as f64, k).unwrap();
+        let mu = steep_and_flat(&mut rng, k);
+        let operator = OPERATORS[seed as usize % 3];
+        let (model, mut state) = build(plane, operator, &mu);
+        let inverse = model.inverse().unwrap();
+        let mut input = plane.bottom();
+        for _ in 0..10 {
+            let before = input;
+            input = among_lines(&mut rng, k);
+            let now = model.step(&mut state, input).unwrap().output;
+            let there = before + (input - before) * [0.0, 0.25, 0.5][rng.random_range(0..3)];
+            let goal = model.step(&mut state.clone(), there).unwrap().output;
+            let noise = rng.random_range(-0.4..0.4) * inverse.rounding();
+            let heading = match there > input {
+                true => Direction::Rising,
+                false => Direction::Falling,
+            };
+            let wanted = Target::new(now).heading(Some(heading));
+            let wanted = wanted.tolerance((now - goal).abs() + noise);
+            let edge = inverse.solve(&state, wanted).unwrap().input;
+            let reached = model.step(&mut state.clone(), edge).unwrap().output;
+            worst = worst.max((reached - goal).abs());
+        }
+    }
+    assert!(worst <= 1e-13, "{worst:e}");
+}
+
+#[test]
+fn outputs_closer_than_the_rounding_error_are_equal() {
+    let (plane, weights) = dead_band();
+    let (model, mut state) = build(plane, Operator::Mkp, &weights);
+    let inverse = model.inverse().unwrap();
+    let rounding = inverse.rounding();
+    assert_eq!(rounding, 4.0 * f64::EPSILON * 3.0);
+    let now = model.step(&mut state, 65.0).unwrap().output;
+    let input = |by| inverse.solve(&state, Target::new(now + by)).unwrap().input;
+    for way in [-1.0, 1.0] {
+        assert_eq!(input(0.9 * way * rounding), 65.0);
+        assert_ne!(input(2.0 * way * rounding), 65.0);
+    }
+}
+
+#[test]
+fn a_target_away_from_where_the_branch_began_is_held() {
+    let mut held = 0;
+    for seed in 0..600 {
+        let mut rng = rng(800 + seed);
+        let k = levels(&mut rng, 12);
+        let plane = plane(&mut rng, k);
+        let (model, mut state) = build(plane, OPERATORS[seed as usize % 3], &sparse(&mut rng, k));
+        let inverse = model.inverse().unwrap();
+        for heading in [Direction::Rising, Direction::Falling] {
+            match heading {
+                Direction::Rising => model.reset_off(&mut state).unwrap(),
+                Direction::Falling => model.reset_on(&mut state).unwrap(),
+            }
+            let began = model.output(&state);
+            let input = rng.random_range(plane.bottom()..plane.max());
+            let now = model.step(&mut state, input).unwrap().output;
+            if (now - began).abs() > 1e-9 {
+                let target = Target::new(now).heading(Some(heading));
+                assert_eq!(inverse.solve(&state, target).unwrap().input, input);
+                held += 1;
+            }
+        }
+    }
+    assert!(held > 500, "{held}");
+}
+
+#[test]
+fn without_weights_the_dead_band_is_the_whole_plane() {
+    for operator in [Operator::Mkp, Operator::Kp] {
+        let mut rng = rng(900);
+        let plane = plane(&mut rng, 6);
+        let (model, mut state) = build(plane, operator, &[0.0; 21]);
+        let inverse = model.inverse().unwrap();
+        for input in inputs(&mut rng, &plane, 200) {
+            model.step(&mut state, input).unwrap();
+            let to = |heading| {
+                let target = Target::new(0.0).heading(Some(heading));
+                inverse.solve(&state, target).unwrap().input
+            };
+            let ends = (to(Direction::Falling), to(Direction::Rising));
+            assert_eq!(ends, (plane.bottom(), plane.max()));
+        }
+    }
 }
 
 #[test]

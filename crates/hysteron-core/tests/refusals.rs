@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::build;
+use common::{OPERATORS, build};
 use hysteron_core::{
     Clipped, Definition, Error, MAX_LEVELS, Model, Operator, Plane, Target, Turn, table_len,
     turn_capacity,
@@ -182,4 +182,34 @@ fn states_of_other_models_and_broken_saves() {
     // −0 is 0: the bottom of the plane, from where 1 is reached again.
     assert_eq!(model.restore(&mut state, &[2.0, -0.0, 1.0], 0.0), Ok(()));
     assert!(state.turning_points().eq([1.0]));
+}
+
+/// Operators of ±1 span twice the sum of the weights' sizes. That has to be a number.
+#[test]
+fn weights_of_any_size_and_sign_are_taken_up_to_half_the_largest_number() {
+    let plane = Plane::new(0.0, 1.0, 3).unwrap();
+    let alternating = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+    for operator in OPERATORS {
+        for signs in [[1.0; 6], [-1.0; 6], alternating] {
+            for (share, fine) in [(1e-100, true), (0.49, true), (0.51, false), (0.9, false)] {
+                let weights = signs.map(|sign| sign * share * (f64::MAX / 6.0));
+                let model = Model::new(plane, operator, &weights, [0.0; table_len(3)]);
+                assert_eq!(model.is_ok(), fine, "{operator:?}, {signs:?}, {share}");
+            }
+        }
+    }
+}
+
+/// The weight of operator (1, K) is in one entry of the table only.
+#[test]
+fn a_model_that_differs_in_one_bit_refuses_the_state() {
+    let plane = Plane::new(0.0, 1.0, 3).unwrap();
+    let last = |weight| [0.0, 0.0, 0.0, weight, 0.0, 0.0];
+    let (model, _) = build(plane, Operator::Mkp, &last(1.0));
+    for bit in 0..52 {
+        let other = f64::from_bits(1.0_f64.to_bits() ^ (1 << bit));
+        let (_, mut state) = build(plane, Operator::Mkp, &last(other));
+        let refused = model.step(&mut state, 0.5);
+        assert_eq!(refused, Err(Error::StateMismatch), "bit {bit}");
+    }
 }
