@@ -2,7 +2,7 @@
 
 use crate::args;
 use crate::terminal::{Result, print};
-use hysteron_export::{COptions, Fmu, FmuOptions};
+use hysteron_export::{COptions, CSampling, Fmu, FmuOptions};
 use serde_json::json;
 
 pub(crate) fn run(args: &args::Export) -> Result<()> {
@@ -13,7 +13,15 @@ pub(crate) fn run(args: &args::Export) -> Result<()> {
 }
 
 fn c(args: &args::ExportC) -> Result<()> {
-    let model = model(&args.model, &args.load)?;
+    let model = hysteron::Model::read(&args.model)?;
+    let model = match args.load {
+        Some(load) => model.at_load(load)?,
+        None => model,
+    };
+    let sampling = CSampling {
+        dt: args.dt,
+        drive: args.drive_range,
+    };
     let options = COptions {
         real: args.real.into(),
         name: args.name.as_deref(),
@@ -22,7 +30,7 @@ fn c(args: &args::ExportC) -> Result<()> {
     };
     let inputs = [args.model.as_path()];
     let target = args.force.target(&args.out, &inputs);
-    let export = hysteron_export::c(&model, target, &options)?;
+    let export = hysteron_export::c_sampled(&model, target, &options, &sampling)?;
     let (memory, worst) = (export.memory, export.worst_case);
     if args.json.json {
         let object = json!({
@@ -31,6 +39,8 @@ fn c(args: &args::ExportC) -> Result<()> {
             "real": export.real.name(),
             "levels": export.levels,
             "inverse": export.inverse,
+            "stages": export.stages,
+            "dt": export.dt,
             "flash_bytes": memory.constants,
             "ram_bytes": {
                 "state": memory.state,
@@ -57,6 +67,9 @@ fn c(args: &args::ExportC) -> Result<()> {
     ));
     if let Some(bytes) = memory.adaptation {
         lines.push(format!("{bytes} bytes more for a model that learns"));
+    }
+    if !export.stages.is_empty() {
+        lines.push(format!("stages: {}", export.stages.join(", ")));
     }
     if !export.inverse {
         lines.push("weights below zero: the C runs forward only".into());

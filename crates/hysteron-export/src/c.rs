@@ -3,10 +3,13 @@
 mod constants;
 mod name;
 mod seal;
+mod stage_text;
+mod stages;
 mod text;
 
 use constants::{Constants, Number};
 use hysteron::{AtomicFile, AtomicFolder, Destination, Error, Model, Own, Remedy, Result, Setting};
+pub use stages::CSampling;
 use std::path::{Path, PathBuf};
 
 /// Names and texts of the algorithm's files, the first with the number type.
@@ -33,6 +36,26 @@ const ADAPTATION: [(&str, &str); 2] = [
     (
         "hysteron_mcu_adapt.c",
         include_str!("../mcu/hysteron_mcu_adapt.c"),
+    ),
+];
+
+/// The same for models with stages.
+const STAGES: [(&str, &str); 4] = [
+    (
+        "hysteron_mcu_stages.h",
+        include_str!("../mcu/hysteron_mcu_stages.h"),
+    ),
+    (
+        "hysteron_mcu_stages.c",
+        include_str!("../mcu/hysteron_mcu_stages.c"),
+    ),
+    (
+        "hysteron_mcu_stages_inverse.c",
+        include_str!("../mcu/hysteron_mcu_stages_inverse.c"),
+    ),
+    (
+        "hysteron_mcu_stages_internal.h",
+        include_str!("../mcu/hysteron_mcu_stages_internal.h"),
     ),
 ];
 
@@ -80,7 +103,7 @@ pub struct COptions<'a> {
 }
 
 /// What was written, and what it needs on the target.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CExport {
     /// The files.
     pub files: Vec<PathBuf>,
@@ -92,6 +115,11 @@ pub struct CExport {
     pub levels: usize,
     /// Whether there is an inverse: no weight is below zero.
     pub inverse: bool,
+    /// The stages around the operators, in the order of the signal: `body`, `load`, `spacing`,
+    /// `creep`, `lag`.
+    pub stages: Vec<&'static str>,
+    /// The sample time in seconds that the constants hold for, where the model depends on time.
+    pub dt: Option<f64>,
     /// Bytes.
     pub memory: CMemory,
     /// The worst case of one call.
@@ -143,25 +171,66 @@ impl CWorstCase {
 /// The C gives the digits of [`hysteron_core::Model`] in the same number type, with offset and sign
 /// in that type as well. A model with negative weights has no inverse there either.
 ///
+/// For a model with stages, or one that starts where its fit found it, see [`c_sampled`].
+///
 /// Files that were exported before, and not edited since, are replaced, all together or not at all.
 /// A path alone as `target` replaces others of their names too; [`Destination::keeping_foreign`]
 /// keeps them.
 ///
 /// # Errors
-/// [`Error::Export`] for a model with a load or a thermal body, or that does not fit the number
-/// type; for a name that cannot be one in C; for files in the folder that are of the other number
-/// type. [`Error::File`].
+/// [`Error::Export`] for a model that depends on time, or whose weights depend on a load, or that
+/// does not fit the number type; for a name that cannot be one in C; for files in the folder that
+/// are of the other number type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,
     options: &COptions<'_>,
 ) -> Result<CExport> {
+    c_sampled(model, target, options, &CSampling::default())
+}
+
+/// As [`c()`], for a model that depends on time: with its sample time, and with the range of the
+/// drive.
+///
+/// A model with stages has the algorithm of the stages too: `hysteron_mcu_stages.h`, `.c` and
+/// `hysteron_mcu_stages_inverse.c`. The C then gives the digits of
+/// [`hysteron_core::Stages::step_at`] and [`hysteron_core::Stages::invert_at`] in the same number
+/// type. The factors of the sample time are constants, so it needs no library either. The load is an
+/// argument of each step.
+///
+/// ```
+/// use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
+/// use hysteron_export::{COptions, CReal, CSampling, c_sampled};
+/// let plane = Plane::new(20.0, 80.0, 3)?;
+/// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+/// model.thermal = Some(FirstOrder { tau_heating: 2.0, tau_cooling: 4.0, ..FirstOrder::default() });
+/// let folder = tempfile::tempdir()?;
+/// let options = COptions {
+///     real: CReal::Float,
+///     name: Some("wire"),
+///     source: "wire.json".as_ref(),
+///     adaptation: false,
+/// };
+/// let sampling = CSampling { dt: Some(0.01), drive: Some((0.0, 100.0)) };
+/// let made = c_sampled(&model, folder.path(), &options, &sampling)?;
+/// assert_eq!((made.stages, made.dt), (vec!["body"], Some(0.01)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`c()`]; [`Error::Export`] too for a sample time that is missing or not needed, a range of the
+/// drive that is not in order, and for adaptation of a model with stages.
+pub fn c_sampled<'a>(
+    model: &Model,
+    target: impl Into<Destination<'a>>,
+    options: &COptions<'_>,
+    sampling: &CSampling,
+) -> Result<CExport> {
     let target = target.into();
-    model.plain()?;
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => write::<f32>(model, target, options, name),
-        CReal::Double => write::<f64>(model, target, options, name),
+        CReal::Float => write::<f32>(model, target, options, name, sampling),
+        CReal::Double => write::<f64>(model, target, options, name, sampling),
     }
 }
 
@@ -170,17 +239,24 @@ fn write<T: Number>(
     target: Destination<'_>,
     options: &COptions<'_>,
     name: String,
+    sampling: &CSampling,
 ) -> Result<CExport> {
-    let constants = Constants::<T>::of(model)?;
+    let constants = Constants::<T>::of(model, sampling)?;
+    if options.adaptation && constants.stages.is_some() {
+        let what = "a model with stages cannot learn on the target";
+        let remedy = Remedy::new("export it without {}", [Setting::on("adaptation")]);
+        return Err(Error::Export(what.into()).remedied(remedy));
+    }
     if options.adaptation && constants.rounding.is_none() {
         let what = "adaptation keeps weights at zero or above, but there are some below zero";
         let remedy = Remedy::new("fit with {}", [Setting::word("solver", "nnls")]);
         return Err(Error::Export(what.into()).remedied(remedy));
     }
     let levels = model.plane().levels();
-    let parts: &[&[(&str, &str)]] = match options.adaptation {
-        false => &[&ALGORITHM],
-        true => &[&ALGORITHM, &ADAPTATION],
+    let parts: &[&[(&str, &str)]] = match (options.adaptation, &constants.stages) {
+        (true, _) => &[&ALGORITHM, &ADAPTATION],
+        (_, Some(_)) => &[&ALGORITHM, &STAGES],
+        _ => &[&ALGORITHM],
     };
     let algorithm = parts.concat();
     let own = ["h", "c"].map(|end| format!("{name}.{end}"));
@@ -192,6 +268,11 @@ fn write<T: Number>(
         real: options.real,
         levels,
         inverse: constants.rounding.is_some(),
+        stages: constants
+            .stages
+            .as_ref()
+            .map_or_else(Vec::new, |stages| stages.names()),
+        dt: sampling.dt,
         memory: constants.memory(options.adaptation),
         worst_case: CWorstCase::of(levels),
     };

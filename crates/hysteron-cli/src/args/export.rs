@@ -1,13 +1,15 @@
 //! Arguments of `hysteron export`.
 
-use super::{Force, Json, Load};
+use super::{Force, Json, Load, parse_limits};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Subcommand)]
 pub(crate) enum Export {
     /// Portable C99 with the model as constants, for a microcontroller or a PLC
-    #[command(after_help = "Example:\n  hysteron export c spring.json -o mcu --real float")]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron export c spring.json -o mcu --real float\n\
+        \x20 hysteron export c wire.json -o mcu --dt 0.01 --drive-range 0,100")]
     C(ExportC),
     /// A block for Simulink, Dymola and other tools (FMI, co-simulation)
     #[command(after_help = "Examples:\n\
@@ -52,8 +54,17 @@ pub(crate) struct ExportC {
     /// Also write the code with which the weights adapt on the target
     #[arg(long)]
     pub(crate) adaptation: bool,
-    #[command(flatten)]
-    pub(crate) load: Load,
+    /// The sample time on the target, for a model with a thermal body, creep or a lag
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) dt: Option<f64>,
+    /// Lowest and highest drive of the inverse, for a model with stages [default: for a thermal
+    /// body the drives it was fitted with, otherwise no limits]
+    #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true)]
+    pub(crate) drive_range: Option<(f64, f64)>,
+    /// Take the model at this load. Needed where the weights depend on the load; otherwise the load
+    /// is an argument on the target
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub(crate) load: Option<f64>,
     #[command(flatten)]
     pub(crate) json: Json,
 }

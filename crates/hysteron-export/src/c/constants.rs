@@ -1,8 +1,9 @@
 //! A model in the number type of the target.
 
+use super::stages::{CSampling, Staged};
 use super::{CMemory, CReal};
 use hysteron::{Error, Model, Operator, Remedy, Result, Setting, Sign};
-use hysteron_core::{Plane, Real, table_len, turn_capacity};
+use hysteron_core::{MAX_CREEP, Plane, Real, table_len, turn_capacity};
 
 /// A number type of C.
 pub(super) trait Number: Real {
@@ -52,10 +53,14 @@ pub(super) struct Constants<T> {
     pub(super) falls: bool,
     /// That of the inverse, where there is one.
     pub(super) rounding: Option<T>,
+    /// The stages around the operators, where there are any.
+    pub(super) stages: Option<Staged<T>>,
+    /// Turning points and input that the model starts with, where its fit found them.
+    pub(super) start: Option<(Vec<T>, T)>,
 }
 
 impl<T: Number> Constants<T> {
-    pub(super) fn of(model: &Model) -> Result<Self> {
+    pub(super) fn of(model: &Model, sampling: &CSampling) -> Result<Self> {
         let convert = |what: &str, number: f64| {
             T::of(number).ok_or_else(|| unfit(&format!("{what} of {number:e}")))
         };
@@ -81,13 +86,32 @@ impl<T: Number> Constants<T> {
         if small || !ends.into_iter().all(Real::is_finite) {
             return Err(unfit("the range of the output"));
         }
-        Ok(Self {
+        let start = model.fitted().map(|state| -> Result<_> {
+            // A position so small that the type does not have it is at the bottom.
+            let points = state.turning_points();
+            let points = points.map(|x| T::of(x).unwrap_or(T::ZERO)).collect();
+            Ok((points, convert("an input", state.input())?))
+        });
+        let mut constants = Self {
             weights,
             core,
             offset,
             falls: model.sign() == Sign::Negative,
             rounding,
-        })
+            stages: None,
+            start: start.transpose()?,
+        };
+        constants.stages = Staged::of(model, &constants, sampling)?;
+        Ok(constants)
+    }
+
+    /// Offset and sign of the operators alone: those of the output are among the stages, where
+    /// there are any.
+    pub(super) fn operators_own(&self) -> (T, bool) {
+        match self.stages {
+            None => (self.offset, self.falls),
+            Some(_) => (T::ZERO, false),
+        }
     }
 
     /// The number of `hys_model.kind`.
@@ -110,7 +134,20 @@ impl<T: Number> Constants<T> {
         const WORD: usize = 4;
         let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
         let model = aligned(2 * WORD + 10 * T::BYTES + 3);
-        let state = 4 * WORD + 6 * T::BYTES;
+        let operators = aligned(4 * WORD + 6 * T::BYTES);
+        let (stages, state) = match &self.stages {
+            None => (0, operators),
+            Some(staged) => (
+                aligned(aligned(11 * WORD) + (11 + 2 * MAX_CREEP) * T::BYTES + 3)
+                    + staged.numbers() * T::BYTES,
+                operators + aligned(2 * WORD) + (2 + MAX_CREEP) * T::BYTES,
+            ),
+        };
+        let start = match (&self.start, &self.stages) {
+            (None, _) => 0,
+            // Without stages the input is a constant of its own.
+            (Some((points, _)), stages) => points.len() + usize::from(stages.is_none()),
+        };
         let options = aligned(6 * T::BYTES + 2 * WORD);
         let gate = aligned(4 * T::BYTES + 2 * WORD);
         let adaptive = aligned(
@@ -122,7 +159,9 @@ impl<T: Number> Constants<T> {
         );
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
-            constants: model + (table + if adaptation { weights } else { 0 }) * T::BYTES,
+            constants: model
+                + stages
+                + (table + start + if adaptation { weights } else { 0 }) * T::BYTES,
             state,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
             adaptation: adaptation.then(|| adaptive - state + self.adaptation_numbers() * T::BYTES),
@@ -136,7 +175,7 @@ impl<T: Number> Constants<T> {
     }
 }
 
-fn unfit(what: &str) -> Error {
+pub(super) fn unfit(what: &str) -> Error {
     let double = Setting::word("real", CReal::Double.name());
     let what = format!("{what} does not fit single precision");
     Error::Export(what).remedied(Remedy::new("export with {}", [double]))

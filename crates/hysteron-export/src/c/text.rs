@@ -1,7 +1,8 @@
 //! The files that hold a model.
 
-use super::CExport;
 use super::constants::{Constants, Number};
+use super::stage_text::{actuator, remarks, start_declared, start_defined};
+use super::{ALGORITHM, CExport, STAGES};
 use hysteron::{Model, Operator, Quantity, Sign};
 use hysteron_core::{operator_index, table_index, turn_capacity};
 use std::fmt::Write;
@@ -38,12 +39,15 @@ pub(super) fn header<T: Number>(
             model.plane().operators(),
             export.real.name(),
         ),
-        format!(
-            "input: {}, from {:?} to {:?}",
-            quantity(&model.input),
-            model.plane().bottom(),
-            model.plane().max()
-        ),
+        match constants.stages {
+            None => format!(
+                "input: {}, from {:?} to {:?}",
+                quantity(&model.input),
+                model.plane().bottom(),
+                model.plane().max()
+            ),
+            Some(_) => format!("input: {}", quantity(&model.input)),
+        },
         format!(
             "output: {}, from {low:?} (all operators off) to {high:?} (all on){}",
             quantity(&model.output),
@@ -54,9 +58,13 @@ pub(super) fn header<T: Number>(
         ),
         match export.inverse {
             true => "inverse: yes".to_owned(),
-            false => "inverse: none, for there are weights below zero (hys_inverse_step returns \
-                 HYS_NEGATIVE_WEIGHTS)"
-                .to_owned(),
+            false => format!(
+                "inverse: none, for there are weights below zero ({} returns HYS_NEGATIVE_WEIGHTS)",
+                match constants.stages {
+                    None => "hys_inverse_step",
+                    Some(_) => "hys_actuator_inverse_step",
+                }
+            ),
         },
         format!(
             "memory on a 32-bit target: {} bytes of constants (flash); for each state {} bytes and \
@@ -69,7 +77,9 @@ pub(super) fn header<T: Number>(
             export.worst_case.turning_points, export.worst_case.halvings
         ),
     ];
-    let (mut sizes, mut weights) = (String::new(), String::new());
+    let staged = constants.stages.as_ref();
+    lines.extend(staged.into_iter().flat_map(|staged| remarks(model, staged)));
+    let (mut sizes, mut weights) = (String::new(), start_declared(export, constants));
     if let Some(bytes) = memory.adaptation {
         lines.push(format!("adaptation: {bytes} bytes beside (RAM)"));
         sizes = format!(
@@ -77,8 +87,17 @@ pub(super) fn header<T: Number>(
             constants.weights.len(),
             constants.adaptation_numbers()
         );
-        weights = format!("extern const hys_real {name}_weights[{shout}_OPERATORS];\n");
+        weights += &format!("extern const hys_real {name}_weights[{shout}_OPERATORS];\n");
     }
+    let operators = check(name, "HYS_LAYOUT", ALGORITHM[0]);
+    let (file, kind, checks) = match staged {
+        None => (ALGORITHM[0].0, "hys_model", operators),
+        Some(_) => (
+            STAGES[0].0,
+            "hys_actuator",
+            operators + &check(name, "HYS_STAGES_LAYOUT", STAGES[0]),
+        ),
+    };
     let lines: String = lines.iter().map(|line| format!(" * {line}\n")).collect();
     format!(
         "/* hysteron {version}.
@@ -86,19 +105,16 @@ pub(super) fn header<T: Number>(
 #ifndef {shout}_H
 #define {shout}_H
 
-#include \"hysteron_mcu.h\"
+#include \"{file}\"
 
-#if HYS_LAYOUT != {layout}
-#error \"{name}: export the model again: hysteron_mcu.h is of another version\"
-#endif
-
+{checks}
 #define {shout}_LEVELS {levels}
 #define {shout}_TURNS {turns}
 {sizes}
 #ifdef __cplusplus
 extern \"C\" {{
 #endif
-extern const hys_model {name};
+extern const {kind} {name};
 {weights}#ifdef __cplusplus
 }}
 #endif
@@ -106,8 +122,21 @@ extern const hys_model {name};
 #endif
 ",
         version = env!("CARGO_PKG_VERSION"),
-        layout = layout(),
         turns = turn_capacity(*levels),
+    )
+}
+
+/// Stops the compilation beside an algorithm of another layout.
+fn check(name: &str, macro_name: &str, header: (&str, &str)) -> String {
+    let (file, text) = header;
+    let start = format!("#define {macro_name} ");
+    let layout = text.lines().find_map(|line| line.strip_prefix(&start));
+    let layout = layout.unwrap_or("0");
+    format!(
+        "#if {macro_name} != {layout}
+#error \"{name}: export the model again: {file} is of another version\"
+#endif
+"
     )
 }
 
@@ -132,6 +161,7 @@ static const hys_real table[] = ",
     );
     let rows = (0..=*levels).map(|p| &constants.table()[table_index(p, 0)..][..=p]);
     text += &array(rows);
+    let (offset, falls) = constants.operators_own();
     let fields = [
         ("top", T::from_index(*levels)),
         ("min", plane.min()),
@@ -142,11 +172,15 @@ static const hys_real table[] = ",
         ("nudge", plane.nudge()),
         ("total", constants.core.total()),
         ("rounding", constants.rounding.unwrap_or(T::ZERO)),
-        ("offset", constants.offset),
+        ("offset", offset),
     ];
     let _ = write!(
         text,
-        "\nconst hys_model {name} = {{\n    .table = table,\n    .levels = {levels},\n"
+        "\n{model} = {{\n    .table = table,\n    .levels = {levels},\n",
+        model = match constants.stages {
+            None => format!("const hys_model {name}"),
+            Some(_) => "static const hys_model operators".to_owned(),
+        },
     );
     for (field, number) in fields {
         let _ = writeln!(text, "    .{field} = {},", number.literal());
@@ -155,9 +189,13 @@ static const hys_real table[] = ",
         text,
         "    .kind = {},\n    .falls = {},\n    .inverse = {}\n}};\n",
         constants.kind(),
-        usize::from(constants.falls),
+        usize::from(falls),
         usize::from(constants.rounding.is_some()),
     );
+    if let Some(staged) = &constants.stages {
+        text += &actuator(export, constants, staged);
+    }
+    text += &start_defined(export, constants);
     if export.memory.adaptation.is_some() {
         let rows = (1..=*levels).map(|j| &constants.weights[operator_index(1, j)..][..j]);
         let _ = write!(text, "\nconst hys_real {name}_weights[] = {}", array(rows));
@@ -175,15 +213,12 @@ fn array<'a, T: Number + 'a>(rows: impl Iterator<Item = &'a [T]>) -> String {
     format!("{{\n{}\n}};\n", lines.join(",\n"))
 }
 
-/// The number that the algorithm's header says.
-fn layout() -> &'static str {
-    let line = super::HEADER
-        .lines()
-        .find_map(|line| line.strip_prefix("#define HYS_LAYOUT "));
-    line.unwrap_or("0")
+/// Numbers as an array's value.
+pub(super) fn list<T: Number>(numbers: &[T]) -> String {
+    array(std::iter::once(numbers))
 }
 
-fn quantity(quantity: &Quantity) -> String {
+pub(super) fn quantity(quantity: &Quantity) -> String {
     let unit = quantity.unit.as_deref().unwrap_or("unit not known");
     format!("{} [{}]", plain(&quantity.name), plain(unit))
 }

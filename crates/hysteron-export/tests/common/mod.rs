@@ -3,11 +3,12 @@
 
 pub mod programs;
 pub mod reference;
+pub mod staged;
 pub mod walks;
 
 use hysteron::Model;
 use hysteron_core::{operator_count, table_len, turn_capacity};
-use hysteron_export::{COptions, CReal};
+use hysteron_export::{COptions, CReal, CSampling};
 use programs::run;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -89,6 +90,42 @@ impl Exported {
             )
             .unwrap();
         }
+        std::fs::write(folder.path().join("models.h"), text).unwrap();
+        Self {
+            folder,
+            real,
+            sources,
+        }
+    }
+
+    /// Exports models with stages.
+    pub fn staged(models: &[(&Model, CSampling)], real: CReal) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources: Vec<PathBuf> = Vec::new();
+        let (mut includes, mut list) = (String::new(), String::new());
+        let mut largest = 0;
+        for (n, (model, sampling)) in models.iter().enumerate() {
+            let name = format!("m{n}");
+            let options = COptions {
+                real,
+                name: Some(&name),
+                source: Path::new("some model.json"),
+                adaptation: false,
+            };
+            let made = hysteron_export::c_sampled(model, folder.path(), &options, sampling);
+            let files = made.unwrap().files.into_iter();
+            sources.extend(files.filter(|file| file.extension().is_some_and(|end| end == "c")));
+            writeln!(includes, "#include \"{name}.h\"").unwrap();
+            write!(list, "&{name}, ").unwrap();
+            largest = largest.max(model.plane().levels());
+        }
+        sources.sort();
+        sources.dedup();
+        let text = format!(
+            "{includes}#define MOST_TURNS {}\n\
+             static const hys_actuator *const models[] = {{{list}}};\n",
+            turn_capacity(largest)
+        );
         std::fs::write(folder.path().join("models.h"), text).unwrap();
         Self {
             folder,

@@ -1,0 +1,106 @@
+/* Actuators with stages around the hysteresis, for microcontrollers:
+ *
+ *   drive -> body -> temperature -> load, spacing -> operators -> creep -> lag -> output
+ *
+ * Body: first-order heating and cooling. Load: curves over the load that shift and scale the axis of
+ * the operators and change stroke and offset. Spacing: unequal distances of the levels. Each of the
+ * stages may be missing. The inverse is exact for the sample.
+ *
+ * The sample time is fixed when the model is exported: the factors e^(-dt/tau) are constants. So
+ * this needs no library either, and what hysteron_mcu.h says of compilers, errors and threads holds
+ * here too. The results have the same bits as those of the library at this sample time.
+ *
+ * Worst case of one call with K levels and n loads:
+ *   hys_actuator_step          two bisections, of at most log2(n) + 1 and log2(K) + 2 halvings for
+ *                              each curve and the spacing, then one hys_step
+ *   hys_actuator_inverse_step  one hys_inverse_step, these bisections, one hys_actuator_step
+ *   hys_actuator_start         one hys_step for each turning point of the model's start */
+#ifndef HYSTERON_MCU_STAGES_H
+#define HYSTERON_MCU_STAGES_H
+
+#include "hysteron_mcu.h"
+
+/* Layout of hys_actuator. Models that were exported for another layout do not compile. */
+#define HYS_STAGES_LAYOUT 1
+
+#define HYS_MOST_CREEP 4
+
+/* Numbers that hys_actuator_save writes. */
+#define HYS_STAGE_NUMBERS (HYS_MOST_CREEP + 3)
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One more error code: the load is NaN or infinite. */
+enum { HYS_LOAD = 13 };
+
+/* One more status: the actuator can give the target, but not in this sample. The drive goes as far
+ * as it can. */
+enum { HYS_LIMITED = 3 };
+
+/* An actuator. Written by `hysteron export c`; do not change it. A pointer is null where there is
+ * no such stage. */
+typedef struct {
+    const hys_model *operators;  /* without offset and sign, which are below */
+    const hys_real *loads;       /* loads at which the curves are known, ascending */
+    const hys_real *shifts, *scales, *gains, *offsets; /* the curves at these loads */
+    const hys_real *spacing;     /* the K + 1 corners of the grid, ascending */
+    const hys_real *start;       /* turning points that the model starts with */
+    size_t load_count, start_count, creep_count;
+    hys_real start_input;        /* the operators' input at the start */
+    hys_real steepest;           /* steepest slope of the spacing; 1 without one */
+    hys_real ambient, gain;      /* body: temperature at rest without drive, and per unit of it */
+    hys_real heating, cooling;   /* body: e^(-dt/tau) */
+    hys_real creep[HYS_MOST_CREEP], fade[HYS_MOST_CREEP]; /* coefficients, and e^(-dt/tau) */
+    hys_real creep_gain;         /* 1 and the sum of the coefficients */
+    hys_real lag;                /* e^(-dt/tau) of the lag, 0 without one */
+    hys_real offset;             /* output where the operators' sum is zero */
+    hys_real drive_min, drive_max; /* range of the drive, where it is limited */
+    unsigned char body;          /* 1 with a body */
+    unsigned char falls;         /* 1 where the output falls as the operators switch on */
+    unsigned char limited;       /* 1 with a range of the drive */
+} hys_actuator;
+
+/* The state of an actuator. Only these functions may change its members; `temperature` may be
+ * read. */
+typedef struct {
+    hys_state operators;
+    const hys_actuator *actuator;
+    int started;                 /* 0 before the first sample: body, creep and lag are at rest */
+    hys_real temperature;        /* after the last sample; the input itself without a body */
+    hys_real crept[HYS_MOST_CREEP], lagged;
+} hys_actuator_state;
+
+/* Starts a state where the model starts. Arguments and errors as for hys_start. */
+int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns, size_t count);
+
+/* Moves by one sample time, in which `drive` was held, and writes the output at its end. At the
+ * first sample body, creep and lag are at rest. A load beyond the outermost ones acts as the nearest
+ * one; a model without a load ignores it. Errors: HYS_INPUT_NOT_FINITE, HYS_LOAD. */
+int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, hys_real *output);
+
+/* Finds the drive that gives `target` at the end of one sample time, within the range of the drive,
+ * moves there and writes it. Heading and tolerance as for hys_inverse_step.
+ *
+ * `*status` becomes HYS_REACHED if the output is the target, up to tolerance and rounding. It becomes
+ * HYS_LOW or HYS_HIGH for a target below or above every output at rest, HYS_PASSED as for
+ * hys_inverse_step, and else HYS_LIMITED.
+ *
+ * Errors: HYS_VALUE, HYS_NEGATIVE_WEIGHTS, HYS_INPUT_NOT_FINITE, HYS_LOAD. */
+int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading, hys_real tolerance,
+                              hys_real load, hys_real *drive, int *status);
+
+/* Writes what body, creep and lag remember into HYS_STAGE_NUMBERS numbers. With hys_save of
+ * `operators` it is the whole state. */
+int hys_actuator_save(const hys_actuator_state *state, hys_real *numbers);
+
+/* Restores, bit for bit, what hys_actuator_save wrote. hys_restore of `operators` restores the rest.
+ * Error: HYS_INPUT_NOT_FINITE. */
+int hys_actuator_restore(hys_actuator_state *state, const hys_real *numbers);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,226 @@
+/* The inverse step of an actuator with stages. Each stage is inverted for the present sample, from
+ * the last to the first. Applications that only run models forward do not need this file. */
+#include "hysteron_mcu_stages_internal.h"
+
+/* Eight times the distance from one to the next larger number. */
+static const hys_real EIGHT_EPSILON =
+    (hys_real)8 * (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON);
+
+static hys_real magnitude(hys_real x)
+{
+    return hys_max(x, -x);
+}
+
+static hys_real inward(const hys_actuator *actuator, hys_real output)
+{
+    return actuator->falls ? actuator->offset - output : output - actuator->offset;
+}
+
+/* The operators' sum that gives an output in this sample, and the gain from that sum to the
+ * output. */
+static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, hys_real output, hys_real *gain)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real base = ZERO, rise = actuator->creep_gain;
+    size_t k;
+    if (state->started) {
+        hys_real rest = ONE - actuator->lag;
+        rise = ONE;
+        for (k = 0u; k < actuator->creep_count; k++) {
+            base = base + actuator->creep[k] * actuator->fade[k] * state->crept[k];
+            rise = rise + actuator->creep[k] * (ONE - actuator->fade[k]);
+        }
+        base = base * rest + state->lagged * actuator->lag;
+        rise = rise * rest;
+    }
+    *gain = rise * at->gain;
+    return (inward(actuator, output - at->offset) - base) / *gain;
+}
+
+/* The operators' input for a sum. hys_inverse_step goes there, and everything goes back to where it
+ * was. It writes over two turning points that are needed afterwards, those of a corner that merges
+ * with another; it writes over others only after the last one. */
+static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance, hys_real *input, int *status)
+{
+    hys_turn *corner = state->turns + (state->top - 2u);
+    hys_turn first = corner[0], second = corner[1];
+    size_t top = state->top, began_cell = state->began_cell;
+    hys_real began_part = state->began_part, began_y = state->began_y, end = state->end;
+    hys_real x = state->x, y = state->y, last = state->input;
+    int code = hys_inverse_step(state, aim, heading, tolerance, input, status);
+    corner[0] = first;
+    corner[1] = second;
+    state->top = top;
+    state->began_cell = began_cell;
+    state->began_part = began_part;
+    state->began_y = began_y;
+    state->end = end;
+    state->x = x;
+    state->y = y;
+    state->input = last;
+    return code;
+}
+
+/* The temperature at an input of the operators. */
+static hys_real temperature_at(const hys_actuator *actuator, const loaded_axis *at, hys_real input)
+{
+    const hys_model *model = actuator->operators;
+    const hys_real *corners = actuator->spacing;
+    hys_real effective = input;
+    if (corners != NULL) {
+        size_t k = 0u, end = model->levels - 1u;
+        hys_real from, to;
+        while (k < end) { /* at most log2(K) + 1 iterations */
+            size_t middle = k + (end - k + 1u) / 2u;
+            if (level(model, middle) <= input) {
+                k = middle;
+            } else {
+                end = middle - 1u;
+            }
+        }
+        from = level(model, k);
+        to = level(model, k + 1u);
+        effective = input == to
+            ? corners[k + 1u]
+            : corners[k] + (input - from) * ((corners[k + 1u] - corners[k]) / (to - from));
+    }
+    return (effective + at->shift) / at->scale;
+}
+
+/* How far the operators' input may be from the exact one by rounding, where the temperature comes
+ * from numbers of the size `size`. */
+static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hys_real size)
+{
+    hys_real effective = at->scale * size + magnitude(at->shift);
+    hys_real ends = magnitude(actuator->operators->max) + magnitude(actuator->operators->bottom);
+    return EIGHT_EPSILON * (effective * actuator->steepest + ends);
+}
+
+/* A relay switches at its level and not an ulp before it. */
+static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input, hys_real temperature)
+{
+    const hys_actuator *actuator = state->actuator;
+    int rising = input > state->operators.input, n;
+    for (n = 0; n < 4; n++) {
+        hys_real seen = seen_at(actuator, at, temperature), nudge;
+        if (seen == input || (seen > input) == rising) {
+            break;
+        }
+        nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, magnitude(temperature)));
+        temperature = rising ? temperature + nudge : temperature - nudge;
+    }
+    return temperature;
+}
+
+static hys_real within_range(const hys_actuator *actuator, hys_real drive)
+{
+    return actuator->limited ? hys_clamp(drive, actuator->drive_min, actuator->drive_max) : drive;
+}
+
+/* The drive that holds a temperature. */
+static hys_real holding(const hys_actuator *actuator, hys_real temperature)
+{
+    return (temperature - actuator->ambient) / actuator->gain;
+}
+
+/* The drive for a temperature at the end of the sample time, within its range. */
+static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real factor, drive;
+    if (!actuator->body) {
+        return within_range(actuator, temperature);
+    }
+    if (!state->started) {
+        return within_range(actuator, holding(actuator, temperature));
+    }
+    factor = temperature > state->temperature ? actuator->heating : actuator->cooling;
+    drive = holding(actuator, state->temperature + (temperature - state->temperature) / (ONE - factor));
+    /* NaN where the temperature cannot move and does not have to. */
+    drive = within_range(actuator, drive == drive ? drive : holding(actuator, temperature));
+    return is_finite(drive) ? drive : holding(actuator, state->temperature);
+}
+
+/* Whether a target lies beyond the outputs at rest. */
+static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_real target, hys_real tolerance)
+{
+    const hys_model *model = actuator->operators;
+    hys_real gain = at->gain * actuator->creep_gain;
+    hys_real reach = hys_max(tolerance, gain * model->rounding);
+    hys_real sum = inward(actuator, target - at->offset);
+    if (sum > gain * own_sum(model, model->total) + reach) {
+        return actuator->falls ? HYS_LOW : HYS_HIGH;
+    }
+    if (sum < gain * own_sum(model, ZERO) - reach) {
+        return actuator->falls ? HYS_HIGH : HYS_LOW;
+    }
+    return HYS_REACHED;
+}
+
+int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading, hys_real tolerance,
+                              hys_real load, hys_real *drive, int *status)
+{
+    const hys_actuator *actuator;
+    const hys_model *model;
+    loaded_axis at;
+    hys_real aim, gain, input, temperature, to, size, slack, reached, error, rounding, offsets;
+    int found = HYS_LIMITED;
+    int code = usable_actuator(state);
+    if (code != HYS_OK) {
+        return code;
+    }
+    if (drive == NULL || status == NULL) {
+        return HYS_NULL;
+    }
+    if (heading != HYS_HOLD && heading != HYS_RISING && heading != HYS_FALLING) {
+        return HYS_VALUE;
+    }
+    actuator = state->actuator;
+    model = actuator->operators;
+    if (!model->inverse) {
+        return HYS_NEGATIVE_WEIGHTS;
+    }
+    if (!is_finite(target)) {
+        return HYS_INPUT_NOT_FINITE;
+    }
+    code = curves_at(actuator, load, &at);
+    if (code != HYS_OK) {
+        return code;
+    }
+    aim = aim_at(state, &at, target, &gain);
+    if (is_finite(aim)) {
+        int inner = actuator->falls ? -heading : heading;
+        code = solve(&state->operators, aim, inner, tolerance / gain, &input, &found);
+        if (code != HYS_OK) {
+            return code;
+        }
+    } else {
+        /* A lag that cannot move in a sample: stay. */
+        input = hys_clamp(state->operators.input, model->bottom, model->max);
+    }
+    temperature = temperature_at(actuator, &at, input);
+    if (model->kind == RELAY) {
+        temperature = nudged(state, &at, input, temperature);
+    }
+    to = drive_for(state, temperature);
+    size = magnitude(temperature)
+        + (actuator->body ? magnitude(actuator->ambient) + magnitude(actuator->gain * to) : ZERO);
+    slack = slack_of(actuator, &at, size);
+    code = hys_actuator_step(state, to, load, &reached);
+    if (code != HYS_OK) {
+        return code;
+    }
+    gain = at.gain * actuator->creep_gain;
+    rounding = gain * (model->rounding + model->total * (slack / model->step));
+    error = hys_max(reached - target, target - reached);
+    offsets = magnitude(actuator->offset) + magnitude(at.offset) + magnitude(target);
+    if (error <= hys_max(tolerance, ZERO) + rounding + EIGHT_EPSILON * offsets) {
+        found = HYS_REACHED;
+    } else {
+        int beyond = reach_of(actuator, &at, target, tolerance);
+        found = beyond != HYS_REACHED ? beyond : found == HYS_PASSED ? HYS_PASSED : HYS_LIMITED;
+    }
+    *drive = to;
+    *status = found;
+    return HYS_OK;
+}

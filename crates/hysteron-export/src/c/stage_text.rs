@@ -1,0 +1,144 @@
+//! The stages and the start of a model as C.
+
+use super::CExport;
+use super::constants::{Constants, Number};
+use super::stages::Staged;
+use super::text::{list, quantity};
+use hysteron::Model;
+use hysteron_core::MAX_CREEP;
+use std::fmt::Write;
+
+/// What the header says of the stages.
+pub(super) fn remarks<T: Number>(model: &Model, staged: &Staged<T>) -> Vec<String> {
+    let mut lines = vec![format!("stages: {}", staged.names().join(", "))];
+    if let Some(dt) = staged.dt {
+        lines.push(format!("sample time: {dt:?} s"));
+    }
+    if let (Some(load), [low, .., high]) = (&model.load, staged.loads.as_slice()) {
+        lines.push(format!(
+            "load: {}, from {low:?} to {high:?}",
+            quantity(&load.quantity)
+        ));
+    }
+    if let Some((low, high)) = staged.drive {
+        lines.push(format!(
+            "range of the drive in the inverse: {low:?} to {high:?}"
+        ));
+    }
+    lines
+}
+
+/// Declarations of a model without stages that does not start with every operator off.
+pub(super) fn start_declared<T: Number>(export: &CExport, constants: &Constants<T>) -> String {
+    let CExport { name, .. } = export;
+    match (&constants.start, &constants.stages) {
+        (Some((points, _)), None) => format!(
+            "/* Where the model starts: for hys_restore, after hys_start. */
+extern const hys_real {name}_start[{count}];
+extern const hys_real {name}_start_input;
+",
+            count = points.len()
+        ),
+        _ => String::new(),
+    }
+}
+
+/// Their definition.
+pub(super) fn start_defined<T: Number>(export: &CExport, constants: &Constants<T>) -> String {
+    let CExport { name, .. } = export;
+    match (&constants.start, &constants.stages) {
+        (Some((points, input)), None) => format!(
+            "\nconst hys_real {name}_start[] = {}const hys_real {name}_start_input = {};\n",
+            list(points),
+            input.literal()
+        ),
+        _ => String::new(),
+    }
+}
+
+/// Defines the actuator around the operators.
+pub(super) fn actuator<T: Number>(
+    export: &CExport,
+    constants: &Constants<T>,
+    staged: &Staged<T>,
+) -> String {
+    let CExport { name, .. } = export;
+    let start: &[T] = constants.start.as_ref().map_or(&[], |(points, _)| points);
+    let arrays = [
+        ("loads", staged.loads.as_slice()),
+        ("shifts", &staged.shifts),
+        ("scales", &staged.scales),
+        ("gains", &staged.gains),
+        ("offsets", &staged.offsets),
+        ("spacing", &staged.spacing),
+        ("start", start),
+    ];
+    let mut text = String::new();
+    for (array, numbers) in arrays.iter().filter(|(_, numbers)| !numbers.is_empty()) {
+        let _ = write!(
+            text,
+            "\nstatic const hys_real {array}[] = {}",
+            list(numbers)
+        );
+    }
+    let _ = write!(
+        text,
+        "\nconst hys_actuator {name} = {{\n    .operators = &operators,\n"
+    );
+    for (array, numbers) in &arrays {
+        let value = if numbers.is_empty() { "NULL" } else { array };
+        let _ = writeln!(text, "    .{array} = {value},");
+    }
+    for (field, count) in [
+        ("load_count", staged.loads.len()),
+        ("start_count", start.len()),
+        ("creep_count", staged.creep.len()),
+    ] {
+        let _ = writeln!(text, "    .{field} = {count},");
+    }
+    for (field, number) in fields(constants, staged) {
+        let _ = writeln!(text, "    .{field} = {},", number.literal());
+    }
+    for (field, numbers) in [
+        ("creep", padded(&staged.creep)),
+        ("fade", padded(&staged.rates[2..2 + MAX_CREEP])),
+    ] {
+        let numbers = numbers.map(Number::literal).join(", ");
+        let _ = writeln!(text, "    .{field} = {{{numbers}}},");
+    }
+    let _ = write!(
+        text,
+        "    .body = {},\n    .falls = {},\n    .limited = {}\n}};\n",
+        usize::from(staged.body.is_some()),
+        usize::from(constants.falls),
+        usize::from(staged.drive.is_some()),
+    );
+    text
+}
+
+fn fields<T: Number>(constants: &Constants<T>, staged: &Staged<T>) -> [(&'static str, T); 11] {
+    let body = |of: fn(hysteron_core::Body<T>) -> T| staged.body.map_or(T::ZERO, of);
+    let (low, high) = staged.drive.unwrap_or((T::ZERO, T::ZERO));
+    let start = constants
+        .start
+        .as_ref()
+        .map_or(T::ZERO, |(_, input)| *input);
+    [
+        ("start_input", start),
+        ("steepest", staged.steepest),
+        ("ambient", body(|body| body.ambient)),
+        ("gain", body(|body| body.gain)),
+        ("heating", staged.rates[0]),
+        ("cooling", staged.rates[1]),
+        ("creep_gain", staged.creep_gain),
+        ("lag", staged.rates[2 + MAX_CREEP]),
+        ("offset", constants.offset),
+        ("drive_min", low),
+        ("drive_max", high),
+    ]
+}
+
+/// Four numbers, zero beyond those given.
+fn padded<T: Number>(numbers: &[T]) -> [T; MAX_CREEP] {
+    std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(T::ZERO))
+}

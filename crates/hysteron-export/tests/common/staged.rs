@@ -1,0 +1,370 @@
+//! Random models with stages, their calls, and the core that every digit is compared with.
+
+use super::reference::Number;
+use super::walks;
+use hysteron::{Model, Operator, Sign};
+use hysteron_core::{
+    Axis, Body, Creep, Direction, Load, Plane, Rates, StageState, Stages, State, Target, Turn,
+    Wanted, table_len, turn_capacity,
+};
+use hysteron_export::CSampling;
+use rand::RngExt;
+use rand::rngs::StdRng;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A model with some of the stages, or all of them, and how it is sampled.
+#[derive(Clone)]
+pub struct Case {
+    pub model: Model,
+    pub sampling: CSampling,
+    /// What the drive moves over.
+    pub drives: (f64, f64),
+    loads: (f64, f64),
+}
+
+fn sorted(rng: &mut StdRng, count: usize, low: f64, high: f64) -> Vec<f64> {
+    let steps: Vec<f64> = (0..count).map(|_| rng.random_range(0.05..1.0)).collect();
+    let sum: f64 = steps.iter().sum();
+    let mut at = 0.0;
+    let place = |step: &f64| {
+        at += step;
+        low + (high - low) * at / sum
+    };
+    steps.iter().map(place).collect()
+}
+
+fn curves(rng: &mut StdRng, width: f64) -> (Value, (f64, f64)) {
+    let count = rng.random_range(1..6);
+    let loads = sorted(rng, count, 0.0, 200.0);
+    let range = (loads[0], loads[count - 1]);
+    let mut curve = |low: f64, high: f64| -> Vec<f64> {
+        match rng.random_bool(0.7) {
+            true => (0..count).map(|_| rng.random_range(low..high)).collect(),
+            false => Vec::new(),
+        }
+    };
+    let shifts = curve(-0.3 * width, 0.3 * width);
+    let scales = curve(0.5, 2.0);
+    let gains = curve(0.3, 3.0);
+    let offsets = curve(-2.0, 2.0);
+    let all = json!({
+        "loads": loads, "shifts": shifts, "scales": scales, "gains": gains, "offsets": offsets,
+    });
+    (all, range)
+}
+
+/// A model whose file says its stages; each is there as a coin falls, or all with `every`.
+pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) -> Case {
+    let plain = walks::model(rng, operator, levels);
+    let (low, high) = (plain.plane().bottom(), plain.plane().max());
+    let width = high - low;
+    let mut file: Value = serde_json::from_str(&plain.to_json()).unwrap();
+    file["version"] = 2.into();
+    let coin = |rng: &mut StdRng| every || rng.random_bool(0.6);
+    let dt: f64 = 10f64.powf(rng.random_range(-3.0..0.5));
+    let tau = |rng: &mut StdRng| dt * 10f64.powf(rng.random_range(-1.0..3.0));
+    let mut loads = (0.0, 1.0);
+    if coin(rng) {
+        let (curves, range) = curves(rng, width);
+        loads = range;
+        file["load"] = json!({
+            "name": "stress", "min": range.0 - 1.0, "max": range.1 + 1.0, "curves": curves,
+            "parts": [{"offset": plain.offset(), "weights": plain.weights()}],
+        });
+    }
+    if coin(rng) {
+        let corners = sorted(rng, levels + 1, low - 0.1 * width, high + 0.2 * width);
+        file["spacing"] = corners.into();
+    }
+    let mut drives = (low - 0.3 * width, high + 0.3 * width);
+    if coin(rng) {
+        let (ambient, gain) = (rng.random_range(-20.0..40.0), rng.random_range(0.2..80.0));
+        drives = ((drives.0 - ambient) / gain, (drives.1 - ambient) / gain);
+        file["thermal"] = json!({
+            "kind": "first-order", "ambient": ambient, "gain": gain,
+            "tau_heating": tau(rng), "tau_cooling": tau(rng),
+        });
+    }
+    if coin(rng) {
+        let terms = rng.random_range(1..=4);
+        let term = |_| json!({"coefficient": rng.random_range(0.0..0.4), "tau": tau(rng)});
+        file["creep"] = (0..terms).map(term).collect::<Vec<_>>().into();
+    }
+    if coin(rng) {
+        file["lag"] = tau(rng).into();
+    }
+    if coin(rng) {
+        let mut state = plain.start();
+        let inputs: Vec<f64> = (0..9).map(|_| rng.random_range(low..high)).collect();
+        plain.run(&mut state, &inputs, &mut [0.0; 9]).unwrap();
+        let points: Vec<f64> = state.turning_points().collect();
+        file["start"] = json!({"turning_points": points, "input": state.input()});
+    }
+    let model = Model::from_json(&file.to_string()).unwrap();
+    let limited = !model.is_plain() && rng.random_bool(0.6);
+    let sampling = CSampling {
+        dt: model.is_timed().then_some(dt),
+        drive: limited.then_some(drives),
+    };
+    Case {
+        model,
+        sampling,
+        drives,
+        loads,
+    }
+}
+
+/// A command of the driver `staged.c`.
+#[derive(Debug, Clone)]
+pub enum Call {
+    Step(f64, f64),
+    Inverse(f64, i32, f64, f64),
+    Save,
+    Restore,
+}
+
+/// About `count` calls.
+pub fn calls(rng: &mut StdRng, case: &Case, count: usize) -> Vec<Call> {
+    let (a, b) = case.model.output_range();
+    let (low, high) = (a.min(b) - 0.5, a.max(b) + 0.5);
+    let not = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    let mut calls = Vec::new();
+    let mut load = case.loads.0;
+    while calls.len() < count {
+        if rng.random_bool(0.3) {
+            load = rng.random_range(case.loads.0 - 5.0..case.loads.1 + 5.0);
+        }
+        let burst = rng.random_range(1..30);
+        let (hold, kind) = (rng.random_bool(0.3), rng.random_range(0..12));
+        let mut drive = rng.random_range(case.drives.0..case.drives.1);
+        let mut target = rng.random_range(low..high);
+        let tolerance = match rng.random_range(0..4) {
+            0 => rng.random_range(0.0..0.1) * (high - low),
+            1 => [f64::NAN, -1.0][rng.random_range(0..2)],
+            _ => 0.0,
+        };
+        for _ in 0..burst {
+            if !hold {
+                drive = rng.random_range(case.drives.0..case.drives.1);
+                target += rng.random_range(-0.1..0.1) * (high - low);
+            }
+            let heading = if kind == 8 {
+                rng.random_range(-1..=1)
+            } else {
+                0
+            };
+            match kind {
+                0..=4 => calls.push(Call::Step(drive, load)),
+                5..=8 => calls.push(Call::Inverse(target, heading, tolerance, load)),
+                _ => {}
+            }
+        }
+        let wrong = not[rng.random_range(0..3)];
+        match kind {
+            9 => calls.extend([Call::Save, Call::Restore]),
+            10 => calls.extend([Call::Step(wrong, load), Call::Inverse(wrong, 0, 0.0, load)]),
+            11 => calls.extend([
+                Call::Step(drive, wrong),
+                Call::Inverse(target, 0, 0.0, wrong),
+                Call::Inverse(target, 7, 0.0, load),
+            ]),
+            _ => {}
+        }
+    }
+    calls.push(Call::Save);
+    calls
+}
+
+/// The numbers of the stages in the number type.
+struct Numbers<T> {
+    body: Option<Body<T>>,
+    load: [Vec<T>; 5],
+    spacing: Vec<T>,
+    creep: [Vec<T>; 2],
+    lag: T,
+    offset: T,
+    falling: bool,
+}
+
+impl<T: Number> Numbers<T> {
+    fn of(model: &Model) -> Self {
+        let stages = model.stages();
+        let all = |numbers: &[f64]| numbers.iter().map(|&x| T::of(x)).collect::<Vec<T>>();
+        let load = stages.axis.load;
+        Self {
+            body: stages.body.map(|body| Body {
+                ambient: T::of(body.ambient),
+                gain: T::of(body.gain),
+                tau_heating: T::of(body.tau_heating),
+                tau_cooling: T::of(body.tau_cooling),
+            }),
+            load: [
+                load.loads,
+                load.shifts,
+                load.scales,
+                load.gains,
+                load.offsets,
+            ]
+            .map(all),
+            spacing: all(stages.axis.spacing),
+            creep: [stages.creep.coefficients, stages.creep.taus].map(all),
+            lag: T::of(stages.lag),
+            offset: T::of(stages.offset),
+            falling: model.sign() == Sign::Negative,
+        }
+    }
+
+    fn stages(&self) -> Stages<'_, T> {
+        let [loads, shifts, scales, gains, offsets] = &self.load;
+        Stages {
+            body: self.body,
+            axis: Axis {
+                load: Load {
+                    loads,
+                    shifts,
+                    scales,
+                    gains,
+                    offsets,
+                },
+                spacing: &self.spacing,
+            },
+            creep: Creep {
+                coefficients: &self.creep[0],
+                taus: &self.creep[1],
+            },
+            lag: self.lag,
+            offset: self.offset,
+            falling: self.falling,
+        }
+    }
+}
+
+struct Reference<T> {
+    model: hysteron_core::Model<T, Vec<T>>,
+    numbers: Numbers<T>,
+    rates: Rates<T>,
+    drive: (T, T),
+    state: State<T, Vec<Turn<T>>>,
+    memory: StageState<T>,
+    saved: (Vec<T>, T, StageState<T>),
+}
+
+impl<T: Number> Reference<T> {
+    fn new(case: &Case) -> Self {
+        let (model, plane) = (&case.model, case.model.plane());
+        let k = plane.levels();
+        let plane = Plane::new(T::of(plane.min()), T::of(plane.max()), k).unwrap();
+        let weights: Vec<T> = model.weights().iter().map(|&mu| T::of(mu)).collect();
+        let table = vec![T::ZERO; table_len(k)];
+        let core = hysteron_core::Model::new(plane, model.operator(), &weights, table).unwrap();
+        let mut state = core.state(vec![Turn::default(); turn_capacity(k)]).unwrap();
+        if let Some(start) = model.fitted() {
+            let points: Vec<T> = start.turning_points().map(T::of).collect();
+            core.restore(&mut state, &points, T::of(start.input()))
+                .unwrap();
+        }
+        let numbers = Numbers::<T>::of(model);
+        let rates = numbers
+            .stages()
+            .rates(T::of(case.sampling.dt.unwrap_or(1.0)));
+        let (low, high) = case.sampling.drive.unwrap_or_else(|| model.drive_range());
+        Self {
+            saved: (Vec::new(), state.input(), StageState::default()),
+            model: core,
+            numbers,
+            rates,
+            drive: (T::of(low), T::of(high)),
+            state,
+            memory: StageState::default(),
+        }
+    }
+
+    fn invert(&mut self, target: Target<T>, load: T) -> Result<(T, i8), i32> {
+        let wanted = Wanted {
+            load: Some(load),
+            drive: self.drive,
+            ..target.into()
+        };
+        let inverse = self.model.inverse().map_err(|e| e.code())?;
+        let stages = self.numbers.stages();
+        let (state, memory) = (&mut self.state, &mut self.memory);
+        let found = stages.invert_at(&inverse, state, memory, &self.rates, wanted);
+        let found = found.map_err(|e| e.code())?;
+        Ok((found.input, found.status.number()))
+    }
+
+    fn answer(&mut self, call: &Call, answers: &mut String) {
+        match call {
+            Call::Step(drive, load) => {
+                let (drive, load) = (T::of(*drive), Some(T::of(*load)));
+                let stages = self.numbers.stages();
+                let (state, memory) = (&mut self.state, &mut self.memory);
+                let step = stages.step_at(&self.model, state, memory, &self.rates, drive, load);
+                match step {
+                    Ok(step) => writeln!(answers, "s 0 {}", step.output.hex()),
+                    Err(error) => writeln!(answers, "s {} 0", error.code()),
+                }
+            }
+            Call::Inverse(output, heading, tolerance, load) => {
+                let target = Target {
+                    output: T::of(*output),
+                    heading: match heading {
+                        -1 => Some(Direction::Falling),
+                        1 => Some(Direction::Rising),
+                        _ => None,
+                    },
+                    tolerance: T::of(*tolerance),
+                };
+                let found = match heading {
+                    -1..=1 => self.invert(target, T::of(*load)),
+                    _ => Err(103),
+                };
+                match found {
+                    Ok((drive, status)) => writeln!(answers, "i 0 {} {status}", drive.hex()),
+                    Err(code) => writeln!(answers, "i {code} 0 7"),
+                }
+            }
+            Call::Save => {
+                let points = self.state.turning_points().collect();
+                self.saved = (points, self.state.input(), self.memory);
+                let (points, input, memory) = &self.saved;
+                let numbers = memory.to_numbers();
+                let numbers = points.iter().chain(&numbers).map(|x| x.hex());
+                let numbers: Vec<String> = numbers.collect();
+                writeln!(answers, "v 0 {} {}", input.hex(), numbers.join(" "))
+            }
+            Call::Restore => {
+                let (points, input, memory) = &self.saved;
+                self.model.restore(&mut self.state, points, *input).unwrap();
+                self.memory = StageState::from_numbers(&memory.to_numbers()).unwrap();
+                writeln!(answers, "r 0")
+            }
+        }
+        .unwrap();
+    }
+}
+
+/// Commands for model number `n` and what the core answers.
+pub fn script<T: Number>(n: usize, case: &Case, calls: &[Call]) -> (String, String) {
+    let mut reference = Reference::<T>::new(case);
+    let (mut commands, mut answers) = (format!("m {n}\n"), String::from("m 0\n"));
+    let hex = |x: f64| T::of(x).hex();
+    for call in calls {
+        commands += &match call {
+            Call::Step(drive, load) => format!("s {} {}\n", hex(*drive), hex(*load)),
+            Call::Inverse(y, heading, tolerance, load) => {
+                format!(
+                    "i {} {heading} {} {}\n",
+                    hex(*y),
+                    hex(*tolerance),
+                    hex(*load)
+                )
+            }
+            Call::Save => "v\n".into(),
+            Call::Restore => "r\n".into(),
+        };
+        reference.answer(call, &mut answers);
+    }
+    (commands, answers)
+}
