@@ -112,7 +112,7 @@ impl<T: Real> Attack<T> {
             Status::Ok => seen.headed += 1,
             Status::Passed => seen.passed += 1,
             Status::Low | Status::High => seen.out_of_reach += 1,
-            Status::Limited => panic!("nothing limits the operators alone: {what}"),
+            Status::Limited => unreachable!("nothing limits the operators alone: {what}"),
         }
     }
 
@@ -136,7 +136,7 @@ impl<T: Real> Attack<T> {
             }
             Status::Low => assert!(target < low && (reached - low).abs() <= allowed, "{what}"),
             Status::High => assert!(target > high && (reached - high).abs() <= allowed, "{what}"),
-            Status::Limited => panic!("nothing limits the operators alone: {what}"),
+            Status::Limited => unreachable!("nothing limits the operators alone: {what}"),
         }
     }
 

@@ -1,6 +1,8 @@
 //! The stages around the operators: against the formulas written out, and the inverse against the
 //! forward chain, for any stages, any order of calls, `f32` and `f64`.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod common;
 
 use common::{OPERATORS, build, build_f32, inputs, levels, plane, rng, weights};

@@ -111,8 +111,9 @@ impl<T: Real> Stages<'_, T> {
         if !target.output.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        // Written so that NaN fails the comparison.
-        if !(wanted.drive.0 <= wanted.drive.1) {
+        // False for NaN.
+        let in_order = wanted.drive.0 <= wanted.drive.1;
+        if !in_order {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
@@ -222,11 +223,11 @@ impl<T: Real> Stages<'_, T> {
             (Some(dt), horizon) if horizon > dt => body.decay(horizon),
             _ => rates.decay,
         };
-        let drive = body.drive(memory.temperature, temperature, decay);
-        let drive = match drive == drive {
-            true => drive.clamp(low, high),
-            false => body.hold(temperature).clamp(low, high),
+        let drive = match temperature == memory.temperature {
+            true => body.hold(temperature),
+            false => body.drive(memory.temperature, temperature, decay),
         };
+        let drive = drive.clamp(low, high);
         match drive.is_finite() {
             true => drive,
             // A step without length, and no end of the range: nothing can move.

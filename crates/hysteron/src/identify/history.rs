@@ -119,8 +119,9 @@ impl Search<'_> {
     fn room(&self, points: &[f64]) -> (f64, f64) {
         let levels = self.model.plane().levels() as f64;
         let last = |parity: usize, other: f64| {
-            let same = points.iter().skip(parity).step_by(2);
-            same.last().copied().unwrap_or(other)
+            let same = points.iter().enumerate().rev();
+            let mut same = same.filter(|(n, _)| n % 2 == parity);
+            same.next().map_or(other, |(_, point)| *point)
         };
         match points.len() % 2 {
             0 => (self.first, last(0, levels)),

@@ -126,8 +126,9 @@ impl Inverse<'_> {
     /// # Errors
     /// [`Error::Fit`] for ends that are not numbers or not in order.
     pub fn drive_range(mut self, min: f64, max: f64) -> Result<Self> {
-        // Written so that NaN fails the comparison.
-        if !(min <= max) {
+        // False for NaN.
+        let in_order = min <= max;
+        if !in_order {
             let what = format!("the range of the drive, {min} to {max}, must be in order");
             return Err(Error::Fit(what));
         }

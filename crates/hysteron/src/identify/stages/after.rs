@@ -145,7 +145,7 @@ impl<'a> Search<'a> {
             step = step.min((end - start) / recording.len().max(2).saturating_sub(1) as f64);
             longest = longest.max(end - start);
         }
-        if !(step > 0.0) {
+        if step <= 0.0 {
             let what = "time does not pass in a recording, so creep and lag cannot be identified";
             return Err(Error::Thermal(what.into()));
         }

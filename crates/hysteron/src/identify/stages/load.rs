@@ -108,9 +108,8 @@ pub(super) fn find(
         None => 0,
     };
     // A stroke that saturates is nearly straight over the root of the load. Without loads to leave
-    // out, that is what to expect of a stress; a load that goes through zero has no root.
-    let rooted = groups.knots.iter().all(|load| *load >= 0.0)
-        || groups.knots.iter().all(|load| *load <= 0.0);
+    // out, that is what to expect of a tension. Of a load below zero nothing is known: straight.
+    let rooted = groups.knots.iter().all(|load| *load >= 0.0);
     let powers: &[f64] = if rooted { &[0.5, 1.0] } else { &[1.0] };
     let mut candidates = Vec::new();
     for scaled in [false, true] {

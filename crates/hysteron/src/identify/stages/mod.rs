@@ -76,7 +76,7 @@ pub(crate) fn fit(
     let changed = !found.after.taus.is_empty() || found.after.lag > 0.0;
     let mut model = fit_weights(&seen, &options, progress)?.with_stages(found)?;
     if options.start == Start::Unknown && recordings.len() == 1 && model.load.is_none() {
-        model = with_found_start(model, &seen[0], &recordings[0], &mut notes)?;
+        model = with_found_start(model, &recordings[0], &mut notes)?;
     }
     if changed && options.start != Start::Unknown {
         refresh_errors(&mut model, recordings, options.start)?;
@@ -92,7 +92,6 @@ pub(crate) fn fit(
 /// simulates the recording.
 fn with_found_start(
     model: Model,
-    _seen: &Recording,
     recording: &Recording,
     notes: &mut std::collections::BTreeMap<String, serde_json::Value>,
 ) -> Result<Model> {
