@@ -261,7 +261,7 @@ fn the_chain_is_its_formulas() {
 /// range.
 fn attack<T: Real>(
     rng: &mut StdRng,
-    (model, mut state): (Model<T, Vec<T>>, hysteron_core::State<T, Vec<Turn<T>>>),
+    (model, mut state): common::Owned<T>,
     owned: &Owned<T>,
     number: impl Fn(f64) -> T,
 ) -> (usize, usize) {
