@@ -21,7 +21,7 @@ _SIGNS = {"degC": "°C", "degF": "°F", "deg": "°", "um": "µm", "uC/cm2": "µC
 
 def model(model: Model) -> str:
     """Major loop with a minor loop, the weights on the plane, and key figures."""
-    low, high = model.range
+    low, high = model.active_range if model.spacing is not None else model.range
     rows = [
         ("operator", f"{model.operator}, {model.levels} levels"),
         ("input", f"{_label(model.input)}, {low:.6g} to {high:.6g}"),
@@ -31,14 +31,22 @@ def model(model: Model) -> str:
         rows.append(("thermal body", f"{model.thermal.tau_heating:.3g} s heating, {model.thermal.tau_cooling:.3g} s cooling"))
     if model.load_range is not None:
         rows.append(("load", "{}, {:.6g} to {:.6g}".format(_label(model.load_name or "load"), *model.load_range)))
+    if model.spacing is not None:
+        rows.append(("levels", "close together where the output moves"))
+    if model.creep:
+        rows.append(("creep", ", ".join(f"{100 * term.coefficient:.3g} % in {term.tau:.3g} s" for term in model.creep)))
+    if model.lag:
+        rows.append(("lag", f"{model.lag:.3g} s"))
     if model.fit is not None:
         rows += _fit_rows(model.fit)
-    # Without body and load: the loop of the operators.
+    # Without stages: the loop of the operators.
+    low, high = model.range
     operators = Model(model.weights, model.range, operator=model.operator, offset=model.offset, sign=model.sign)
     step = (high - low) / (model.levels - 1)
     turns = [low - step, high, low - step, low + 0.65 * (high - low), low + 0.3 * (high - low), high]
     input = np.concatenate([np.linspace(a, b, 80) for a, b in zip(turns, turns[1:])])
-    pictures = [_loop(input, operators.simulate(input), model.input, model.output), _weights(model)]
+    seen = input if model.spacing is None else np.interp(input, np.append(low - step, model.plane), model.spacing)
+    pictures = [_loop(seen, operators.simulate(input), model.input, model.output), _weights(model)]
     return _page("Model", rows, pictures)
 
 

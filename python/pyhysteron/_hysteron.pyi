@@ -13,12 +13,14 @@ from .results import (
     AdaptedTable,
     CExport,
     Confidence,
+    CreepTerm,
     Evaluation,
     Event,
     FitSummary,
     FmuExport,
     LearningTable,
     LeftOut,
+    LoadCurves,
     Median,
     ModelSummary,
     Preparation,
@@ -291,11 +293,17 @@ class Design:
 class Inverse:
     @property
     def model(self) -> Model: ...
+    @property
+    def drive_range(self) -> _Range: ...
+    @property
+    def horizon(self) -> float: ...
     @overload
     def run(
         self,
         target: _S,
         *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
         policy: Literal["hold", "anticipate"] = "hold",
         tolerance: float | None = None,
         state: State | None = None,
@@ -306,6 +314,8 @@ class Inverse:
         self,
         target: ArrayLike,
         *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
         policy: Literal["hold", "anticipate"] = "hold",
         tolerance: float | None = None,
         state: State | None = None,
@@ -316,6 +326,8 @@ class Inverse:
         state: State,
         target: float,
         *,
+        dt: float | None = None,
+        load: float | None = None,
         heading: _Heading = None,
         tolerance: float = 0.0,
     ) -> tuple[float, int]: ...
@@ -383,6 +395,24 @@ class Model:
     def load_range(self) -> _Range | _MaybeNone: ...
     @property
     def load_name(self) -> str | _MaybeNone: ...
+    @property
+    def load_curves(self) -> LoadCurves | _MaybeNone: ...
+    @property
+    def load_degree(self) -> int | _MaybeNone: ...
+    @property
+    def drive(self) -> _Range | _MaybeNone: ...
+    @property
+    def active_range(self) -> _Range: ...
+    @property
+    def spacing(self) -> _Array | _MaybeNone: ...
+    @property
+    def creep(self) -> tuple[CreepTerm, ...]: ...
+    @property
+    def lag(self) -> float: ...
+    @property
+    def is_timed(self) -> bool: ...
+    @property
+    def fitted_start(self) -> SavedState | _MaybeNone: ...
     def at_load(self, load: float) -> Model: ...
     @overload
     def band(
@@ -390,7 +420,7 @@ class Model:
         input: _S,
         *,
         time: _Times | None = None,
-        load: ArrayLike | None = None,
+        load: float | ArrayLike | None = None,
     ) -> tuple[_S, _S]: ...
     @overload
     def band(
@@ -398,14 +428,14 @@ class Model:
         input: ArrayLike,
         *,
         time: _Times | None = None,
-        load: ArrayLike | None = None,
+        load: float | ArrayLike | None = None,
     ) -> tuple[_Array, _Array]: ...
     def evaluate(
         self,
         recording: Recording | ArrayLike,
         output: ArrayLike | None = None,
         *,
-        start: Literal["off", "on", "unknown"] = "off",
+        start: Literal["fitted", "off", "on", "unknown"] = "fitted",
         time: _Times | None = None,
         load: ArrayLike | None = None,
     ) -> Evaluation: ...
@@ -428,7 +458,7 @@ class Model:
     ) -> FmuExport: ...
     @classmethod
     def from_json(cls, text: str) -> Model: ...
-    def inverse(self) -> Inverse: ...
+    def inverse(self, drive_range: _Range | None = None, horizon: float = 0.0) -> Inverse: ...
     @classmethod
     def load(cls, path: _Path) -> Model: ...
     def restore(self, saved: SavedState) -> State: ...
@@ -439,7 +469,8 @@ class Model:
         input: _S,
         *,
         time: _Times | None = None,
-        load: ArrayLike | None = None,
+        load: float | ArrayLike | None = None,
+        start: Literal["fitted", "off", "on"] = "fitted",
     ) -> _S: ...
     @overload
     def simulate(
@@ -447,9 +478,10 @@ class Model:
         input: ArrayLike,
         *,
         time: _Times | None = None,
-        load: ArrayLike | None = None,
+        load: float | ArrayLike | None = None,
+        start: Literal["fitted", "off", "on"] = "fitted",
     ) -> _Array: ...
-    def start(self, *, on: bool = False) -> State: ...
+    def start(self, *, on: bool | None = None) -> State: ...
     def summary(self) -> ModelSummary: ...
     def to_json(self) -> str: ...
     def __eq__(self, value: object, /) -> bool: ...
@@ -611,14 +643,34 @@ class State:
     def operators(self) -> _Array: ...
     @property
     def input(self) -> float: ...
+    @property
+    def temperature(self) -> float: ...
     def copy(self) -> State: ...
-    def reset(self, *, on: bool = False) -> None: ...
+    def reset(self, *, on: bool | None = None) -> None: ...
     @overload
-    def run(self, input: _S) -> _S: ...
+    def run(
+        self,
+        input: _S,
+        *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
+    ) -> _S: ...
     @overload
-    def run(self, input: ArrayLike) -> _Array: ...
+    def run(
+        self,
+        input: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
+    ) -> _Array: ...
     def save(self) -> SavedState: ...
-    def step(self, input: float) -> float: ...
+    def step(
+        self,
+        input: float,
+        *,
+        dt: float | None = None,
+        load: float | None = None,
+    ) -> float: ...
     def __copy__(self) -> State: ...
     def __deepcopy__(self, _memo: object) -> State: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
@@ -712,9 +764,13 @@ def fit(
     start: Literal["off", "on", "unknown"] = "off",
     sign: Literal[1, -1] | None = None,
     offset: float | None = None,
-    load_degree: int = 1,
+    load_law: Literal["shift", "weights"] = "shift",
+    load_degree: int | Literal['auto'] = "auto",
+    spacing: Literal["uniform", "auto"] = "uniform",
+    creep: int | Literal['auto', 'off'] = "off",
+    lag: float | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
-    thermal: Literal["first-order"] | None = None,
+    thermal: Literal["first-order", True, False] | None = None,
     time: _Times | None = None,
     load: ArrayLike | None = None,
     progress: _Progress = None,
@@ -732,7 +788,7 @@ def left_out(
     start: Literal["off", "on", "unknown"] = "off",
     sign: Literal[1, -1] | None = None,
     offset: float | None = None,
-    load_degree: int = 1,
+    load_degree: int | Literal['auto'] = "auto",
     time: _Times | None = None,
     load: ArrayLike | None = None,
     progress: _Progress = None,

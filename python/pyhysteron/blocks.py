@@ -5,8 +5,12 @@ simulated there.
 
 python-control calls the functions of a block several times for a sample, with inputs that are not
 final yet. So the state vector of model and inverse holds the whole memory: ``[count, input, turning
-points…]``, all zero with every operator off. The output of a model follows its input without delay.
-A closed loop needs a delay elsewhere, as any loop of python-control.
+points…]``, and at its end the ``stages`` of `State.save` for a model that has stages. It is all zero
+where the model starts. The output of a model follows its input without delay. A closed loop needs a
+delay elsewhere, as any loop of python-control.
+
+A model with a thermal body, creep or a lag steps with the block's sample time, and one that depends
+on a load has an input for it.
 """
 
 from __future__ import annotations
@@ -25,10 +29,13 @@ except ImportError as _missing:
 from ._convert import one_of
 from ._hysteron import Adaptive, Model, State
 from .errors import CoreError
+from .results import SavedState
 
 __all__ = ["adaptive_block", "inverse_block", "memory", "model_block"]
 
 _HEADINGS = {1.0: "rising", -1.0: "falling"}
+#: Numbers of `State.save` for the stages of a model.
+_STAGES = 7
 #: Estimators that an adaptive block remembers, beside the one that it began with.
 _REMEMBERED = 64
 
@@ -40,11 +47,11 @@ def memory(model: Model, state: State | None = None) -> NDArray[np.float64]:
     ----------
     model : Model
     state : State, optional
-        By default every operator off.
+        By default where the model starts.
 
     Returns
     -------
-    ndarray, shape (4 K + 8,)
+    ndarray, shape (4 K + 8,), or (4 K + 15,) for a model with stages
 
     Raises
     ------
@@ -58,15 +65,19 @@ def memory(model: Model, state: State | None = None) -> NDArray[np.float64]:
     array([1., 1., 2., 0.])
     """
     _needed("model", model, Model)
-    vector = np.zeros(4 * model.levels + 8)
     if state is not None:
         _needed("state", state, State)
         if state.model != model:
             raise CoreError("`state` belongs to another model")
-        points = state.turning_points
+    saved = (model.start() if state is None else state).save()
+    vector = np.zeros(4 * model.levels + 8 + (_STAGES if "stages" in saved else 0))
+    if state is not None:
+        points = saved["turning_points"]
         vector[0] = len(points)
-        vector[1] = state.input
+        vector[1] = saved["input"]
         vector[2 : 2 + len(points)] = points
+        if "stages" in saved:
+            vector[-_STAGES:] = saved["stages"]
     return vector
 
 
@@ -76,12 +87,16 @@ def _needed(name: str, value: object, kind: type) -> None:
 
 
 def _state(model: Model, vector: np.ndarray) -> State:
+    vector, stages = np.split(vector, [4 * model.levels + 8])
     if not (vector[0] == np.floor(vector[0]) and 0 <= vector[0] <= len(vector) - 2):
         raise ValueError(f"`memory[0]` is {vector[0]}: a whole number from 0 to {len(vector) - 2} is needed, see `memory`")
     count = int(vector[0])
     if count == 0:
         return model.start()
-    return model.restore({"turning_points": vector[2 : 2 + count], "input": vector[1]})
+    saved = SavedState(turning_points=vector[2 : 2 + count], input=float(vector[1]))
+    if len(stages):
+        saved["stages"] = stages
+    return model.restore(saved)
 
 
 def _block(update, output, dt, kwargs, **usual):
@@ -90,6 +105,24 @@ def _block(update, output, dt, kwargs, **usual):
             raise ValueError(f"`dt` is {dt!r}: a time above 0, or True, is needed")
         dt = float(dt)
     return control.NonlinearIOSystem(update, output, dt=dt, **{**usual, **kwargs})
+
+
+def _time_step(model, dt):
+    """What a sample needs besides its input, for a block with this sample time."""
+    if not model.is_timed:
+        return {}
+    if dt is True:
+        raise ValueError("the model depends on time: `dt` has to be the time between samples, s")
+    return {"dt": dt}
+
+
+def _load(model, signals):
+    """The load, the last input of a block whose model depends on one."""
+    return {} if model.load_range is None else {"load": signals[-1]}
+
+
+def _inputs(model, *names):
+    return [*names] if model.load_range is None else [*names, "load"]
 
 
 def _states(model):
@@ -103,14 +136,15 @@ def model_block(model: Model, dt: float | Literal[True], **kwargs: Any) -> contr
     ----------
     model : Model
     dt : float
-        Time between samples, s; True for discrete time without a length, as in python-control.
+        Time between samples, s; True for discrete time without a length, as in python-control. A
+        model that depends on time needs the length.
     **kwargs
         To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
 
     Returns
     -------
     control.NonlinearIOSystem
-        Its state is `memory`.
+        Its state is `memory`. Of a model that depends on a load, the load is a second input.
 
     Examples
     --------
@@ -121,16 +155,19 @@ def model_block(model: Model, dt: float | Literal[True], **kwargs: Any) -> contr
     """
 
     _needed("model", model, Model)
+    since = _time_step(model, dt)
+
+    def step(x, u):
+        state = _state(model, x)
+        return state, state.step(u[0], **since, **_load(model, u))
 
     def update(t, x, u, params):
-        state = _state(model, x)
-        state.step(u[0])
-        return memory(model, state)
+        return memory(model, step(x, u)[0])
 
     def output(t, x, u, params):
-        return np.array([_state(model, x).step(u[0])])
+        return np.array([step(x, u)[1]])
 
-    usual = {"name": "model", "inputs": ["input"], "outputs": ["output"], "states": _states(model)}
+    usual = {"name": "model", "inputs": _inputs(model, "input"), "outputs": ["output"], "states": _states(model)}
     return _block(update, output, dt, kwargs, **usual)
 
 
@@ -140,6 +177,8 @@ def inverse_block(
     policy: Literal["hold", "anticipate"] = "hold",
     *,
     tolerance: float = 0.0,
+    drive_range: tuple[float, float] | None = None,
+    horizon: float = 0.0,
     **kwargs: Any,
 ) -> control.NonlinearIOSystem:
     """The exact inverse as a block, from the wanted output to the input.
@@ -148,23 +187,26 @@ def inverse_block(
     ----------
     model : Model
     dt : float
-        Time between samples, s; True for discrete time without a length, as in python-control.
+        Time between samples, s; True for discrete time without a length, as in python-control. A
+        model that depends on time needs the length.
     policy : {'hold', 'anticipate'}
         With 'anticipate' there is a second input, where the target goes next: 1 rising, -1 falling,
         0 not known.
     tolerance : float
         Reversals of the target up to this size are noise and not followed, in the output's unit.
+    drive_range, horizon
+        As for `Model.inverse`.
     **kwargs
         To `control.NonlinearIOSystem`: 'name', 'inputs', 'outputs'.
 
     Returns
     -------
     control.NonlinearIOSystem
-        Its state is `memory`.
+        Its state is `memory`. Of a model that depends on a load, the load is the last input.
 
     Raises
     ------
-    CoreError
+    CoreError, FitError
         For a model that has no inverse.
 
     Examples
@@ -177,12 +219,15 @@ def inverse_block(
     """
     one_of("policy", policy, "hold", "anticipate")
     _needed("model", model, Model)
-    inverse = model.inverse()
-    inputs = ["target"] if policy == "hold" else ["target", "heading"]
+    inverse = model.inverse(drive_range, horizon)
+    names = ["target"] if policy == "hold" else ["target", "heading"]
+    inputs = _inputs(model, *names)
+    since = _time_step(model, dt)
 
     def solve(x, u):
         state = _state(model, x)
-        return state, inverse.step(state, u[0], heading=_heading(u[1:]), tolerance=tolerance)[0]
+        heading = _heading(u[1 : len(names)])
+        return state, inverse.step(state, u[0], **since, **_load(model, u), heading=heading, tolerance=tolerance)[0]
 
     def update(t, x, u, params):
         return memory(model, solve(x, u)[0])

@@ -30,6 +30,7 @@ __all__ = [
     "Compared",
     "Confidence",
     "ConfidenceSummary",
+    "CreepTerm",
     "DeadBand",
     "Drift",
     "Errors",
@@ -41,6 +42,7 @@ __all__ = [
     "InverseTest",
     "LearningTable",
     "LeftOut",
+    "LoadCurves",
     "LoadSummary",
     "LowPass",
     "Median",
@@ -315,16 +317,64 @@ class ThermalBody(_Result):
     Attributes
     ----------
     gain : float
-        Temperature at rest for a drive of 1.
+        Rise of the temperature at rest per unit of the drive.
     tau_heating : float
         Time constant of heating, s.
     tau_cooling : float
         Time constant of cooling, s.
+    ambient : float
+        Temperature at rest without a drive. It is 0, with a gain of 1, where no temperature was
+        measured: temperatures are then in units of the drive that holds them.
     """
 
     gain: float
     tau_heating: float
     tau_cooling: float
+    ambient: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CreepTerm(_Result):
+    """A first-order lag of the operators' sum, which is added to it: `Model.creep`.
+
+    Attributes
+    ----------
+    coefficient : float
+        Share of the sum that creeps.
+    tau : float
+        Time constant, s.
+    """
+
+    coefficient: float
+    tau: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadCurves(_Result):
+    """What a load does, straight between the loads given: `Model.load_curves`.
+
+    ``x = scale · input − shift`` is what the operators see, ``output = offset of the model + offset
+    ± gain · Σ μ γ``. A curve without numbers has no effect.
+
+    Attributes
+    ----------
+    loads : ndarray, shape (m,)
+        The loads, ascending. Beyond them the curves stay as at the nearest load.
+    shifts : ndarray, shape (m,) or (0,)
+        Shift of the axis, in the input's unit.
+    scales : ndarray, shape (m,) or (0,)
+        Scale of the axis.
+    gains : ndarray, shape (m,) or (0,)
+        Gain of the operators' sum.
+    offsets : ndarray, shape (m,) or (0,)
+        Offset, in the output's unit.
+    """
+
+    loads: _Array
+    shifts: _Array
+    scales: _Array
+    gains: _Array
+    offsets: _Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -526,6 +576,8 @@ class Evaluation(_Result):
         Of the modelled output.
     clipped : int
         Number of inputs outside the plane.
+    estimated_from : int or None
+        Samples at the beginning from which the start was estimated; None where it was given.
     band : BandTest or None
         The 95 % band; None for a model without confidence.
     inverse : InverseTest or None
@@ -537,6 +589,7 @@ class Evaluation(_Result):
     output_model: _Array
     forward: Errors
     clipped: int
+    estimated_from: int | None
     band: BandTest | _MaybeNone
     inverse: InverseTest | _MaybeNone
     inverse_refused: str | None
@@ -1094,7 +1147,12 @@ class FmuExport(_Result):
     parameters: tuple[str, ...]
 
 
-class SavedState(TypedDict):
+class _Saved(TypedDict):
+    turning_points: _Array
+    input: float
+
+
+class SavedState(_Saved, total=False):
     """A state as plain data: `State.save`, `Model.restore`.
 
     Attributes
@@ -1102,11 +1160,13 @@ class SavedState(TypedDict):
     turning_points : ndarray, shape (m,)
         Turning points as positions in ``[0, K]``.
     input : float
-        The last input, in its unit.
+        The last input of the operators, in its unit.
+    stages : ndarray, shape (7,)
+        For a model with stages: 0 or 1 for whether there was a sample, the temperature, the output
+        of each of four creep terms, the lagged sum.
     """
 
-    turning_points: _Array
-    input: float
+    stages: _Array
 
 
 class _At(TypedDict):

@@ -1,8 +1,9 @@
 """pyhysteron for scikit-learn: a regressor with memory, and a splitter that respects the memory.
 
-A column of `X` is the input. The rows are samples in the order of time, and the output depends on
-that order: shuffled rows are another experiment. `predict` starts at the first row with every
-operator off (or on, with ``start='on'``). A plain `KFold` scores the wrong experiment, since it
+A column of `X` is the input; others may be the time and the load, for models that need them. The
+rows are samples in the order of time, and the output depends on that order: shuffled rows are
+another experiment. `predict` starts at the first row with every operator off (or on, with
+``start='on'``; with ``'unknown'`` in the state that `fit` found). A plain `KFold` scores the wrong experiment, since it
 passes the middle of a recording without its past. `BranchSplit` also passes what the operators
 remember.
 """
@@ -49,14 +50,18 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     smooth : float or 'auto'
         Strength of the smoothness across the plane.
     start : {'off', 'on', 'unknown'}
-        State of the operators before the first sample. `fit` estimates 'unknown'. `predict` then
-        starts with every operator off, since it has no output to estimate from.
+        State of the operators before the first sample. `fit` estimates 'unknown', and `predict`
+        then starts where the model does: `pyhysteron.Model.fitted_start`, or every operator off.
     sign : {None, 1, -1}
     offset : float, optional
     bootstrap : int
         Replicates for `Model.confidence` and `Model.band` of ``model_``.
     column : int
-        The column of `X` that is the input; others are ignored.
+        The column of `X` that is the input.
+    time_column, load_column : int, optional
+        The columns of `X` that are the time, s, and the load. Others are ignored.
+    load_law, load_degree, spacing, creep, lag, thermal
+        As for `pyhysteron.fit`.
 
     Attributes
     ----------
@@ -89,6 +94,14 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         offset: float | None = None,
         bootstrap: int = 0,
         column: int = 0,
+        time_column: int | None = None,
+        load_column: int | None = None,
+        load_law: Literal["shift", "weights"] = "shift",
+        load_degree: int | Literal["auto"] = "auto",
+        spacing: Literal["uniform", "auto"] = "uniform",
+        creep: int | Literal["auto", "off"] = "off",
+        lag: float | Literal["auto", "off"] = "off",
+        thermal: Literal["first-order", True, False] | None = None,
     ) -> None:
         self.levels = levels
         self.range = range
@@ -100,14 +113,23 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.offset = offset
         self.bootstrap = bootstrap
         self.column = column
+        self.time_column = time_column
+        self.load_column = load_column
+        self.load_law = load_law
+        self.load_degree = load_degree
+        self.spacing = spacing
+        self.creep = creep
+        self.lag = lag
+        self.thermal = thermal
 
     def fit(self, X: ArrayLike, y: Any) -> HysteresisRegressor:
         """Identify the model.
 
         Parameters
         ----------
-        X : array_like, shape (n, 1)
-            The input, in the order in which it was sampled.
+        X : array_like, shape (n, 1) or more columns
+            The input, with time and load where there are columns for them, in the order in which
+            it was sampled.
         y : array_like, shape (n,)
             The output.
 
@@ -126,11 +148,14 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         """
         named = {"output_name": y.name} if isinstance(getattr(y, "name", None), str) else {}
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64, ensure_min_samples=2)
-        options = self.get_params()
-        input = _column(X, options.pop("column"))
+        options = {name: value for name, value in self.get_params().items() if not name.endswith("column")}
+        input, around = self._series(X)
         if hasattr(self, "feature_names_in_"):
-            named["input_name"] = self.feature_names_in_[self.column]
-        self.model_ = _hysteron.fit(_hysteron.Recording(input, y, **named), **options)
+            names = self.feature_names_in_
+            named["input_name"] = names[self.column]
+            if self.load_column is not None:
+                named["load_name"] = names[self.load_column]
+        self.model_ = _hysteron.fit(_hysteron.Recording(input, y, **around, **named), **options)
         return self
 
     def predict(self, X: ArrayLike) -> NDArray[np.float64]:
@@ -138,8 +163,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
 
         Parameters
         ----------
-        X : array_like, shape (n, 1)
-            The input, in the order in which it was sampled.
+        X : array_like, shape (n, 1) or more columns
+            As for `fit`.
 
         Returns
         -------
@@ -156,7 +181,15 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         """
         check_is_fitted(self)
         X = validate_data(self, X, reset=False, dtype=np.float64)
-        return self.model_.start(on=self.start == "on").run(_column(X, self.column))
+        input, around = self._series(X)
+        start = self.start if self.start in ("off", "on") else "fitted"
+        return self.model_.simulate(input, **around, start=start)
+
+    def _series(self, X):
+        """The input, and time and load as far as there are columns for them."""
+        around = {"time": self.time_column, "load": self.load_column}
+        around = {name: _column(X, column, f"{name}_column") for name, column in around.items() if column is not None}
+        return _column(X, self.column), around
 
     def __sklearn_tags__(self):
         tags = super().__sklearn_tags__()
@@ -164,11 +197,11 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         return tags
 
 
-def _column(X, column):
+def _column(X, column, name="column"):
     if not isinstance(column, numbers.Integral):
-        raise TypeError(f"`column` is {column!r}: a whole number is needed")
+        raise TypeError(f"`{name}` is {column!r}: a whole number is needed")
     if not 0 <= column < X.shape[1]:
-        raise ValueError(f"`column` is {column}, but `X` has {X.shape[1]} columns, counted from 0")
+        raise ValueError(f"`{name}` is {column}, but `X` has {X.shape[1]} columns, counted from 0")
     return X[:, column]
 
 
@@ -180,6 +213,9 @@ class BranchSplit:
     through the turning points that no larger swing has wiped out (`pyhysteron.remembered`): two to
     a few dozen samples. They go before the fold in the test set, and before what follows the fold
     in the training set. So each operator has the same state after a fold as in the whole recording.
+
+    This holds for the operators. A thermal body, creep and a lag remember the time itself: for a
+    model that depends on time, leave out whole recordings instead.
 
     These few samples are in both sets, and the folds are no partition. `cross_val_score`,
     `cross_validate` and `GridSearchCV` accept that, `cross_val_predict` does not.

@@ -1,8 +1,7 @@
 //! `adapt`.
 
-use crate::choices::{learner, named, no_argument};
+use crate::choices::{learner, named, no_argument, start_of};
 use crate::convert::{result, to_python};
-use crate::fit::start_of;
 use crate::inputs::recording_of;
 use crate::integer::Integer;
 use crate::learning::outcomes;

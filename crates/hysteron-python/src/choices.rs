@@ -1,7 +1,7 @@
 //! Arguments: words that stand for a choice, and values by their name.
 
 use crate::error::number;
-use hysteron::{Direction, Learner, Operator, Policy, Target};
+use hysteron::{Direction, Learner, Operator, Policy, Start, Target};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -99,6 +99,19 @@ pub(crate) fn target(output: f64, heading: Option<&str>, tolerance: f64) -> PyRe
 /// The policies by name.
 pub(crate) const POLICIES: [(&str, Policy); 2] =
     [("hold", Policy::Hold), ("anticipate", Policy::Anticipate)];
+
+/// Where the operators of a model stand before the first sample.
+pub(crate) const STARTS: [(&str, Start); 4] = [
+    ("fitted", Start::Fitted),
+    ("off", Start::Off),
+    ("on", Start::On),
+    ("unknown", Start::Unknown),
+];
+
+/// The same before there is a model that starts somewhere.
+pub(crate) fn start_of(name: &str) -> PyResult<Start> {
+    choice("start", name, &STARTS[1..])
+}
 
 /// The value of a keyword argument, converted by its type alone.
 pub(crate) fn named<T>(argument: &str, needed: &str, value: &Bound<'_, PyAny>) -> PyResult<T>

@@ -2,12 +2,12 @@
 
 use crate::convert::{result, to_python};
 use crate::error::Raise;
-use crate::inputs::inputs_of;
+use crate::inputs::{inputs_of, inputs_seen};
 use crate::integer::Integer;
 use crate::plane::on_plane;
 use crate::pool::detached;
 use crate::recording::Recording;
-use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start};
+use hysteron::{Excitation, InverseRun, Model, Operator, Plane, Start, Surroundings};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -90,16 +90,31 @@ pub(crate) fn excitation<'py>(
     operator: &str,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let plane = Plane::new(range.0, range.1, levels.of("levels")?).raise()?;
-    excited(py, input, plane, crate::choices::operator(operator)?)
+    let operator = crate::choices::operator(operator)?;
+    excited(py, &inputs_of(input, "input")?, plane, operator)
 }
 
-pub(crate) fn excited<'py>(
+/// What inputs say about the operators of a model, as its stages hand them on.
+pub(crate) fn excited_within<'py>(
     py: Python<'py>,
+    model: &Model,
     input: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let see = |input: &[f64], recording: Option<&hysteron::Recording>| {
+        let around = recording.map(|recording| Surroundings::of(model, recording));
+        let seen = model.seen(input, around.unwrap_or_default()).raise()?;
+        Ok(seen.into_owned())
+    };
+    let inputs = inputs_seen(input, "input", see)?;
+    excited(py, &inputs, *model.plane(), model.operator())
+}
+
+fn excited<'py>(
+    py: Python<'py>,
+    inputs: &[Vec<f64>],
     plane: Plane,
     operator: Operator,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let inputs = inputs_of(input, "input")?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
     let found = detached(py, || hysteron::excitation(&slices, plane, operator)).raise()?;
     classes(py, &found)
@@ -118,6 +133,7 @@ pub(crate) fn evaluate<'py>(
     let dict = PyDict::new(py);
     dict.set_item("forward", to_python(py, &found.forward)?)?;
     dict.set_item("clipped", found.clipped)?;
+    dict.set_item("estimated_from", found.estimated_from)?;
     let band = match &found.band {
         None => None,
         Some(band) => {

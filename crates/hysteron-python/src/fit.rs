@@ -1,13 +1,13 @@
 //! `fit` and `left_out`.
 
-use crate::choices::{another_kind, choice, named, no_argument, operator};
+use crate::choices::{another_kind, choice, named, no_argument, operator, start_of};
 use crate::convert::{result, warn};
 use crate::error::spelt;
 use crate::inputs::recordings_of;
 use crate::integer::Integer;
 use crate::model::{Model, sign_of};
 use crate::progress::with_progress;
-use hysteron::{Auto, Candidates, Fit, FitOptions, Solver, Start};
+use hysteron::{Auto, Candidates, Choice, Fit, FitOptions, LoadLaw, Solver, Spacing};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -43,15 +43,28 @@ use pyo3::types::{PyDict, PyString};
 ///     Direction of the output; None for the one that fits better.
 /// offset : float, optional
 ///     Output with every operator off; by default identified.
-/// load_degree : int
-///     Order of the weights as a function of the load, 0 to 5, where the recordings have a load.
+/// load_law : {'shift', 'weights'}
+///     What a load changes, where the recordings have one. 'shift': it shifts the axis of the
+///     operators, as stress shifts the temperatures of a shape-memory alloy, and weights and offset
+///     follow with `load_degree`. 'weights': weights and offset only.
+/// load_degree : int or 'auto'
+///     Order of the weights as a function of the load, 0 to 5. 'auto': the one that predicts loads
+///     left out, of three or more, and otherwise 1.
+/// spacing : {'uniform', 'auto'}
+///     Where the levels are. 'auto': close together where the output moves.
+/// creep : int, 'auto' or 'off'
+///     Terms of a creep after the operators, 0 to 4. 'auto' takes creep only where it predicts parts
+///     of the recording that were left out. Needs `time`.
+/// lag : float, 'auto' or 'off'
+///     Time constant of a lag after the operators, s, from 0 on; 'auto' as for `creep`. Needs
+///     `time`.
 /// bootstrap : int, optional
 ///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45
 ///     levels on 0.
-/// thermal : {None, 'first-order'}
-///     Identify a thermal body in front of the operators, for an input that heats. The input has
-///     to be proportional to the power, as a duty cycle is: give the square of a current or a
-///     voltage. Needs `time`.
+/// thermal : {None, 'first-order', True, False}
+///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
+///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a
+///     current or a voltage. Each sample of it was held since the sample before. Needs `time`.
 /// time, load : array_like, shape (n,), optional
 ///     For an input and an output given as arrays. `time` as in `Recording`.
 /// progress : callable, bool or None
@@ -80,21 +93,21 @@ use pyo3::types::{PyDict, PyString};
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, thermal=None, time=None, load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='uniform', creep='off', lag='off', bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
     recording: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
     bootstrap: Option<Integer>,
-    thermal: Option<&str>,
+    thermal: Option<&Bound<'_, PyAny>>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
     let names = ["bootstrap", "thermal", "time", "load", "progress"];
-    let (options, auto) = fit_options("fit", &names, options)?;
+    let (options, auto) = fit_options("fit", &[&names[..], &STAGES[..]].concat(), options)?;
     let mut fit = Fit::from(options);
     if auto.levels {
         fit = fit.levels(Auto);
@@ -106,10 +119,7 @@ pub(crate) fn fit(
         None => fit.bootstrap(Auto),
         Some(count) => fit.bootstrap(count.of::<usize>("bootstrap")?),
     };
-    let thermal = match thermal {
-        None => false,
-        Some(name) => choice("thermal", name, &[("first-order", true)])?,
-    };
+    let thermal = thermal.map_or(Ok(false), thermal_of)?;
     let recordings = recordings_of(recording, output, time, load)?;
     let (model, advice) = with_progress(py, progress, |progress| {
         let fit = fit.thermal(thermal).progress(progress);
@@ -129,7 +139,9 @@ pub(crate) fn fit(
 /// Parameters
 /// ----------
 /// recording, output, levels, range, operator, solver, smooth, start, sign, offset, load_degree, time, load, progress
-///     As for `fit`. 'auto' chooses again for each group, without its branches.
+///     As for `fit`, with the load law 'weights', a `load_degree` of 1 for 'auto', and without the
+///     stages around the operators. 'auto' of `levels` and `smooth` chooses again for each group,
+///     without its branches.
 ///
 /// Returns
 /// -------
@@ -149,7 +161,7 @@ pub(crate) fn fit(
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, time=None, load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree=1, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree='auto', time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn left_out<'py>(
     py: Python<'py>,
@@ -219,8 +231,24 @@ fn fit_options(
             "sign" => options.sign = Some(sign_of(value.extract()?)?),
             "offset" => options.offset = Some(named(&name, "a number", &value)?),
             "load_degree" if is_auto(&value) => options.load_degree = None,
+            "load_degree" if value.is_instance_of::<PyString>() => {
+                return Err(another_kind(&name, "a whole number or 'auto'", &value));
+            }
             "load_degree" => {
                 options.load_degree = Some(value.extract::<Integer>()?.of("load_degree")?);
+            }
+            other if !names.contains(&other) => {
+                return Err(no_argument(call, &name, &[names, &OPTIONS].concat()));
+            }
+            "load_law" => options.load_law = choice("load_law", &text()?, &LAWS)?,
+            "spacing" => options.spacing = choice("spacing", &text()?, &SPACINGS)?,
+            "creep" => {
+                let terms = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.of("creep");
+                options.creep = stage(&name, &value, 0, terms)?;
+            }
+            "lag" => {
+                let seconds = |value: &_| named("lag", "a number, 'auto' or 'off'", value);
+                options.lag = stage(&name, &value, 0.0, seconds)?;
             }
             _ => return Err(no_argument(call, &name, &[names, &OPTIONS].concat())),
         }
@@ -240,19 +268,42 @@ const OPTIONS: [&str; 9] = [
     "load_degree",
 ];
 
+/// The options of the stages around the operators, which only `fit` has.
+const STAGES: [&str; 4] = ["load_law", "spacing", "creep", "lag"];
+
+const LAWS: [(&str, LoadLaw); 2] = [("shift", LoadLaw::Shift), ("weights", LoadLaw::Weights)];
+
+const SPACINGS: [(&str, Spacing); 2] = [("uniform", Spacing::Uniform), ("auto", Spacing::Auto)];
+
 const SOLVERS: [(&str, Solver); 2] = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
 
 fn is_auto(value: &Bound<'_, PyAny>) -> bool {
     value.cast::<PyString>().is_ok_and(|text| *text == "auto")
 }
 
-/// Where the operators stand at first.
-pub(crate) fn start_of(name: &str) -> PyResult<Start> {
-    let starts = [
-        ("off", Start::Off),
-        ("on", Start::On),
-        ("unknown", Start::Unknown),
-        ("fitted", Start::Fitted),
-    ];
-    choice("start", name, &starts)
+/// A stage that is off, left to the data, or given by its value.
+fn stage<'py, T: Copy>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    off: T,
+    given: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+) -> PyResult<Choice<T>> {
+    match value.cast::<PyString>() {
+        Ok(word) => {
+            let words = [("off", Choice::Fixed(off)), ("auto", Choice::Auto)];
+            choice(name, &word.to_string(), &words)
+        }
+        Err(_) => given(value).map(Choice::Fixed),
+    }
+}
+
+/// Whether a thermal body is to be identified.
+fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    match value.extract::<bool>() {
+        Ok(body) => Ok(body),
+        Err(_) => {
+            let name: String = named("thermal", "'first-order' or True", value)?;
+            choice("thermal", &name, &[("first-order", true)])
+        }
+    }
 }

@@ -53,12 +53,24 @@ pub(crate) fn recordings_of(
 
 /// One input, or a list of inputs, each an array or that of a recording.
 pub(crate) fn inputs_of(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<Vec<f64>>> {
+    inputs_seen(value, argument, |input, _| Ok(input.to_vec()))
+}
+
+/// As [`inputs_of`], each as `see` gives it, from the input and the recording that it is of.
+pub(crate) fn inputs_seen(
+    value: &Bound<'_, PyAny>,
+    argument: &str,
+    see: impl Fn(&[f64], Option<&hysteron::Recording>) -> PyResult<Vec<f64>>,
+) -> PyResult<Vec<Vec<f64>>> {
     let input_of = |one: &Bound<'_, PyAny>, place: &str| match one.cast::<Recording>() {
-        Ok(recording) => Ok(recording.get().inner.input.clone()),
+        Ok(recording) => {
+            let recording = &*recording.get().inner;
+            see(&recording.input, Some(recording))
+        }
         Err(_) => {
             let input = series(one, place)?;
             finite(place, &input)?;
-            Ok(input)
+            see(&input, None)
         }
     };
     let listed = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();

@@ -3,6 +3,7 @@
 mod action;
 mod adapt;
 mod adaptive;
+mod around;
 mod array;
 mod choices;
 mod controller;

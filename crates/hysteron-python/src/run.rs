@@ -1,33 +1,38 @@
 //! `Model.simulate`, `band`, `evaluate`, `start` and `inverse`.
 
-use crate::array::{like, optional, samples, times};
-use crate::choices::none_left;
-use crate::error::{Raise, number};
+use crate::around::Around;
+use crate::array::{like, samples};
+use crate::choices::{STARTS, choice, none_left};
+use crate::error::{Raise, finite, number};
 use crate::evaluate;
-use crate::fit::start_of;
 use crate::inputs::recording_of;
 use crate::inverse::Inverse;
 use crate::model::Model;
 use crate::pool::detached;
 use crate::state::State;
-use hysteron::Surroundings;
 use numpy::{IntoPyArray, PyArray2};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 #[pymethods]
 impl Model {
-    /// The outputs for `input`, starting with every operator off.
+    /// The outputs for `input`.
     ///
     /// Parameters
     /// ----------
     /// input : array_like, shape (n,)
-    ///     In the input's unit. Values beyond the plane act as its ends.
+    ///     In the input's unit. With a thermal body it is the drive, each sample held since the one
+    ///     before. Values beyond the plane act as its ends.
     /// time : array_like, shape (n,), optional
-    ///     Needed for a model with a thermal body, ignored otherwise. As in `Recording`.
-    /// load : array_like, shape (n,), optional
-    ///     For a model that depends on a load. For a constant load see `at_load`.
+    ///     Needed for a model with a thermal body, creep or a lag (`is_timed`), ignored otherwise.
+    ///     As in `Recording`.
+    /// load : float, or array_like of shape (n,), optional
+    ///     For a model that depends on a load. One number is the load of all samples.
+    /// start : {'fitted', 'off', 'on'}
+    ///     State of the operators before the first sample. 'fitted': where the model starts, which
+    ///     is `fitted_start`, and every operator off where there is none. Body, creep and lag are at
+    ///     rest with the first sample.
     ///
     /// Returns
     /// -------
@@ -39,31 +44,30 @@ impl Model {
     /// CoreError
     ///     For a sample that is NaN or infinite.
     /// ThermalError
-    ///     For a model with a thermal body without time, or time that goes back.
+    ///     For a model that depends on time without it, or time that goes back.
     /// FitError
-    ///     For a model that depends on a load without it, and the other way round.
+    ///     For a model that depends on a load without it, and the other way round; for a load
+    ///     outside the range that was fitted, where the weights depend on it.
     ///
     /// Examples
     /// --------
     /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
     /// >>> model.simulate([0.5, 1.0, 0.5])
     /// array([4., 7., 5.])
-    #[pyo3(signature = (input, *, time=None, load=None))]
+    /// >>> model.simulate([0.5], start='on')
+    /// array([5.])
+    #[pyo3(signature = (input, *, time=None, load=None, start="fitted"))]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
+        start: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let model = &self.inner;
-        if model.thermal.is_none() && model.load.is_none() && load.is_none() {
-            // Without a copy: straight into NumPy's array.
-            return self.started(false).run(py, input);
-        }
-        let run = |input: &_, around: Surroundings<'_>| model.simulate_in(input, around);
-        let output = surrounded(py, input, time, load, run)?;
-        like(input, output.into_pyarray(py), &self.output())
+        let on = [("fitted", None), ("off", Some(false)), ("on", Some(true))];
+        self.start(choice("start", start, &on)?)
+            .run(py, input, time, load)
     }
 
     /// The 95 % band around `simulate`: uncertainty of the weights and noise.
@@ -100,8 +104,11 @@ impl Model {
         time: Option<&Bound<'py, PyAny>>,
         load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let run = |input: &_, around: Surroundings<'_>| self.inner.band_in(input, around);
-        let (low, high) = surrounded(py, input, time, load, run)?;
+        let array = samples(input, "input")?;
+        let samples = array.as_slice()?;
+        let around = Around::of(&self.inner, samples.len(), time, load)?;
+        let band = detached(py, || self.inner.band_in(samples, around.lent()));
+        let (low, high) = band.raise_of("input", samples)?;
         Ok((
             like(input, low.into_pyarray(py), "lower")?,
             like(input, high.into_pyarray(py), "upper")?,
@@ -115,8 +122,9 @@ impl Model {
     /// recording : Recording, or array_like of shape (n,)
     ///     An array is the input, and `output` is needed.
     /// output : array_like, shape (n,), optional
-    /// start : {'off', 'on', 'unknown'}
-    ///     State of the operators before the first sample.
+    /// start : {'fitted', 'off', 'on', 'unknown'}
+    ///     State of the operators before the first sample. 'fitted': as for `simulate`. 'unknown':
+    ///     the state that explains the beginning of the recording best.
     /// time, load : array_like, shape (n,), optional
     ///     For an input and an output given as arrays.
     ///
@@ -134,8 +142,8 @@ impl Model {
     /// >>> found = model.evaluate([0.5, 1.0, 0.5], [4.0, 7.0, 5.5])
     /// >>> found.forward.max_abs
     /// 0.5
-    #[pyo3(signature = (recording, output=None, *, start="off", time=None, load=None, **unknown),
-        text_signature = "($self, recording, output=None, *, start='off', time=None, load=None)")]
+    #[pyo3(signature = (recording, output=None, *, start="fitted", time=None, load=None, **unknown),
+        text_signature = "($self, recording, output=None, *, start='fitted', time=None, load=None)")]
     #[allow(clippy::too_many_arguments)]
     fn evaluate<'py>(
         &self,
@@ -149,7 +157,12 @@ impl Model {
     ) -> PyResult<Bound<'py, PyAny>> {
         none_left("Model.evaluate", unknown, &["start", "time", "load"])?;
         let recording = recording_of(recording, output, time, load)?;
-        evaluate::evaluate(py, &self.inner, &recording, start_of(start)?)
+        evaluate::evaluate(
+            py,
+            &self.inner,
+            &recording,
+            choice("start", start, &STARTS)?,
+        )
     }
 
     /// How well inputs determine each operator of this model's plane.
@@ -157,6 +170,7 @@ impl Model {
     /// Parameters
     /// ----------
     /// input : array_like of shape (n,), Recording, or list of these
+    ///     For a model that depends on time or on a load, recordings that have it.
     ///
     /// Returns
     /// -------
@@ -174,33 +188,30 @@ impl Model {
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        evaluate::excited(py, input, *self.inner.plane(), self.inner.operator())
+        evaluate::excited_within(py, &self.inner, input)
     }
 
-    /// A state with every operator off, or on.
+    /// A state to run from.
     ///
     /// Parameters
     /// ----------
-    /// on : bool
+    /// on : bool, optional
+    ///     Every operator on, or off. By default where the model starts: `fitted_start`, and every
+    ///     operator off where there is none.
     ///
     /// Returns
     /// -------
     /// State
-    ///
-    /// Raises
-    /// ------
-    /// ThermalError, FitError
-    ///     For a model with a thermal body, and for a model that depends on a load: use `at_load`.
+    ///     Body, creep and lag are at rest with its first sample.
     ///
     /// Examples
     /// --------
     /// >>> model = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
-    /// >>> model.start(on=True).step(0.5)
-    /// 5.0
-    #[pyo3(signature = (*, on=false))]
-    fn start(&self, on: bool) -> PyResult<State> {
-        self.inner.plain().raise()?;
-        Ok(self.started(on))
+    /// >>> model.start().step(0.5), model.start(on=True).step(0.5)
+    /// (4.0, 5.0)
+    #[pyo3(signature = (*, on=None))]
+    fn start(&self, on: Option<bool>) -> State {
+        State::new(self.clone(), self.begin(on))
     }
 
     /// The state that `State.save` returned.
@@ -208,7 +219,8 @@ impl Model {
     /// Parameters
     /// ----------
     /// saved : dict
-    ///     With 'turning_points' and 'input'.
+    ///     With 'turning_points' and 'input', and with 'stages' of a model that has stages. Without
+    ///     'stages', body, creep and lag are at rest with the next sample.
     ///
     /// Returns
     /// -------
@@ -217,9 +229,9 @@ impl Model {
     /// Raises
     /// ------
     /// CoreError
-    ///     For turning points that do not nest.
-    /// ThermalError, FitError
-    ///     As `start`.
+    ///     For turning points that do not nest, and numbers that are NaN or infinite.
+    /// ValueError
+    ///     For 'stages' of another length than 7.
     ///
     /// Examples
     /// --------
@@ -230,7 +242,6 @@ impl Model {
     /// >>> again.step(0.4) == state.step(0.4)
     /// True
     fn restore(&self, saved: &Bound<'_, PyAny>) -> PyResult<State> {
-        self.inner.plain().raise()?;
         let entry = |name| {
             saved.get_item(name).map_err(|_| {
                 PyTypeError::new_err(
@@ -241,11 +252,31 @@ impl Model {
         let points = entry("turning_points")?;
         let points = samples(&points, "turning_points")?;
         let input = number("input", entry("input")?.extract()?)?;
-        let state = self.inner.restore(points.as_slice()?, input).raise()?;
+        let mut state = self.inner.restore(points.as_slice()?, input).raise()?;
+        if let Ok(stages) = saved.get_item("stages") {
+            let stages = samples(&stages, "stages")?;
+            let stages = stages.as_slice()?;
+            let numbers = stages.try_into().map_err(|_| {
+                let found = stages.len();
+                PyValueError::new_err(format!("`stages` has {found} numbers: 7 are needed"))
+            })?;
+            finite("stages", stages)?;
+            state = state.with_stage_numbers(numbers).raise()?;
+        }
         Ok(State::new(self.clone(), state))
     }
 
     /// The exact inverse.
+    ///
+    /// Parameters
+    /// ----------
+    /// drive_range : tuple of float, optional
+    ///     The lowest and the highest input that it may ask for. By default the drives fitted of a
+    ///     model with a thermal body (`drive`), and no limits without one.
+    /// horizon : float
+    ///     With a thermal body: the seconds in which it reaches a temperature, from 0 on. 0: within
+    ///     one sample. With more, noise of the target does not send the drive from one end to the
+    ///     other, and the output follows late.
     ///
     /// Returns
     /// -------
@@ -253,8 +284,10 @@ impl Model {
     ///
     /// Raises
     /// ------
-    /// CoreError
+    /// CoreError, FitError
     ///     Where a weight is below zero: the output is then not monotone.
+    /// FitError
+    ///     For a range that is not in order, and a horizon below zero.
     ///
     /// Examples
     /// --------
@@ -262,8 +295,11 @@ impl Model {
     /// >>> inputs, status = model.inverse().run([4.0, 7.0, 5.0])
     /// >>> inputs
     /// array([0.5, 1. , 0.5])
-    fn inverse(&self) -> PyResult<Inverse> {
-        Inverse::new(self.clone())
+    /// >>> model.inverse(drive_range=(0, 0.8)).run([4.0, 7.0])
+    /// (array([0.5, 0.8]), array([0, 3], dtype=int8))
+    #[pyo3(signature = (drive_range=None, horizon=0.0))]
+    fn inverse(&self, drive_range: Option<(f64, f64)>, horizon: f64) -> PyResult<Inverse> {
+        Inverse::new(self.clone(), drive_range, horizon)
     }
 
     /// The model at one load, of a model that depends on a load.
@@ -297,30 +333,12 @@ impl Model {
 }
 
 impl Model {
-    fn started(&self, on: bool) -> State {
-        let state = if on {
-            self.inner.saturated()
-        } else {
-            self.inner.start()
-        };
-        State::new(self.clone(), state)
+    /// The state that a model starts from, or every operator off or on.
+    pub(crate) fn begin(&self, on: Option<bool>) -> hysteron::State {
+        match on {
+            None => self.inner.start(),
+            Some(false) => self.inner.off(),
+            Some(true) => self.inner.saturated(),
+        }
     }
-}
-
-/// Does `work` on an input and what goes with its samples, without the interpreter's lock.
-fn surrounded<T: Send>(
-    py: Python<'_>,
-    input: &Bound<'_, PyAny>,
-    time: Option<&Bound<'_, PyAny>>,
-    load: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&[f64], Surroundings<'_>) -> hysteron::Result<T> + Send,
-) -> PyResult<T> {
-    let input = samples(input, "input")?;
-    let input = input.as_slice()?;
-    let (time, load) = (times(time)?, optional(load, "load")?);
-    let around = Surroundings {
-        time: time.as_deref(),
-        load: load.as_deref(),
-    };
-    detached(py, || work(input, around)).raise_of("input", input)
 }

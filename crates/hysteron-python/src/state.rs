@@ -1,10 +1,12 @@
 //! `State`.
 
+use crate::around::{self, Around};
 use crate::array::{filled, like, samples};
 use crate::error::{Raise, number};
 use crate::model::Model;
 use crate::plane::on_plane;
 use crate::shared::Shared;
+use hysteron::Sample;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -33,6 +35,23 @@ impl State {
     }
 }
 
+/// A state as plain data.
+pub(crate) fn saved<'py>(
+    py: Python<'py>,
+    model: &hysteron::Model,
+    state: &hysteron::State,
+) -> PyResult<Bound<'py, PyDict>> {
+    let saved = PyDict::new(py);
+    let points = PyArray1::from_vec(py, state.turning_points().collect());
+    saved.set_item("turning_points", points)?;
+    saved.set_item("input", state.input())?;
+    if !model.is_plain() {
+        let stages = PyArray1::from_slice(py, &state.stage_numbers());
+        saved.set_item("stages", stages)?;
+    }
+    Ok(saved)
+}
+
 #[pymethods]
 impl State {
     /// The model that this is a state of.
@@ -41,11 +60,17 @@ impl State {
         self.model.clone()
     }
 
-    /// Move to `input` and return the output.
+    /// Move by one sample and return the output.
     ///
     /// Parameters
     /// ----------
     /// input : float
+    ///     With a thermal body the drive, held since the sample before.
+    /// dt : float, optional
+    ///     Time since the sample before, s. Needed for a model with a thermal body, creep or a lag
+    ///     from the second sample on.
+    /// load : float, optional
+    ///     For a model that depends on a load.
     ///
     /// Returns
     /// -------
@@ -54,17 +79,30 @@ impl State {
     /// Raises
     /// ------
     /// CoreError
-    ///     For an input that is NaN or infinite. The state is unchanged then.
+    ///     For numbers that are NaN or infinite.
+    /// ThermalError
+    ///     For a `dt` that is needed and missing, or below zero.
+    /// FitError
+    ///     For a load that is missing, outside its range, or given to a model that has none. The
+    ///     state is unchanged after any error.
     ///
     /// Examples
     /// --------
     /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.step(0.5)
     /// 4.0
-    fn step(&self, py: Python<'_>, input: f64) -> PyResult<f64> {
-        let (model, input) = (&self.model.inner, number("input", input)?);
-        let step = self.inner.with(py, |state| model.step(state, input));
-        Ok(step.raise()?.output)
+    #[pyo3(signature = (input, *, dt=None, load=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        input: f64,
+        dt: Option<f64>,
+        load: Option<f64>,
+    ) -> PyResult<f64> {
+        let input = number("input", input)?;
+        let (dt, load) = around::step(dt, load)?;
+        let step = |state: &mut _| self.model.inner.step(state, Sample { input, dt, load });
+        Ok(self.inner.with(py, step).raise()?.output)
     }
 
     /// Move through `input` and return the outputs.
@@ -72,6 +110,11 @@ impl State {
     /// Parameters
     /// ----------
     /// input : array_like, shape (n,)
+    /// time : array_like, shape (n,) or (n + 1,), optional
+    ///     As for `Model.simulate`. The time step of the first sample is 0. To go on from earlier
+    ///     samples, give one more time: that of the last of them, before the others.
+    /// load : float, or array_like of shape (n,), optional
+    ///     As for `Model.simulate`.
     ///
     /// Returns
     /// -------
@@ -80,36 +123,49 @@ impl State {
     ///
     /// Raises
     /// ------
-    /// CoreError
-    ///     For a sample that is NaN or infinite. The state is unchanged then.
+    /// CoreError, ThermalError, FitError
+    ///     As `Model.simulate`. The state is unchanged then.
     ///
     /// Examples
     /// --------
     /// >>> state = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).start()
     /// >>> state.run([0.5, 1.0]), state.run([0.5])
     /// (array([4., 7.]), array([5.]))
+    #[pyo3(signature = (input, *, time=None, load=None))]
     pub(crate) fn run<'py>(
         &self,
         py: Python<'py>,
         input: &Bound<'py, PyAny>,
+        time: Option<&Bound<'py, PyAny>>,
+        load: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let array = samples(input, "input")?;
         let samples = array.as_slice()?;
+        let model = &self.model.inner;
+        let around = Around::of(model, samples.len(), time, load)?;
         let output = filled(py, samples.len(), |output| {
-            let run = |state: &mut _| self.model.inner.run(state, samples, output);
-            self.inner
-                .with_detached(run)
-                .raise_of("input", samples)
-                .map(|_| ())
+            let run = |state: &mut hysteron::State| {
+                if model.is_plain() {
+                    return model.run_in(state, samples, around.lent(), output);
+                }
+                // An error in the middle leaves the state where it was.
+                let mut moved = state.clone();
+                let clipped = model.run_in(&mut moved, samples, around.lent(), output)?;
+                *state = moved;
+                Ok(clipped)
+            };
+            let run = self.inner.with_detached(run);
+            run.raise_of("input", samples).map(|_| ())
         })?;
         like(input, output, &self.model.output())
     }
 
-    /// Every operator off, or on.
+    /// Return to where the model starts, or every operator off or on.
     ///
     /// Parameters
     /// ----------
-    /// on : bool
+    /// on : bool, optional
+    ///     As for `Model.start`.
     ///
     /// Examples
     /// --------
@@ -118,10 +174,9 @@ impl State {
     /// >>> state.operators
     /// array([[ 1.,  1.],
     ///        [nan,  1.]])
-    #[pyo3(signature = (*, on=false))]
-    fn reset(&self, py: Python<'_>, on: bool) {
-        let model = &self.model.inner;
-        let begin = if on { model.saturated() } else { model.start() };
+    #[pyo3(signature = (*, on=None))]
+    fn reset(&self, py: Python<'_>, on: Option<bool>) {
+        let begin = self.model.begin(on);
         self.inner.with(py, |state| *state = begin);
     }
 
@@ -130,7 +185,9 @@ impl State {
     /// Returns
     /// -------
     /// dict
-    ///     With 'turning_points' (ndarray) and 'input' (float).
+    ///     With 'turning_points' (ndarray) and 'input' (float). For a model with stages also with
+    ///     'stages' (ndarray, shape (7,)): 0 or 1 for whether there was a sample, the temperature,
+    ///     the output of each of four creep terms, the lagged sum.
     ///
     /// Examples
     /// --------
@@ -139,10 +196,9 @@ impl State {
     /// >>> state.save()
     /// {'turning_points': array([2. , 1.5]), 'input': 0.5}
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let saved = PyDict::new(py);
-        saved.set_item("turning_points", self.turning_points(py))?;
-        saved.set_item("input", self.input(py))?;
-        Ok(saved)
+        // One look at it: another thread may move it in between.
+        let state = self.inner.with(py, |state| state.clone());
+        saved(py, &self.model.inner, &state)
     }
 
     /// The turning points ``M_1, m_1, M_2, …`` as positions in ``[0, K]``, the present position
@@ -162,10 +218,19 @@ impl State {
         on_plane(py, &gamma.raise()?)
     }
 
-    /// The last input.
+    /// The last input of the operators.
+    ///
+    /// With a thermal body it is made from the temperature; a load shifts and stretches it, and with
+    /// unequal levels it is on the grid of the plane.
     #[getter]
     fn input(&self, py: Python<'_>) -> f64 {
         self.inner.with(py, |state| state.input())
+    }
+
+    /// The temperature of the thermal body after the last sample; without a body the last input.
+    #[getter]
+    fn temperature(&self, py: Python<'_>) -> f64 {
+        self.inner.with(py, |state| state.temperature())
     }
 
     /// An independent copy.

@@ -15,7 +15,7 @@ def loops(
     recording: Recording,
     model: Model | None = None,
     *,
-    start: Literal["off", "on", "unknown"] = "off",
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
     ax: Axes | None = None,
 ) -> Axes:
     """Output over input, measured and modelled (Figs. 1 and 11).
@@ -25,7 +25,7 @@ def loops(
     recording : Recording
     model : Model, optional
         Driven with the recording's input.
-    start : {'off', 'on', 'unknown'}
+    start : {'fitted', 'off', 'on', 'unknown'}
         Where the operators stand before the first sample.
     ax : matplotlib.axes.Axes, optional
 
@@ -93,20 +93,19 @@ def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> A
     7.0
     """
     without_body(model)
-    low, high = model.range
-    margin = (high - low) / (model.levels - 1)  # the ridges start one step below their level
-    up = np.linspace(low - margin, high, 400)
-    path = np.concatenate([up, up[::-1]])
     if loads is None and model.load_range is None:
+        path = _path([model])
         ax = single(ax)
-        ax.plot(path, model.simulate(path), **MODELLED)
+        ax.plot(path, model.simulate(path, start="off"), **MODELLED)
     else:
         if loads is None:
             lowest, highest = model.load_range
             loads = np.linspace(lowest, highest, 3)
         else:
             loads = _numbers(loads)
-        outputs = [model.at_load(load).simulate(path) for load in loads]
+        models = [model.at_load(load) for load in loads]
+        path = _path(models)
+        outputs = [loaded.simulate(path, start="off") for loaded in models]
         ax = single(ax)
         lines = ("-", DASHED, DOTTED, "-.")
         for k, (load, output) in enumerate(zip(loads, outputs)):
@@ -115,6 +114,13 @@ def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> A
         ax.legend(title=label(model.load_name))
     ax.set(xlabel=label(model.input), ylabel=label(model.output))
     return ax
+
+
+def _path(models):
+    """Up and down over the ranges in which the operators move."""
+    lows, highs = zip(*(model.active_range for model in models))
+    up = np.linspace(min(lows), max(highs), 400)
+    return np.concatenate([up, up[::-1]])
 
 
 def _numbers(loads):

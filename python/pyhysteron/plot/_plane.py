@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from .._hysteron import Model, Recording, branches
-from ._style import BLUE, ORANGE, amount, figure, one_of, several, single, unit, without_body
+from ._style import BLUE, ORANGE, amount, figure, levels_of, one_of, several, single, unit, without_body
 
 _COLUMNS = 3
 #: An input on a level leaves each operator at 0 or 1, up to rounding of some 1e-13.
@@ -46,7 +46,7 @@ def grid(model: Model, *, ax: Axes | None = None) -> Axes:
     [[20.0, 20.0], [20.0, 80.0], [80.0, 80.0]]
     """
     ax = single(ax, square=True)
-    levels, count = model.plane, model.levels
+    levels, count = levels_of(model), model.levels
     i, j = np.triu_indices(count)
     ax.plot(levels[i], levels[j], "o", color="0.15", markersize=0.5 * marker_size(count))
     plane_axes(ax, model)
@@ -63,7 +63,9 @@ def grid(model: Model, *, ax: Axes | None = None) -> Axes:
         horizontalalignment="right",
         arrowprops=dict(arrowstyle="->", color=ORANGE, shrinkB=3),
     )
-    sizes = f"$K$ = {count}\n$N$ = {len(i)}\n$\\Delta T$ = {amount(levels[1] - levels[0], model.input)}"
+    sizes = f"$K$ = {count}\n$N$ = {len(i)}"
+    if model.spacing is None:
+        sizes += f"\n$\\Delta T$ = {amount(levels[1] - levels[0], model.input)}"
     ax.text(0.97, 0.04, sizes, transform=ax.transAxes, horizontalalignment="right", linespacing=1.5)
     return ax
 
@@ -172,10 +174,10 @@ def plane(
     histories = [input[: sample + 1] for sample in _samples(at, len(input))]
     own = axes is None
     axes = _panels(len(histories)) if own else several(axes, len(histories))
-    # The operators' states do not depend on the weights: any load will do.
-    steady = model if model.load_range is None else model.at_load(model.load_range[0])
+    if model.load_range is not None:
+        model = model.at_load(sum(model.load_range) / 2)
     for ax, history in zip(axes, histories):
-        state = steady.start(on=start == "on")
+        state = model.start(on=start == "on")
         state.run(history)
         _states(ax, model, state.operators)
         _present(ax, model, history)
@@ -191,14 +193,14 @@ def plane(
 
 
 def plane_axes(ax, model):
-    edges = _edges(model.plane)
+    edges = _edges(levels_of(model))
     of = unit(model.input)
     ax.set(xlabel=f"α{of}", ylabel=f"β{of}", xlim=(edges[0], edges[-1]), ylim=(edges[0], edges[-1]), aspect="equal")
 
 
 def colour_map(ax, model, values, **shades):
     """A square for each operator, shape (K, K), NaN below the diagonal."""
-    edges = _edges(model.plane)
+    edges = _edges(levels_of(model))
     mesh = ax.pcolormesh(edges, edges, values.T, edgecolor="face", linewidth=0.2, **shades)
     ax.stairs(edges[:-1], edges, baseline=None, color="0.6", linewidth=0.8)
     plane_axes(ax, model)
@@ -211,8 +213,9 @@ def marker_size(levels):
 
 
 def _edges(levels):
-    step = levels[1] - levels[0]
-    return np.append(levels - step / 2, levels[-1] + step / 2)
+    halves = np.diff(levels) / 2
+    ends = levels[0] - halves[0], levels[-1] + halves[-1]
+    return np.concatenate([ends[:1], levels[:-1] + halves, ends[1:]])
 
 
 def _samples(at, count):
@@ -240,7 +243,7 @@ def _panels(count):
 
 
 def _states(ax, model, gamma):
-    levels, size = model.plane, 0.6 * marker_size(model.levels)
+    levels, size = levels_of(model), 0.6 * marker_size(model.levels)
     kinds = (
         (gamma <= _ROUNDING, "o", "none", "γ = 0"),
         ((gamma > _ROUNDING) & (gamma < 1 - _ROUNDING), "s", "0.55", "0 < γ < 1"),
@@ -253,7 +256,7 @@ def _states(ax, model, gamma):
 
 
 def _present(ax, model, history):
-    edges = _edges(model.plane)
+    edges = _edges(levels_of(model))
     now = np.clip(history[-1], edges[0], edges[-1])
     moved = np.flatnonzero(history != history[-1])
     rising = not len(moved) or history[moved[-1]] < history[-1]

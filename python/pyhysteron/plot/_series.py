@@ -17,7 +17,7 @@ def over_time(
     model: Model,
     *,
     of: Literal["output", "input"] = "output",
-    start: Literal["off", "on", "unknown"] = "off",
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
     axes: Any = None,
 ) -> NDArray[Any]:
     """Measured and modelled series over time, with the discrepancy below (Figs. 10 and 12, or 13 and 14).
@@ -29,7 +29,7 @@ def over_time(
     of : {'output', 'input'}
         The output of the model for the recorded input; or the input of the inverse model for the
         recorded output, in which samples of a dead band, where the output stands still, are shaded.
-    start : {'off', 'on', 'unknown'}
+    start : {'fitted', 'off', 'on', 'unknown'}
         Where the operators stand before the first sample.
     axes : sequence of two matplotlib.axes.Axes, optional
 
@@ -108,7 +108,7 @@ def band(recording: Recording, model: Model, *, ax: Axes | None = None) -> Axes:
     >>> plot.band(recording, pyhysteron.fit(recording, levels=5, bootstrap=30)).get_xlabel()
     'sample'
     """
-    of = {} if model.thermal is None else {"time": recording.time}
+    of = {"time": recording.time} if model.is_timed else {}
     if model.load_range is not None:
         of["load"] = recording.load
     low, high = model.band(recording.input, **of)
@@ -128,7 +128,7 @@ def dead_band(
     recording: Recording,
     model: Model,
     *,
-    start: Literal["off", "on", "unknown"] = "off",
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
     axes: Any = None,
 ) -> NDArray[Any]:
     """The dead band with the largest error of the inverse, close up (Fig. 15).
@@ -141,7 +141,7 @@ def dead_band(
     ----------
     recording : Recording
     model : Model
-    start : {'off', 'on', 'unknown'}
+    start : {'fitted', 'off', 'on', 'unknown'}
         Where the operators stand before the first sample.
     axes : sequence of two matplotlib.axes.Axes, optional
 

@@ -57,6 +57,13 @@ def of_kind(name, value, kind, needed):
 def without_body(model):
     if model.thermal is not None:
         raise ValueError("the model has a thermal body: its operators see the body's temperature, not the input")
+    if model.is_timed:
+        raise ValueError("the model has creep or a lag: its output depends on time, not on the input alone")
+
+
+def levels_of(model):
+    """The levels as inputs."""
+    return model.plane if model.spacing is None else model.spacing[1:]
 
 
 def single(ax, *, square=False, wide=False):

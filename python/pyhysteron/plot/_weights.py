@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from .._hysteron import Model
 from ._plane import colour_map, marker_size, plane_axes
-from ._style import figure, one_of, single, unit
+from ._style import figure, levels_of, one_of, single, unit
 
 
 @figure
@@ -48,7 +48,7 @@ def weights(model: Model, *, kind: Literal["marks", "map", "bars"] = "marks", ax
 
 def _marks(model, ax):
     ax = single(ax, square=True)
-    mu, levels = model.weights, model.plane
+    mu, levels = model.weights, levels_of(model)
     some = np.abs(mu) > _zero(mu)
     for chosen, marker, label in (((~np.isnan(mu)) & ~some, "o", "zero"), (some, "x", "not zero")):
         i, j = np.nonzero(chosen)
@@ -69,7 +69,7 @@ def _marks(model, ax):
 
 def _map(model, ax):
     ax = single(ax, square=True)
-    mu, levels = model.weights, model.plane
+    mu, levels = model.weights, levels_of(model)
     mesh = colour_map(ax, model, mu, **_shades(mu))
     ax.figure.colorbar(mesh, ax=ax, label=f"weight{unit(model.output)}", shrink=0.85)
     i, j = np.nonzero(mu < -_zero(mu))
@@ -82,9 +82,9 @@ def _bars(model, ax):
         ax = plt.subplots(figsize=(6, 4.8), layout="constrained", subplot_kw={"projection": "3d"})[1]
     elif ax.name != "3d":
         raise ValueError(f"`ax` has the projection {ax.name!r}: bars need '3d'")
-    mu, levels = model.weights, model.plane
+    mu, levels = model.weights, levels_of(model)
     i, j = np.triu_indices(model.levels)
-    width = 0.7 * (levels[1] - levels[0])
+    width = 0.7 * np.diff(levels).min()
     shades = _shades(mu)
     colours = plt.get_cmap(shades["cmap"])(plt.Normalize(shades["vmin"], shades["vmax"])(mu[i, j]))
     ax.bar3d(levels[i] - width / 2, levels[j] - width / 2, 0, width, width, mu[i, j], color=colours, edgecolor="0.3", linewidth=0.3)
