@@ -126,6 +126,70 @@ fn work(method: i32, memory: &mut [Vec<u64>; 3]) {
     }
 }
 
+/// The stages around the operators: a lag and a load.
+fn stages(memory: &mut [Vec<u64>; 3]) {
+    let weights = [1.0; LEVELS * (LEVELS + 1) / 2];
+    let loads = [1.0, 2.0];
+    let [model_memory, state_memory, stages_memory] = memory
+        .each_mut()
+        .map(|m| (m.as_mut_ptr().cast(), 8 * m.len()));
+    let (mut model, mut state, mut stages) = (null_mut(), null_mut(), null_mut());
+    let (mut output, mut input, mut status) = (0.0, 0.0, 0);
+    let mut past = HysteronStageState::default();
+    let (n, at) = (weights.len(), weights.as_ptr());
+    // SAFETY: all pointers are to live memory of the sizes given.
+    unsafe {
+        let (place, bytes) = model_memory;
+        let kind = HYSTERON_MKP;
+        let code =
+            hysteron_core_model_init(place, bytes, kind, 20.0, 80.0, LEVELS, at, n, &mut model);
+        assert_eq!(code, 0);
+        let (place, bytes) = state_memory;
+        let code = hysteron_core_state_init(model, place, bytes, &mut state);
+        assert_eq!(code, 0);
+        let mut constants: HysteronStages = std::mem::zeroed();
+        (constants.sign, constants.lag) = (1, 0.5);
+        (constants.load_count, constants.loads) = (2, loads.as_ptr());
+        let (place, bytes) = stages_memory;
+        let code = hysteron_core_stages_init(model, &constants, place, bytes, &mut stages);
+        assert_eq!(code, 0);
+        for (dt, load, expected) in [
+            (0.1, 1.5, HYSTERON_OK),
+            (-0.1, 1.5, HYSTERON_TIME_STEP),
+            (0.1, f64::NAN, HYSTERON_LOAD),
+        ] {
+            let memory = &mut past;
+            let code = hysteron_core_stages_step(
+                stages,
+                model,
+                state,
+                memory,
+                50.0,
+                dt,
+                load,
+                &mut output,
+                null_mut(),
+            );
+            assert_eq!(code, expected);
+            let code = hysteron_core_stages_inverse_step(
+                stages,
+                model,
+                state,
+                memory,
+                5.0,
+                HYSTERON_HOLD,
+                0.0,
+                dt,
+                load,
+                std::ptr::null(),
+                &mut input,
+                &mut status,
+            );
+            assert_eq!(code, expected);
+        }
+    }
+}
+
 #[test]
 fn nothing_is_allocated_over_the_callers_memory() {
     for method in [
@@ -147,6 +211,7 @@ fn nothing_is_allocated_over_the_callers_memory() {
         let mut memory = sizes.map(|bytes| vec![0_u64; bytes / 8]);
         let before = COUNT.get();
         work(method, &mut memory);
+        stages(&mut memory);
         assert_eq!(COUNT.get(), before);
     }
     let before = COUNT.get();

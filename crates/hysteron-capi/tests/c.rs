@@ -14,7 +14,14 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 const SANITIZE: &str = "-fsanitize=address,undefined";
-const SOURCES: [&str; 5] = ["main.c", "vector.c", "handles.c", "memory.c", "misuse.c"];
+const SOURCES: [&str; 6] = [
+    "main.c",
+    "vector.c",
+    "handles.c",
+    "memory.c",
+    "stages.c",
+    "misuse.c",
+];
 
 fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)

@@ -7,6 +7,7 @@ int main(int count, char **arguments) {
     } else {
         handles();
         memory_form();
+        stages();
         misuse();
     }
     puts("ok");
