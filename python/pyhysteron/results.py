@@ -527,7 +527,7 @@ class InverseRun(_Result):
     Attributes
     ----------
     input_model : ndarray, shape (n,)
-        Modelled input, in the input's unit.
+        Modelled input, in the input's unit; of a model with a thermal body, the temperature.
     all : Errors
         Over all samples.
     moving : Errors or None

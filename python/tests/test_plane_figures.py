@@ -135,8 +135,9 @@ def test_the_plane_of_a_model_that_depends_on_a_load(truth, swings):
     load = np.repeat([1.0, 2.0, 3.0], len(swings) // 3)
     model = pyhysteron.fit(swings, load * truth.simulate(swings), load=load, levels=8, bootstrap=0)
     axes = plot.plane(model, swings, at=[400])
-    steady = pyhysteron.Model(np.ones(36), model.range).start()
+    middle = model.at_load(2.0)
+    steady = middle.start()
     steady.run(swings[:401])
     on = {tuple(point) for line in axes[0].get_lines() if line.get_label() == "γ = 1" for point in line.get_xydata()}
     i, j = np.nonzero(steady.operators == 1)
-    assert on == set(zip(model.plane[i], model.plane[j]))
+    assert on == set(zip(middle.plane[i], middle.plane[j]))

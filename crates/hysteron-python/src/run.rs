@@ -321,7 +321,7 @@ impl Model {
     /// --------
     /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 20, 400))
     /// >>> runs = [pyhysteron.Recording(temperature, (9 - load) * temperature, load=np.full(400, load)) for load in (3.0, 6.0)]
-    /// >>> model = pyhysteron.fit(runs, levels=6, bootstrap=0)
+    /// >>> model = pyhysteron.fit(runs, levels=6, load_law='weights', bootstrap=0)
     /// >>> model.load_range
     /// (3.0, 6.0)
     /// >>> low, high = model.at_load(4.5).output_range

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._hysteron import Model, Recording
-from ._style import DASHED, DOTTED, MODELLED, RECORDED, figure, label, single, source, without_body
+from ._style import DASHED, DOTTED, MODELLED, RECORDED, figure, label, single, source, untimed
 
 
 @figure
@@ -79,7 +79,7 @@ def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> A
     FitError
         For a load outside that range, or of a model that depends on none.
     ValueError
-        For `loads` without any, or a model with a thermal body.
+        For `loads` without any, or a model that depends on time.
     TypeError
         For a `model`, `loads` or `ax` of another type.
 
@@ -92,7 +92,7 @@ def major_loops(model: Model, loads: Any = None, *, ax: Axes | None = None) -> A
     >>> float(ax.get_lines()[0].get_ydata().max())
     7.0
     """
-    without_body(model)
+    untimed(model)
     if loads is None and model.load_range is None:
         path = _path([model])
         ax = single(ax)

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from .._hysteron import Model, Recording, branches
-from ._style import BLUE, ORANGE, amount, figure, levels_of, one_of, several, single, unit, without_body
+from ._style import BLUE, ORANGE, amount, figure, levels_of, one_of, several, single, unit, untimed
 
 _COLUMNS = 3
 #: An input on a level leaves each operator at 0 or 1, up to rounding of some 1e-13.
@@ -149,7 +149,7 @@ def plane(
     Raises
     ------
     ValueError
-        For a model with a thermal body, an input without samples or one that is NaN or infinite,
+        For a model that depends on time, an input without samples or one that is NaN or infinite,
         `at` without samples, or fewer axes.
     IndexError
         For a sample that the input does not have.
@@ -163,7 +163,7 @@ def plane(
     >>> [len(line.get_xdata()) for line in axes[1].get_lines()[:3]]  # at 0, between, at 1
     [0, 1, 2]
     """
-    without_body(model)
+    untimed(model)
     one_of("start", start, "off", "on")
     branch = branches(input)
     input = np.asarray(input, float)

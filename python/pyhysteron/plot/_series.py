@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from .._hysteron import Model, Recording
-from ._style import CONTRAST, MODELLED, RECORDED, figure, label, one_of, several, single, source, unit
+from ._style import CONTRAST, MODELLED, RECORDED, figure, label, one_of, several, single, source, unit, without_body
 
 
 @figure
@@ -41,7 +41,7 @@ def over_time(
     Raises
     ------
     ValueError
-        For the input of a model without inverse, another word, or fewer axes.
+        For the input of a model without inverse or with a thermal body, another word, or fewer axes.
     TypeError
         For a `recording`, `model` or `axes` of another type.
 
@@ -54,6 +54,8 @@ def over_time(
     array([ 0. ,  0. , -0.5])
     """
     one_of("of", of, "output", "input")
+    if of == "input":
+        without_body(model)
     found = model.evaluate(recording, start=start)
     time, when = _time(recording)
     inverse = None if of == "output" else _inverse(found)
@@ -153,7 +155,7 @@ def dead_band(
     Raises
     ------
     ValueError
-        For a model without inverse, an output that never stands still, or fewer axes.
+        For a model without inverse or with a thermal body, an output that never stands still, or fewer axes.
     TypeError
         For a `recording`, `model` or `axes` of another type.
 
@@ -166,6 +168,7 @@ def dead_band(
     >>> [line.get_label() for line in input.get_lines()[1:]]
     ['measured', 'inverse, hold', 'inverse, anticipate']
     """
+    without_body(model)
     inverse = _inverse(model.evaluate(recording, start=start))
     moving = inverse.moving
     if moving.all():

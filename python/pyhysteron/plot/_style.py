@@ -57,6 +57,10 @@ def of_kind(name, value, kind, needed):
 def without_body(model):
     if model.thermal is not None:
         raise ValueError("the model has a thermal body: its operators see the body's temperature, not the input")
+
+
+def untimed(model):
+    without_body(model)
     if model.is_timed:
         raise ValueError("the model has creep or a lag: its output depends on time, not on the input alone")
 
