@@ -13,11 +13,7 @@ pub(crate) fn run(args: &args::Export) -> Result<()> {
 }
 
 fn c(args: &args::ExportC) -> Result<()> {
-    let model = hysteron::Model::read(&args.model)?;
-    let model = match args.load {
-        Some(load) => model.at_load(load)?,
-        None => model,
-    };
+    let model = model(&args.model, args.load)?;
     let sampling = CSampling {
         dt: args.dt,
         drive: args.drive_range,
@@ -78,7 +74,7 @@ fn c(args: &args::ExportC) -> Result<()> {
 }
 
 fn fmu(args: &args::ExportFmu) -> Result<()> {
-    let model = model(&args.model, &args.load)?;
+    let model = model(&args.model, args.load)?;
     let options = FmuOptions {
         inverse: args.inverse,
         fmi: args.fmi.into(),
@@ -111,10 +107,11 @@ fn fmu(args: &args::ExportFmu) -> Result<()> {
     ))
 }
 
-/// The model at the load that is named, where one is.
-fn model(path: &std::path::Path, load: &args::Load) -> Result<hysteron::Model> {
-    match load.apply(hysteron::Model::read(path)?)? {
-        (model, None) => Ok(model),
-        (_, Some(column)) => Err(format!("--load {column}: a number is needed").into()),
-    }
+/// The model, at a load where one is given.
+fn model(path: &std::path::Path, load: Option<f64>) -> Result<hysteron::Model> {
+    let model = hysteron::Model::read(path)?;
+    Ok(match load {
+        Some(load) => model.at_load(load)?,
+        None => model,
+    })
 }

@@ -137,6 +137,6 @@ fn models_that_need_more_than_an_input_are_refused() {
     )
     .unwrap();
     let said = refused(folder.path(), "export c wire.json -o mcu");
-    assert!(said.contains("the model has a thermal body"), "{said}");
+    assert!(said.contains("--dt"), "{said}");
     assert!(!folder.path().join("mcu").exists());
 }

@@ -70,9 +70,13 @@ fn an_open_start_is_told_and_estimated() {
     assert!(percent(&unknown["fit"]) < 0.8 * percent(&off["fit"]));
     // What was fitted from an unknown start is judged from one.
     let evaluate = "evaluate m.json run.csv --input x --output y";
-    let from_off = json(folder.path(), evaluate);
+    let from_fitted = json(folder.path(), evaluate);
+    let from_off = json(folder.path(), &format!("{evaluate} --start off"));
     let from_unknown = json(folder.path(), &format!("{evaluate} --start unknown"));
-    assert!(percent(&from_unknown["forward"]) <= 1.001 * percent(&unknown["fit"]));
+    // A history explains the recording nearly as well as a state of each operator for itself, and
+    // the model keeps it.
+    assert!(percent(&from_unknown["forward"]) <= 1.1 * percent(&unknown["fit"]));
+    assert!(percent(&from_fitted["forward"]) <= 1.1 * percent(&unknown["fit"]));
     assert!(percent(&from_off["forward"]) > percent(&from_unknown["forward"]));
 }
 
@@ -256,7 +260,7 @@ fn what_cannot_be_is_refused_and_nothing_is_replaced() {
         ),
         (
             "invert m.json run.csv --target y --load load -o n.csv".into(),
-            "give it as a number",
+            "does not depend on a load",
         ),
         (
             format!("{design} --from run.csv --input x -o run.csv"),

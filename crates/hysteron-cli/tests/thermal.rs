@@ -11,18 +11,19 @@ use std::fs;
 /// time.
 fn wire() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let (mut theta, mut play, mut drive, mut before) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
+    let (mut theta, mut play, mut before) = (0.0_f64, 0.0_f64, 0.0);
+    let mut drive: f64;
     let mut table = String::from("t,duty,y\n");
     for n in 0..1200 {
         let t = 0.2 * f64::from(n) + 0.05 * f64::from(n % 3);
-        let tau = if drive > theta { 2.0 } else { 5.0 };
-        theta = drive + (theta - drive) * (-(t - before) / tau).exp();
-        before = t;
         drive = match n {
             0..200 => f64::from(n) / 200.0,
             200..400 => f64::from(400 - n) / 200.0,
             _ => [0.0, 1.0, 0.0, 0.6, 0.2, 0.9, 0.1, 0.0][(n as usize - 400) / 100],
         };
+        let tau = if drive > theta { 2.0 } else { 5.0 };
+        theta = drive + (theta - drive) * (-(t - before) / tau).exp();
+        before = t;
         play = play.clamp(theta - 0.1, theta + 0.1);
         table += &format!("{t},{drive},{play}\n");
     }
@@ -111,7 +112,7 @@ fn what_a_body_cannot_do_is_refused_with_a_reason() {
         (
             "invert wire.json run.csv --target y -o out.csv".into(),
             1,
-            "not the drive",
+            "--time",
         ),
         (
             format!("fit {COLUMNS} --thermal first-order -o out.csv"),
@@ -119,9 +120,14 @@ fn what_a_body_cannot_do_is_refused_with_a_reason() {
             "--time",
         ),
         (
-            format!("fit {COLUMNS} --time t --thermal first-order --levels auto -o out.csv"),
+            "invert wire.json run.csv --target y --time t --drive-range 1,0 -o out.csv".into(),
+            2,
+            "--drive-range",
+        ),
+        (
+            "invert wire.json back.csv --target duty --time t -o out.csv".into(),
             1,
-            "--levels",
+            "line 4, column `t`",
         ),
     ] {
         let done = run(folder.path(), &line);

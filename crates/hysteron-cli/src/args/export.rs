@@ -1,6 +1,6 @@
 //! Arguments of `hysteron export`.
 
-use super::{Force, Json, Load, parse_limits};
+use super::{Force, Json, parse_limits};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -87,8 +87,10 @@ pub(crate) struct ExportFmu {
     /// Name of the block, a C identifier [default: sf_MKP, with --inverse sf_Inverse_MKP]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    #[command(flatten)]
-    pub(crate) load: Load,
+    /// Take the model at this load. Needed where the weights depend on the load; otherwise the load
+    /// is an input of the block
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub(crate) load: Option<f64>,
     #[command(flatten)]
     pub(crate) json: Json,
 }

@@ -68,10 +68,10 @@ pub enum Spacing {
 /// | `smooth` | 0 | 0 to 1e6, usually 1e-10 to 1e-4 | strength of the smoothness |
 /// | `start` | off | off, on, unknown | state of the operators before each recording |
 /// | `load_law` | shift | shift, weights | what a load changes, if there is one |
-/// | `load_degree` | by left-out loads | 0 to 5 | order of the weights as a function of the load |
+/// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
 /// | `spacing` | uniform | uniform, auto | where the levels are |
-/// | `creep` | 0 | auto, 0 to 4 | number of creep terms |
-/// | `lag` | 0 | auto, 0 or more | time constant of a lag of the whole, in seconds |
+/// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
+/// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
 /// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {

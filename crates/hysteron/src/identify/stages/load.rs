@@ -46,6 +46,11 @@ const HALVINGS: usize = 6;
 /// A more complex law has to predict loads left out better by this factor.
 const WORTH: f64 = 0.9;
 
+/// With two loads only: one shape for both is right up to this error in percent, and above it if
+/// weights of their own do not reduce it to this share.
+const ALIKE: f64 = 3.0;
+const OF_THEIR_OWN: f64 = 0.4;
+
 /// Knots for each pair of neighbouring loads, where gain and offset between them are not straight.
 const FINE: usize = 6;
 
@@ -118,7 +123,7 @@ pub(super) fn find(
             (None, None) => candidates.push(Tried::Weights { degree: 1, scaled }),
             (None, Some(_)) => {
                 candidates.extend(powers.iter().map(|&power| Tried::Gain { power, scaled }));
-                let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
+                let degrees = 1..=groups.knots.len().saturating_sub(2).clamp(1, 2);
                 candidates.extend(degrees.map(|degree| Tried::Weights { degree, scaled }));
             }
         }
@@ -136,16 +141,19 @@ pub(super) fn find(
             (true, None) => continue,
         };
         progress.tell("loads left out", f64::NAN)?;
-        let error = if inner == 0 {
-            0.0
-        } else {
-            search.left_out(curves, candidate)?
-        };
+        let error = search.left_out(curves, candidate)?;
         tried.push((candidate, error));
     }
     let mut best = tried[0];
     for next in &tried[1..] {
-        if next.1 < WORTH * best.1 {
+        let worth = match inner {
+            // Weights of their own always fit two loads better. They are taken only where the
+            // loops have different shapes.
+            0 if best.1 < ALIKE => 0.0,
+            0 => OF_THEIR_OWN,
+            _ => WORTH,
+        };
+        if next.1 < worth * best.1 {
             best = *next;
         }
     }
@@ -615,52 +623,82 @@ impl Search<'_> {
     }
 
     /// The error on each load that was left out, between those next to it, in percent of the range
-    /// of its output; the root of the mean square.
+    /// of its output; the root of the mean square. Without a load between two others it is the error
+    /// on all of them, fitted.
     fn left_out(&self, curves: &LoadCurves, tried: Tried) -> Result<f64> {
         let Some(group) = &self.groups.group else {
             return Ok(0.0);
         };
-        let last = self.groups.knots.len() - 1;
-        let output = &self.samples.output;
-        let mut squares = 0.0;
-        for g in 1..last {
-            let mut loads = curves.loads.clone();
-            loads.remove(g);
-            let (others, degree, load_curves) = match tried {
-                Tried::Gain { power, .. } => {
-                    let others = curves.resampled(&loads, power);
-                    // What lies between them follows from the neighbours.
-                    let others = others.resampled(&curves.loads, power);
-                    (others.clone(), 0, Some(others))
-                }
-                Tried::Weights { degree, .. } => {
-                    (moving_only(&curves.resampled(&loads, 1.0)), degree, None)
-                }
-            };
-            let seen = behind(&others, self.recordings);
-            let options = FitOptions {
-                load_degree: Some(degree),
-                load_curves: load_curves.clone(),
-                ..self.options.clone()
-            };
-            let mut problem = Problem::new(&seen, &options)?;
-            let kept: Vec<f64> = group.iter().map(|at| f64::from(*at != g)).collect();
-            let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-            let predicted = problem.predict(&fitted.solution)?;
-            let (mut sum, mut count, mut ends) = (0.0, 0.0, (f64::INFINITY, f64::NEG_INFINITY));
-            for n in (0..group.len()).filter(|n| group[*n] == g) {
-                let offset = match &load_curves {
-                    Some(curves) => curves.at(self.samples.load[n])?.offset,
-                    None => 0.0,
-                };
-                let error = output[n] - offset - fitted.sign.factor() * predicted[n];
-                sum += error * error;
-                count += 1.0;
-                ends = (ends.0.min(output[n]), ends.1.max(output[n]));
+        let count = self.groups.knots.len();
+        let squares: Vec<f64> = match count {
+            2 => {
+                let predicted = self.predicted(curves, tried, group, None)?;
+                (0..count)
+                    .map(|g| self.judged(group, g, &predicted))
+                    .collect()
             }
-            squares += sum / count / (ends.1 - ends.0).max(f64::MIN_POSITIVE).powi(2);
+            _ => (1..count - 1)
+                .map(|g| Ok(self.judged(group, g, &self.predicted(curves, tried, group, Some(g))?)))
+                .collect::<Result<_>>()?,
+        };
+        Ok(100.0 * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+    }
+
+    /// The outputs of a fit, to all loads or to all but one.
+    fn predicted(
+        &self,
+        curves: &LoadCurves,
+        tried: Tried,
+        group: &[usize],
+        left: Option<usize>,
+    ) -> Result<Vec<f64>> {
+        let mut loads = curves.loads.clone();
+        if let Some(g) = left {
+            loads.remove(g);
         }
-        Ok(100.0 * (squares / (last - 1) as f64).sqrt())
+        let (others, degree, load_curves) = match tried {
+            Tried::Gain { power, .. } => {
+                let others = curves.resampled(&loads, power);
+                // What lies between them follows from the neighbours.
+                let others = others.resampled(&curves.loads, power);
+                (others.clone(), 0, Some(others))
+            }
+            Tried::Weights { degree, .. } => {
+                (moving_only(&curves.resampled(&loads, 1.0)), degree, None)
+            }
+        };
+        let seen = behind(&others, self.recordings);
+        let options = FitOptions {
+            load_degree: Some(degree),
+            load_curves: load_curves.clone(),
+            ..self.options.clone()
+        };
+        let mut problem = Problem::new(&seen, &options)?;
+        let kept: Vec<f64> = group
+            .iter()
+            .map(|at| f64::from(Some(*at) != left))
+            .collect();
+        let fitted = problem.solve(Some(&kept), Progress::NONE)?;
+        let sums = problem.predict(&fitted.solution)?;
+        let offset = |n: usize| match &load_curves {
+            Some(curves) => Ok::<_, Error>(curves.at(self.samples.load[n])?.offset),
+            None => Ok(0.0),
+        };
+        let sums = sums.into_iter().enumerate();
+        sums.map(|(n, sum)| Ok(offset(n)? + fitted.sign.factor() * sum))
+            .collect()
+    }
+
+    /// The mean square error at one load, in squares of the range of its output.
+    fn judged(&self, group: &[usize], g: usize, predicted: &[f64]) -> f64 {
+        let output = &self.samples.output;
+        let own: Vec<usize> = (0..group.len()).filter(|n| group[*n] == g).collect();
+        let sum: f64 = own
+            .iter()
+            .map(|n| (output[*n] - predicted[*n]).powi(2))
+            .sum();
+        let (low, high) = range(&own.iter().map(|n| output[*n]).collect::<Vec<_>>());
+        sum / own.len().max(1) as f64 / (high - low).max(f64::MIN_POSITIVE).powi(2)
     }
 }
 
