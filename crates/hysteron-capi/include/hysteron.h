@@ -1148,7 +1148,8 @@ int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, d
  *
  * `time` has the time of each sample in seconds, and `load` its load; each has `count` elements or
  * is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new state,
- * whose first sample has none before it.
+ * whose first sample has none before it. `clipped` has `count` elements as in `hysteron_step`, or is
+ * null.
  */
 int32_t hysteron_run_in(uint64_t state,
                         const double *input,
@@ -1156,6 +1157,7 @@ int32_t hysteron_run_in(uint64_t state,
                         double last_time,
                         const double *load,
                         double *output,
+                        int32_t *clipped,
                         size_t count);
 
 /**

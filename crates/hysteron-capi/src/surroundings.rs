@@ -5,7 +5,7 @@ use crate::limits::HysteronLimits;
 use crate::pointer::Arguments;
 use crate::state::STATES;
 use crate::types::{self, HYSTERON_HOLD, clipped as clipped_constant, status as status_constant};
-use hysteron::{Inverse, Model, Sample, State, Surroundings, Wanted};
+use hysteron::{Inverse, Model, Sample, Wanted};
 
 /// A number that may be missing, which is NaN in C.
 pub(crate) fn given(value: f64) -> Option<f64> {
@@ -13,7 +13,6 @@ pub(crate) fn given(value: f64) -> Option<f64> {
 }
 
 /// The series beside the inputs of a run, each as long as they are.
-#[derive(Clone, Copy)]
 struct Around<'a> {
     time: Option<&'a [f64]>,
     last_time: f64,
@@ -21,11 +20,11 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// An empty array and one that is null are the same here.
-    fn new(time: &'a [f64], last_time: f64, load: &'a [f64]) -> Self {
+    /// A model that does not depend on time takes no notice of it. An array without elements is none.
+    fn new(model: &Model, time: &'a [f64], last_time: f64, load: &'a [f64]) -> Self {
         let series = |values: &'a [f64]| (!values.is_empty()).then_some(values);
         Self {
-            time: series(time),
+            time: series(time).filter(|_| model.is_timed()),
             last_time,
             load: series(load),
         }
@@ -39,28 +38,6 @@ impl<'a> Around<'a> {
         };
         let dt = |time: &[f64]| before(time).map(|before| time[n] - before);
         (self.time.and_then(dt), self.load.map(|load| load[n]))
-    }
-
-    fn run(
-        &self,
-        model: &Model,
-        state: &mut State,
-        input: &[f64],
-        output: &mut [f64],
-    ) -> Result<()> {
-        if input.is_empty() {
-            return Ok(());
-        }
-        if self.time.is_none() || !model.is_timed() {
-            let (time, load) = (None, self.load);
-            model.run_in(state, input, Surroundings { time, load }, output)?;
-            return Ok(());
-        }
-        for (n, (&input, output)) in input.iter().zip(output).enumerate() {
-            let (dt, load) = self.at(n);
-            *output = model.step(state, Sample { input, dt, load })?.output;
-        }
-        Ok(())
     }
 }
 
@@ -116,7 +93,8 @@ pub unsafe extern "C" fn hysteron_step_in(
 ///
 /// `time` has the time of each sample in seconds, and `load` its load; each has `count` elements or
 /// is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new state,
-/// whose first sample has none before it.
+/// whose first sample has none before it. `clipped` has `count` elements as in `hysteron_step`, or is
+/// null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_run_in(
     state: u64,
@@ -125,28 +103,35 @@ pub unsafe extern "C" fn hysteron_run_in(
     last_time: f64,
     load: *const f64,
     output: *mut f64,
+    clipped: *mut i32,
     count: usize,
 ) -> i32 {
     guard(|| {
         let wanted = |is_null| if is_null { 0 } else { count };
         let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (input, time, load, mut output) = unsafe {
+        let (input, time, load, output, clipped) = unsafe {
             (
                 arguments.array(input, count, "input")?,
                 arguments.array(time, wanted(time.is_null()), "time")?,
                 arguments.array(load, wanted(load.is_null()), "load")?,
                 arguments.array_out(output, count, "output")?,
+                arguments.array_out(clipped, wanted(clipped.is_null()), "clipped")?,
             )
         };
         let running = STATES.get(state, "state")?;
+        let around = Around::new(&running.model, time, last_time, load);
         finite(input)?;
-        let (around, output) = (Around::new(time, last_time, load), output.zeros());
-        let done = running.moved(|model, state| around.run(model, state, input, output));
-        if done.is_err() {
-            output.fill(0.0);
-        }
-        done
+        let steps = running.moved(|model, state| {
+            let steps = input.iter().enumerate().map(|(n, &input)| {
+                let (dt, load) = around.at(n);
+                Ok(model.step(state, Sample { input, dt, load })?)
+            });
+            steps.collect::<Result<Vec<_>>>()
+        })?;
+        output.write(steps.iter().map(|step| step.output));
+        clipped.write(steps.iter().map(|step| clipped_constant(step.clipped)));
+        Ok(())
     })
 }
 
@@ -226,7 +211,7 @@ pub unsafe extern "C" fn hysteron_inverse_run_in(
             )
         };
         let running = STATES.get(state, "state")?;
-        let around = Around::new(time, last_time, load);
+        let around = Around::new(&running.model, time, last_time, load);
         let temperature = limits.unwrap_or(HysteronLimits::NONE).temperature();
         let wanted = target.iter().enumerate().map(|(n, &target)| {
             let heading = heading.get(n).copied().unwrap_or(HYSTERON_HOLD);

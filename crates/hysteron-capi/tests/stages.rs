@@ -119,14 +119,34 @@ fn runs_are_those_of_the_library_at_once_and_in_pieces() {
     for text in [WHOLE, BY_LOAD] {
         let both = Both::new(text);
         let Series {
-            input, load, time, ..
+            input,
+            load,
+            step,
+            time,
+            ..
         } = series(2, 300);
         let around = Surroundings {
             time: Some(&time),
             load: Some(&load),
         };
         let expected = both.model.simulate_in(&input, around).unwrap();
-        let mut output = vec![0.0; 300];
+        let mut own = both.model.start();
+        let sides = (0..300).map(|n| {
+            let (dt, load) = (Some(step[n]), Some(load[n]));
+            let sample = Sample {
+                input: input[n],
+                dt,
+                load,
+            };
+            match both.model.step(&mut own, sample).unwrap().clipped {
+                None => HYSTERON_INSIDE,
+                Some(hysteron::Clipped::Low) => HYSTERON_LOW,
+                Some(hysteron::Clipped::High) => HYSTERON_HIGH,
+            }
+        });
+        let sides: Vec<i32> = sides.collect();
+        assert!(sides.contains(&HYSTERON_HIGH) && sides.contains(&HYSTERON_INSIDE));
+        let (mut output, mut clipped) = (vec![0.0; 300], vec![7; 300]);
         for pieces in [1, 3, 300] {
             ok(hysteron_state_start(both.state, HYSTERON_START_FITTED));
             let (count, mut last) = (300 / pieces, NONE);
@@ -140,12 +160,14 @@ fn runs_are_those_of_the_library_at_once_and_in_pieces() {
                         last,
                         load[from..].as_ptr(),
                         output[from..].as_mut_ptr(),
+                        clipped[from..].as_mut_ptr(),
                         count,
                     )
                 });
                 last = time[from + count - 1];
             }
             same(&output, &expected);
+            assert_eq!(clipped, sides);
         }
     }
 }
@@ -467,6 +489,7 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
                 last,
                 load,
                 output.as_mut_ptr(),
+                null_mut(),
                 2,
             );
             assert!(output.iter().all(|y| *y == 0.0 || *y == 7.0));
@@ -527,6 +550,7 @@ fn what_is_missing_or_wrong_is_refused_and_nothing_moves() {
             null(),
             NONE,
             null(),
+            null_mut(),
             null_mut(),
             0,
         ));

@@ -41,7 +41,7 @@ static void inverse_and_back(uint64_t model) {
     OK(hysteron_state_new(model, &inverse));
     OK(hysteron_state_new(model, &forward));
     OK(hysteron_inverse_run_in(inverse, target, NULL, 0.0, at, NAN, load, &limits, found, status, COUNT));
-    OK(hysteron_run_in(forward, found, at, NAN, load, reached, COUNT));
+    OK(hysteron_run_in(forward, found, at, NAN, load, reached, NULL, COUNT));
     for (n = 0; n < COUNT; n++) {
         REQUIRE(found[n] >= 0.0 && found[n] <= 0.8);
         if (status[n] == HYSTERON_INSIDE) {
@@ -150,10 +150,10 @@ static void refusals(uint64_t model) {
     REQUIRE(hysteron_step_in(state, 0.5, -1.0, 100.0, output, NULL) == HYSTERON_THERMAL);
     REQUIRE(hysteron_step_in(state, 0.5, 0.1, 300.0, output, NULL) == HYSTERON_FIT);
     REQUIRE(hysteron_last_error(detail, sizeof detail) > 0 && strstr(detail, "stress 300") != NULL);
-    REQUIRE(hysteron_run_in(state, drive, at, NAN, load, output, 2) == HYSTERON_THERMAL); /* when was the last? */
-    REQUIRE(hysteron_run_in(state, drive, at, 0.0, drive, output, 2) == HYSTERON_OVERLAP);
-    REQUIRE(hysteron_run_in(state, drive, at, 0.0, target, output, 2) == HYSTERON_FIT);
-    REQUIRE(hysteron_run_in(state, drive, at, 0.0, load, NULL, 2) == HYSTERON_NULL);
+    REQUIRE(hysteron_run_in(state, drive, at, NAN, load, output, NULL, 2) == HYSTERON_THERMAL); /* when was the last? */
+    REQUIRE(hysteron_run_in(state, drive, at, 0.0, drive, output, NULL, 2) == HYSTERON_OVERLAP);
+    REQUIRE(hysteron_run_in(state, drive, at, 0.0, target, output, NULL, 2) == HYSTERON_FIT);
+    REQUIRE(hysteron_run_in(state, drive, at, 0.0, load, NULL, NULL, 2) == HYSTERON_NULL);
     REQUIRE(hysteron_inverse_step_in(state, 1.0, 0, 0.0, 0.1, 100.0, &limits, &input, &status) == HYSTERON_VALUE);
     REQUIRE(hysteron_last_error(detail, sizeof detail) > 0 && strstr(detail, "`drive_min`") != NULL);
     REQUIRE(hysteron_inverse_step_in(state, 1.0, 7, 0.0, 0.1, 100.0, NULL, &input, &status) == HYSTERON_VALUE);

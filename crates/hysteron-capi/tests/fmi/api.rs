@@ -15,6 +15,8 @@ pub const FLAG: u32 = 3;
 pub const HEADING: u32 = 4;
 pub const TOLERANCE: u32 = 5;
 pub const START_ON: u32 = 6;
+pub const LOAD: u32 = 7;
+pub const TEMPERATURE: u32 = 8;
 
 /// An FMU in a folder.
 pub struct Unpacked {

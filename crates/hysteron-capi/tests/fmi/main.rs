@@ -3,6 +3,7 @@
 
 mod api;
 mod misuse;
+mod staged;
 mod states;
 
 use api::*;

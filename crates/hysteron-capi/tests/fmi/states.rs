@@ -229,7 +229,7 @@ fn forged_bytes_do_no_harm() {
         }
         assert!(accepted > 10, "{accepted}");
         // More turning points than any run leaves, nested in one cell.
-        let mut many = words[..12].to_vec();
+        let mut many = words[..21].to_vec();
         many.push(10_000);
         many.extend((0..10_000).map(|n| {
             let away = 0.4 * f64::from(10_000 - n) / 10_000.0;

@@ -110,8 +110,11 @@ calls! {
     hysteron_model_weights(weights: ROOM, count: Word) |h|
         (h.model, weights.cast(), 16, count.cast());
     hysteron_run(input: SERIES, output: SERIES) |h| (h.state, input.cast(), output.cast(), 3);
-    hysteron_run_in(input: SERIES, time: TIMES, load: LOADS, output: SERIES) |h|
-        (h.loaded, input.cast(), time.cast(), 0.0, load.cast(), output.cast(), 3);
+    hysteron_run_in(
+        input: SERIES, time: TIMES, load: LOADS, output: SERIES, clipped: Integers(3)
+    ) |h| (
+        h.loaded, input.cast(), time.cast(), 0.0, load.cast(), output.cast(), clipped.cast(), 3
+    );
     hysteron_state_save(points: ROOM, count: Word, input: ONE) |h|
         (h.state, points.cast(), 16, count.cast(), input.cast());
     hysteron_step(output: ONE, clipped: Integers(1)) |h|
