@@ -14,7 +14,10 @@ static const char *identifier(int32_t status) {
     case HYSTERON_TURNING_POINTS: return "hysteron:turningPoints";
     case HYSTERON_FILE: return "hysteron:file";
     case HYSTERON_MODEL_FILE: return "hysteron:modelFile";
+    case HYSTERON_VALUE: return "hysteron:argument";
+    case HYSTERON_LOAD:
     case HYSTERON_FIT: return "hysteron:load";
+    case HYSTERON_TIME_STEP:
     case HYSTERON_THERMAL: return "hysteron:thermal";
     default: return "hysteron:error";
     }
@@ -71,6 +74,25 @@ const mxArray *samples(const mxArray *value, const char *name) {
         }
     }
     return array;
+}
+
+double *series(const mxArray *value, const char *name, size_t count, int repeats) {
+    double *copy;
+    size_t n, found;
+    if (value == NULL) {
+        return NULL;
+    }
+    value = samples(value, name);
+    found = mxGetNumberOfElements(value);
+    if (found != count && !(repeats && found == 1)) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`%s` has %.0f numbers for %.0f samples", name,
+                          (double)found, (double)count);
+    }
+    copy = mxCalloc(count + 1, sizeof *copy);
+    for (n = 0; n < count; n++) {
+        copy[n] = mxGetPr(value)[found == 1 ? 0 : n];
+    }
+    return copy;
 }
 
 double number(const mxArray *value, const char *name) {
@@ -135,12 +157,26 @@ static uint64_t next_id(void) {
     return ++last;
 }
 
-static struct block *open_block(const mxArray *path, const mxArray *load) {
+static int32_t start_of(const mxArray *value, const char *usual) {
+    static const char *const words[] = {"fitted", "off", "on"};
+    static const int32_t starts[] = {HYSTERON_START_FITTED, HYSTERON_START_OFF, HYSTERON_START_ON};
+    const char *word = value == NULL ? usual : text(value, "start");
+    int n;
+    for (n = 0; n < 3 && strcmp(word, words[n]) != 0; n++) {
+    }
+    if (n == 3) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`start` is 'fitted', 'off' or 'on', not '%s'",
+                          word);
+    }
+    return starts[n];
+}
+
+static struct block *open_block(const mxArray *path, const mxArray *load, const mxArray *start) {
     const char *name = text(path, "model");
     double at = load == NULL ? 0.0 : number(load, "load");
+    int32_t from = start_of(start, "fitted"), status;
     uint64_t model, at_load, state;
     struct block *block;
-    int32_t status;
     raise(hysteron_model_read(name, &model));
     if (load != NULL) {
         status = hysteron_model_at_load(model, at, &at_load);
@@ -153,6 +189,7 @@ static struct block *open_block(const mxArray *path, const mxArray *load) {
         hysteron_model_free(model);
         raise(status);
     }
+    hysteron_state_start(state, from);
     block = malloc(sizeof *block);
     if (block == NULL) {
         hysteron_state_free(state);
@@ -162,6 +199,7 @@ static struct block *open_block(const mxArray *path, const mxArray *load) {
     block->id = next_id();
     block->model = model;
     block->state = state;
+    block->time = NAN;
     block->next = blocks;
     blocks = block;
     return block;
@@ -181,14 +219,20 @@ static struct block *find(const mxArray *value) {
     return block;
 }
 
-struct block *take(const mxArray *first, const mxArray *load) {
+struct block *take(const mxArray *first, const mxArray *start) {
     if (mxIsChar(first)) {
-        return open_block(first, load);
+        return open_block(first, NULL, start);
     }
-    if (load != NULL) {
-        mexErrMsgIdAndTxt("hysteron:argument", "`load` is told when a block is opened");
+    if (start != NULL) {
+        mexErrMsgIdAndTxt("hysteron:argument", "`start` is told when a block is opened or reset");
     }
     return find(first);
+}
+
+void passed(struct block *block, const double *time, size_t count) {
+    if (time != NULL && count > 0) {
+        block->time = time[count - 1];
+    }
 }
 
 void done(struct block *block, const mxArray *first, int32_t status) {
@@ -207,20 +251,30 @@ void done(struct block *block, const mxArray *first, int32_t status) {
 /* ---- Commands ---- */
 
 static mxArray *saved(const struct block *block) {
-    static const char *names[] = {"turning_points", "input"};
-    mxArray *result = mxCreateStructMatrix(1, 1, 2, names), *points;
+    static const char *names[] = {"turning_points", "input", "stages", "time"};
+    mxArray *result = mxCreateStructMatrix(1, 1, 4, names), *points, *numbers;
+    struct HysteronStageState stages;
     double input, none;
     size_t count;
     hysteron_state_save(block->state, &none, 0, &count, &input); /* no room: tells how many */
     points = mxCreateDoubleMatrix(1, count, mxREAL);
+    numbers = mxCreateDoubleMatrix(1, sizeof stages / sizeof(double), mxREAL);
     raise(hysteron_state_save(block->state, mxGetPr(points), count, &count, &input));
+    raise(hysteron_state_save_stages(block->state, &stages));
+    memcpy(mxGetPr(numbers), &stages, sizeof stages); /* a structure of doubles */
     mxSetField(result, 0, "turning_points", points);
     mxSetField(result, 0, "input", mxCreateDoubleScalar(input));
+    mxSetField(result, 0, "stages", numbers);
+    mxSetField(result, 0, "time", isnan(block->time) ? mxCreateDoubleMatrix(0, 0, mxREAL)
+                                                     : mxCreateDoubleScalar(block->time));
     return result;
 }
 
-static void restore(const struct block *block, const mxArray *from) {
-    const mxArray *points, *input;
+/* Without `stages` and `time`, body, creep and lag are at rest with the next sample. */
+static void restore(struct block *block, const mxArray *from) {
+    const mxArray *points, *input, *numbers, *time;
+    struct HysteronStageState stages;
+    double last, at = NAN;
     if (!mxIsStruct(from) || mxGetNumberOfElements(from) != 1 ||
         (points = mxGetField(from, 0, "turning_points")) == NULL ||
         (input = mxGetField(from, 0, "input")) == NULL) {
@@ -228,8 +282,24 @@ static void restore(const struct block *block, const mxArray *from) {
                           "what to restore has to be a struct that 'save' gave");
     }
     points = samples(points, "turning_points");
+    last = number(input, "input");
+    numbers = mxGetField(from, 0, "stages");
+    time = mxGetField(from, 0, "time");
+    memset(&stages, 0, sizeof stages);
+    if (numbers != NULL) {
+        numbers = samples(numbers, "stages");
+        if (mxGetNumberOfElements(numbers) != sizeof stages / sizeof(double)) {
+            mexErrMsgIdAndTxt("hysteron:argument", "`stages` has to be the one that 'save' gave");
+        }
+        memcpy(&stages, mxGetPr(numbers), sizeof stages);
+    }
+    if (time != NULL && !mxIsEmpty(time)) {
+        at = number(time, "time");
+    }
     raise(hysteron_state_restore(block->state, mxGetPr(points), mxGetNumberOfElements(points),
-                                 number(input, "input")));
+                                 last));
+    raise(hysteron_state_restore_stages(block->state, &stages));
+    block->time = at;
 }
 
 static mxArray *quantity(uint64_t model, int32_t which) {
@@ -239,20 +309,29 @@ static mxArray *quantity(uint64_t model, int32_t which) {
     return mxCreateString(name);
 }
 
-static mxArray *info(const struct block *block) {
-    static const char *names[] = {"operator", "levels", "range",      "input",     "output",
-                                  "offset",   "sign",   "output_off", "output_on",
-                                  "usual_tolerance"};
-    static const char *operators[] = {"mkp", "kp", "relay"};
-    mxArray *result = mxCreateStructMatrix(1, 1, 10, names);
+static mxArray *pair(double min, double max) {
     mxArray *range = mxCreateDoubleMatrix(1, 2, mxREAL);
+    mxGetPr(range)[0] = min;
+    mxGetPr(range)[1] = max;
+    return range;
+}
+
+static mxArray *info(const struct block *block) {
+    static const char *names[] = {"operator",     "levels",     "range",        "input",
+                                  "output",       "offset",     "sign",         "output_off",
+                                  "output_on",    "usual_tolerance", "needs_time", "needs_load",
+                                  "load",         "load_range", "drive_range",  "active_range",
+                                  "fitted_start"};
+    static const char *operators[] = {"mkp", "kp", "relay"};
+    mxArray *result = mxCreateStructMatrix(1, 1, 17, names), *none;
     struct HysteronModelInfo info;
+    struct HysteronModelNeeds needs;
     raise(hysteron_model_info(block->model, &info));
-    mxGetPr(range)[0] = info.min;
-    mxGetPr(range)[1] = info.max;
+    raise(hysteron_model_needs(block->model, &needs));
+    none = mxCreateDoubleMatrix(0, 0, mxREAL);
     mxSetField(result, 0, "operator", mxCreateString(operators[info.operator_kind]));
     mxSetField(result, 0, "levels", mxCreateDoubleScalar((double)info.levels));
-    mxSetField(result, 0, "range", range);
+    mxSetField(result, 0, "range", pair(info.min, info.max));
     mxSetField(result, 0, "input", quantity(block->model, 0));
     mxSetField(result, 0, "output", quantity(block->model, 1));
     mxSetField(result, 0, "offset", mxCreateDoubleScalar(info.offset));
@@ -260,6 +339,13 @@ static mxArray *info(const struct block *block) {
     mxSetField(result, 0, "output_off", mxCreateDoubleScalar(info.output_off));
     mxSetField(result, 0, "output_on", mxCreateDoubleScalar(info.output_on));
     mxSetField(result, 0, "usual_tolerance", mxCreateDoubleScalar(info.usual_tolerance));
+    mxSetField(result, 0, "needs_time", mxCreateLogicalScalar(needs.time != 0));
+    mxSetField(result, 0, "needs_load", mxCreateLogicalScalar(needs.load != 0));
+    mxSetField(result, 0, "load", needs.load ? quantity(block->model, 2) : mxCreateString(""));
+    mxSetField(result, 0, "load_range", needs.load ? pair(needs.load_min, needs.load_max) : none);
+    mxSetField(result, 0, "drive_range", pair(needs.drive_min, needs.drive_max));
+    mxSetField(result, 0, "active_range", pair(needs.active_min, needs.active_max));
+    mxSetField(result, 0, "fitted_start", mxCreateLogicalScalar(needs.fitted_start != 0));
     return result;
 }
 
@@ -267,16 +353,17 @@ static mxArray *info(const struct block *block) {
 static const struct {
     const char *word;
     int least, most;
-} COMMANDS[] = {{"open", 1, 3},    {"reset", 1, 2}, {"save", 1, 1},
-                {"restore", 2, 2}, {"info", 1, 1},  {"close", 1, 1}};
+} COMMANDS[] = {{"open", 1, 5}, {"reset", 1, 2},       {"save", 1, 1}, {"restore", 2, 2},
+                {"info", 1, 1}, {"temperature", 1, 1}, {"close", 1, 1}};
 
-enum { OPEN, RESET, SAVE, RESTORE, INFO, CLOSE, COUNT };
+enum { OPEN, RESET, SAVE, RESTORE, INFO, TEMPERATURE, CLOSE, COUNT };
 
 int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
-    static const char *const names[] = {"load"};
-    const mxArray *load = NULL;
+    static const char *const names[] = {"load", "start"};
+    const mxArray *values[] = {NULL, NULL};
     const char *word;
     struct block *block;
+    double temperature;
     int which;
     if (nrhs < 2) {
         mexErrMsgIdAndTxt("hysteron:argument",
@@ -297,8 +384,8 @@ int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs
                           COMMANDS[which].least, COMMANDS[which].most, function);
     }
     if (which == OPEN) {
-        options(nrhs, prhs, 2, names, &load, 1);
-        block = open_block(prhs[1], load);
+        options(nrhs, prhs, 2, names, values, 2);
+        block = open_block(prhs[1], values[0], values[1]);
         /* A place for one result is always there, whoever asks for it. */
         plhs[0] = mxCreateNumericMatrix(1, 1, mxUINT64_CLASS, mxREAL);
         *(uint64_t *)mxGetData(plhs[0]) = block->id;
@@ -307,18 +394,18 @@ int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs
     block = which == INFO ? take(prhs[1], NULL) : find(prhs[1]);
     switch (which) {
     case RESET:
-        word = nrhs == 3 ? text(prhs[2], "start") : "off";
-        if (strcmp(word, "on") != 0 && strcmp(word, "off") != 0) {
-            mexErrMsgIdAndTxt("hysteron:argument", "a block is reset to 'off' or 'on'");
-        }
-        raise(strcmp(word, "on") == 0 ? hysteron_state_saturate(block->state)
-                                      : hysteron_state_reset(block->state));
+        raise(hysteron_state_start(block->state, start_of(nrhs == 3 ? prhs[2] : NULL, "off")));
+        block->time = NAN;
         break;
     case SAVE: plhs[0] = saved(block); break;
     case RESTORE: restore(block, prhs[2]); break;
     case INFO:
         plhs[0] = info(block);
         done(block, prhs[1], HYSTERON_OK);
+        break;
+    case TEMPERATURE:
+        raise(hysteron_state_temperature(block->state, &temperature));
+        plhs[0] = mxCreateDoubleScalar(temperature);
         break;
     default: close_block(block); break;
     }

@@ -2,9 +2,10 @@
 #include "block.h"
 #include <string.h>
 
-enum { POLICY, TOLERANCE, HEADING, LOAD, COUNT };
+enum { POLICY, TOLERANCE, HEADING, TIME, LOAD, START, DRIVE_RANGE, HORIZON, COUNT };
 
-static const char *const NAMES[COUNT] = {"policy", "tolerance", "heading", "load"};
+static const char *const NAMES[COUNT] = {"policy", "tolerance", "heading",     "time",
+                                         "load",   "start",     "drive_range", "horizon"};
 
 /* Whether the policy is to anticipate. */
 static int anticipates(const mxArray *policy) {
@@ -34,12 +35,22 @@ static void given(const mxArray *value, int32_t *heading, size_t count) {
     }
 }
 
+/* Limits other than those of the model. The library checks them. */
+static void change(struct HysteronLimits *limits, const double *drive, double horizon) {
+    if (drive != NULL) {
+        limits->drive_min = drive[0];
+        limits->drive_max = drive[1];
+    }
+    limits->horizon = horizon;
+}
+
 void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
-    const mxArray *values[COUNT] = {NULL, NULL, NULL, NULL}, *target;
+    const mxArray *values[COUNT] = {NULL}, *target;
+    struct HysteronLimits limits;
     int32_t *heading, *flags, status = HYSTERON_OK;
     struct HysteronModelInfo info;
     struct block *block;
-    double tolerance = 0.0;
+    double tolerance = 0.0, horizon, *time, *load, *drive;
     int anticipate;
     size_t n, count;
     if (command("sf_Inverse_MKP", plhs, nrhs, prhs)) {
@@ -64,6 +75,10 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     if (tolerance < 0.0) {
         mexErrMsgIdAndTxt("hysteron:argument", "`tolerance` is %g: 0 or more is needed", tolerance);
     }
+    time = series(values[TIME], "time", count, 0);
+    load = series(values[LOAD], "load", count, 1);
+    drive = series(values[DRIVE_RANGE], "drive_range", 2, 0);
+    horizon = values[HORIZON] == NULL ? 0.0 : number(values[HORIZON], "horizon");
     heading = mxCalloc(count + 1, sizeof *heading);
     flags = mxCalloc(count + 1, sizeof *flags);
     if (values[HEADING] != NULL) {
@@ -73,8 +88,10 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     if (nlhs > 1) {
         plhs[1] = shaped_like(prhs[1], mxINT8_CLASS);
     }
-    block = take(prhs[0], values[LOAD]);
-    if (anticipate && values[TOLERANCE] == NULL) {
+    block = take(prhs[0], values[START]);
+    status = hysteron_model_limits(block->model, &limits);
+    change(&limits, drive, horizon);
+    if (status == HYSTERON_OK && anticipate && values[TOLERANCE] == NULL) {
         status = hysteron_model_info(block->model, &info);
         tolerance = status == HYSTERON_OK ? info.usual_tolerance : 0.0;
     }
@@ -82,8 +99,11 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
         status = hysteron_headings(mxGetPr(target), count, tolerance, heading);
     }
     if (status == HYSTERON_OK) {
-        status = hysteron_inverse_run(block->state, mxGetPr(target), heading, tolerance,
-                                      mxGetPr(plhs[0]), flags, count);
+        status = hysteron_inverse_run_in(block->state, mxGetPr(target), heading, tolerance, time,
+                                         block->time, load, &limits, mxGetPr(plhs[0]), flags, count);
+    }
+    if (status == HYSTERON_OK) {
+        passed(block, time, count);
     }
     for (n = 0; n < count && nlhs > 1; n++) {
         ((int8_t *)mxGetData(plhs[1]))[n] = (int8_t)flags[n];

@@ -1,10 +1,11 @@
 % SF_INVERSE_MKP  Invert a hysteresis model exactly: wanted displacement to temperature, say.
 %
 %   X = SF_INVERSE_MKP(FILE, Y) reads the model file FILE and gives the inputs X that make the
-%   outputs Y, sample by sample. All operators start off. X has the shape of Y.
+%   outputs Y, sample by sample, from where the model starts. X has the shape of Y.
 %
-%   [X, STATUS] = ... also says where Y can be reached (int8): 0 within reach, -1 below and 1 above
-%   every output of the model.
+%   [X, STATUS] = ... also says where X gives Y (int8): 0 it does, -1 below and 1 above every output
+%   of the model, 2 within a jump of a relay model, 3 not in this sample: X is at an end of its
+%   range, or creep and lag are too slow.
 %
 %   X = SF_INVERSE_MKP(..., NAME, VALUE, ...) with the options
 %       'policy'     'hold' (the default): the input rests while the target rests;
@@ -15,11 +16,17 @@
 %                    each target, or one for all
 %       'tolerance'  reversals of Y up to this size are noise and not followed, in the output's
 %                    unit; by default 0, with 'anticipate' 1 % of the model's range
-%       'load'       the load, of a model that depends on one
+%       'time'       the time of each sample in seconds, as for SF_MKP
+%       'load'       the load of each sample, or one for all, of a model that depends on one
+%       'start'      'fitted' (the default), 'off' or 'on': where a FILE starts
+%       'drive_range'   the lowest and the highest X; by default that of the drives fitted, of a
+%                    model with a thermal body, and no limits of others
+%       'horizon'    seconds in which a thermal body reaches the temperature it needs; by default
+%                    one sample. Longer, noise of Y moves X less, and the output follows late
 %
 %   B = SF_INVERSE_MKP('open', FILE) opens a block that remembers. X = SF_INVERSE_MKP(B, Y, ...)
-%   goes on from its last state. 'reset', 'save', 'restore', 'info' and 'close' are those of SF_MKP;
-%   each function has blocks of its own.
+%   goes on from its last state. 'open', 'reset', 'save', 'restore', 'info', 'temperature' and
+%   'close' are those of SF_MKP; each function has blocks of its own.
 %
 %   A model with a weight below zero has no inverse: hysteron:negativeWeights.
 %

@@ -1,34 +1,37 @@
 /* The block sf_MKP: temperature to displacement. What it does says sf_MKP.m. */
 #include "block.h"
 
+enum { TIME, LOAD, START, COUNT };
+
+static const char *const NAMES[COUNT] = {"time", "load", "start"};
+
 void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
-    static const char *const names[] = {"load"};
-    const mxArray *load = NULL, *input;
-    const double *x;
-    double *y;
-    int8_t *clipped = NULL;
+    const mxArray *values[COUNT] = {NULL, NULL, NULL}, *input;
+    double *time, *load;
     struct block *block;
-    int32_t status = HYSTERON_OK, side;
+    int32_t status, *clipped;
     size_t n, count;
     if (command("sf_MKP", plhs, nrhs, prhs)) {
         return;
     }
-    options(nrhs, prhs, 2, names, &load, 1);
+    options(nrhs, prhs, 2, NAMES, values, COUNT);
     input = samples(prhs[1], "input");
     count = mxGetNumberOfElements(input);
+    time = series(values[TIME], "time", count, 0);
+    load = series(values[LOAD], "load", count, 1);
+    clipped = mxCalloc(count + 1, sizeof *clipped);
     plhs[0] = shaped_like(prhs[1], mxDOUBLE_CLASS);
     if (nlhs > 1) {
         plhs[1] = shaped_like(prhs[1], mxINT8_CLASS);
-        clipped = mxGetData(plhs[1]);
     }
-    x = mxGetPr(input);
-    y = mxGetPr(plhs[0]);
-    block = take(prhs[0], load);
-    for (n = 0; n < count && status == HYSTERON_OK; n++) {
-        status = hysteron_step(block->state, x[n], &y[n], &side);
-        if (clipped != NULL) {
-            clipped[n] = (int8_t)side;
-        }
+    block = take(prhs[0], values[START]);
+    status = hysteron_run_in(block->state, mxGetPr(input), time, block->time, load,
+                             mxGetPr(plhs[0]), clipped, count);
+    if (status == HYSTERON_OK) {
+        passed(block, time, count);
+    }
+    for (n = 0; n < count && nlhs > 1; n++) {
+        ((int8_t *)mxGetData(plhs[1]))[n] = (int8_t)clipped[n];
     }
     done(block, prhs[0], status);
 }

@@ -2,7 +2,9 @@
 % are cleared.
 function memory()
 model = [tempname() '.json'];
-tidy = onCleanup(@() delete(model));
+whole = [tempname() '.json'];
+tidy = onCleanup(@() delete(model, whole));
+write_whole(whole);
 write_model(model, '[1, 0.5, 1, 0, 0.5, 1]');
 for round = 1:2
     for name = {'sf_MKP', 'sf_Inverse_MKP'}
@@ -22,6 +24,9 @@ for round = 1:2
             end
         end
     end
+    timed = {'time', [0 1 2], 'load', 100, 'start', 'on'};
+    sf_MKP(whole, [0.1 0.5 0.3], timed{:});
+    sf_Inverse_MKP(whole, [1 0.5 0], timed{:}, 'drive_range', [0 1], 'horizon', 0.1);
     sf_Inverse_MKP(model, [12 13 11.5], 'policy', 'anticipate', 'tolerance', 0.1);
     clear sf_MKP sf_Inverse_MKP % one block of each is still open
 end
