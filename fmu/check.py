@@ -155,7 +155,7 @@ def corrupted(folder, fmus):
         for change, expected in {
             "cut": "model.txt, line",
             "flipped": "model.txt, line",
-            "version": "`hysteron-fmu 2`",
+            "version": "`hysteron-fmu 9`",
             "missing": "model.txt",
             "guid": "GUID",
         }.items():
@@ -167,7 +167,7 @@ def corrupted(folder, fmus):
                         data = {
                             "cut": data[:-100],
                             "flipped": data[:500] + bytes([data[500] ^ 1]) + data[501:],
-                            "version": data.replace(b"fmu 1", b"fmu 2"),
+                            "version": data.replace(b"fmu 1", b"fmu 9"),
                         }.get(change, data)
                         if change == "missing":
                             continue

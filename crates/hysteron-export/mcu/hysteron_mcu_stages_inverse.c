@@ -134,10 +134,13 @@ static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
     if (!state->started) {
         return within_range(actuator, holding(actuator, temperature));
     }
-    factor = temperature > state->temperature ? actuator->heating : actuator->cooling;
-    drive = holding(actuator, state->temperature + (temperature - state->temperature) / (ONE - factor));
-    /* NaN where the temperature cannot move and does not have to. */
-    drive = within_range(actuator, drive == drive ? drive : holding(actuator, temperature));
+    if (temperature == state->temperature) {
+        drive = holding(actuator, temperature);
+    } else {
+        factor = temperature > state->temperature ? actuator->heating : actuator->cooling;
+        drive = holding(actuator, state->temperature + (temperature - state->temperature) / (ONE - factor));
+    }
+    drive = within_range(actuator, drive);
     return is_finite(drive) ? drive : holding(actuator, state->temperature);
 }
 

@@ -6,6 +6,7 @@
 mod description;
 mod model_text;
 mod package;
+mod staged;
 mod units;
 mod variables;
 
@@ -65,6 +66,9 @@ pub struct Fmu {
 /// Writes an FMU of `model` to `target`, whose path must end with `.fmu`. A path alone replaces
 /// whatever file is there.
 ///
+/// A model that depends on time takes the communication step as its time step. One with curves over
+/// a load has the load as an input.
+///
 /// ```
 /// use hysteron::{Model, Operator, Plane, Sign};
 /// use hysteron_export::{FmuOptions, fmu};
@@ -79,7 +83,7 @@ pub struct Fmu {
 /// ```
 ///
 /// # Errors
-/// [`Error::Export`] for a model that depends on a load or has a thermal body, a name that is no C
+/// [`Error::Export`] for a model whose weights depend on a load, a name that is no C
 /// identifier or a path that does not end with `.fmu`; [`Error::Core`] for the inverse of a model
 /// with weights below zero; [`Error::File`].
 pub fn fmu<'a>(
@@ -89,7 +93,7 @@ pub fn fmu<'a>(
 ) -> Result<Fmu> {
     let target = target.into();
     let path = target.path();
-    model.plain()?;
+    staged::check(model)?;
     if options.inverse {
         model.inverse()?;
     }
@@ -107,13 +111,13 @@ pub fn fmu<'a>(
         (None, false) => "sf_MKP",
         (None, true) => "sf_Inverse_MKP",
     };
-    let variables = variables::of(model, options.inverse);
+    let variables = variables::of(model, options.inverse)?;
     let describe = |token: &str| description::xml(model, (name, token), options, &variables);
     let text = |token: &str| model_text::of(model, options.inverse, token);
-    let token = token(&describe("")?, &text(""));
+    let token = token(&describe("")?, &text("")?);
     let files = package::Files {
         description: describe(&token)?,
-        model_text: text(&token),
+        model_text: text(&token)?,
         model_json: model.to_json(),
     };
     let bytes = package::zip(&files, name, options.fmi)?;

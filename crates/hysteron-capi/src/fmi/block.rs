@@ -1,9 +1,18 @@
 //! The two blocks: model and inverse, with offset and sign.
 
+use super::stages::Constants;
 use super::{Problem, Result};
-use hysteron_core::{Clipped, Direction, Model, Solution, Target, Turn, turn_capacity};
+use hysteron_core::{
+    Clipped, Direction, Model, Output, Sample, Solution, StageState, Target, Turn, Wanted,
+    turn_capacity,
+};
 
-pub(crate) type State = hysteron_core::State<f64, Vec<Turn<f64>>>;
+/// What a block remembers.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    pub(crate) operators: hysteron_core::State<f64, Vec<Turn<f64>>>,
+    pub(crate) stages: StageState<f64>,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
@@ -13,7 +22,7 @@ pub(crate) enum Kind {
     Inverse,
 }
 
-/// A model as in the FMU: `output = offset + sign · Σ μ γ`.
+/// A model as in the FMU: `output = offset + sign · Σ μ γ`, with the stages around it.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) kind: Kind,
@@ -25,6 +34,12 @@ pub(crate) struct Block {
     pub(crate) offset: f64,
     /// +1 or −1.
     pub(crate) sign: f64,
+    /// `None` for operators alone.
+    pub(crate) stages: Option<Constants>,
+    /// Turning points and input of the operators at the start; `None` for all of them off.
+    pub(crate) start: Option<(Vec<f64>, f64)>,
+    /// The start values of signal and load in the FMU's description.
+    pub(crate) first: (f64, f64),
 }
 
 /// The values that a step needs, and the start.
@@ -32,6 +47,8 @@ pub(crate) struct Block {
 pub(crate) struct Inputs {
     /// Input or target.
     pub(crate) signal: f64,
+    /// The load, where the model depends on one.
+    pub(crate) load: f64,
     /// Where the target goes next: 1, −1, or 0 for the policy *hold*.
     pub(crate) heading: i32,
     /// How far the target may go back and still be held, from 0.
@@ -44,85 +61,142 @@ pub(crate) struct Inputs {
 pub(crate) struct Outputs {
     /// The output, or the input found.
     pub(crate) signal: f64,
-    /// −1, 0 or 1: where the input lay, or whether the target can be reached.
+    /// Where the input lay (−1, 0 or 1), or whether the target is reached (−1 to 3).
     pub(crate) flag: i32,
+    /// The temperature of the body.
+    pub(crate) temperature: f64,
 }
 
 impl Block {
-    /// The start value in the FMU's description: the bottom of the plane, or the output with all
-    /// operators off.
     pub(crate) fn inputs(&self) -> Inputs {
-        let signal = match self.kind {
-            Kind::Forward => self.model.plane().bottom(),
-            Kind::Inverse => self.offset + self.sign * self.model.output_range().0,
-        };
+        let (signal, load) = self.first;
         Inputs {
             signal,
+            load,
             heading: 0,
             tolerance: 0.0,
             start_on: false,
         }
     }
 
-    pub(crate) fn start(&self, on: bool) -> Result<State> {
-        let memory = vec![Turn::default(); turn_capacity(self.model.plane().levels())];
-        let mut state = self.model.state(memory)?;
-        if on {
-            self.model.reset_on(&mut state)?;
-        }
-        Ok(state)
+    /// Whether there is a load among the variables.
+    pub(crate) fn is_loaded(&self) -> bool {
+        let stages = self.stages.as_ref();
+        stages.is_some_and(|stages| !stages.loads.is_empty())
     }
 
-    /// After an error the state stays as it is.
-    pub(crate) fn step(&self, state: &mut State, inputs: &Inputs) -> Result<Outputs> {
-        if !inputs.signal.is_finite() {
-            let what = match self.kind {
-                Kind::Forward => "input",
-                Kind::Inverse => "target",
-            };
-            return Err(Problem(format!(
-                "the {what} is {}, not a finite number",
-                inputs.signal
-            )));
+    /// Whether there is a temperature among the variables.
+    pub(crate) fn has_body(&self) -> bool {
+        let stages = self.stages.as_ref();
+        stages.is_some_and(|stages| stages.body.is_some())
+    }
+
+    pub(crate) fn start(&self, on: bool) -> Result<State> {
+        let memory = vec![Turn::default(); turn_capacity(self.model.plane().levels())];
+        let mut operators = self.model.state(memory)?;
+        match &self.start {
+            _ if on => self.model.reset_on(&mut operators)?,
+            Some((points, input)) => self.model.restore(&mut operators, points, *input)?,
+            None => {}
         }
-        match self.kind {
+        Ok(State {
+            operators,
+            stages: StageState::default(),
+        })
+    }
+
+    /// Moves by a step of `dt` seconds, over which the inputs were held. After an error the state
+    /// stays as it is.
+    pub(crate) fn step(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Outputs> {
+        for (what, number, needed) in [
+            ("input", inputs.signal, self.kind == Kind::Forward),
+            ("target", inputs.signal, self.kind == Kind::Inverse),
+            ("load", inputs.load, self.is_loaded()),
+        ] {
+            if needed && !number.is_finite() {
+                let problem = format!("the {what} is {number}, not a finite number");
+                return Err(Problem(problem));
+            }
+        }
+        let (signal, flag) = match self.kind {
             Kind::Forward => {
-                let step = self.model.step(state, inputs.signal)?;
-                Ok(Outputs {
-                    signal: self.offset + self.sign * step.output,
-                    flag: match step.clipped {
-                        None => 0,
-                        Some(Clipped::Low) => -1,
-                        Some(Clipped::High) => 1,
-                    },
-                })
+                let step = self.forward(state, inputs, dt)?;
+                let flag = match step.clipped {
+                    None => 0,
+                    Some(Clipped::Low) => -1,
+                    Some(Clipped::High) => 1,
+                };
+                (step.output, flag)
             }
             Kind::Inverse => {
-                let target = self.target(inputs);
-                let Solution { input, status } = self.model.inverse()?.step(state, target)?;
-                let status = match self.sign < 0.0 {
-                    true => status.mirrored(),
-                    false => status,
-                };
-                Ok(Outputs {
-                    signal: input,
-                    flag: status.number().into(),
-                })
+                let Solution { input, status } = self.inverse(state, inputs, dt)?;
+                (input, status.number().into())
             }
-        }
+        };
+        Ok(Outputs {
+            signal,
+            flag,
+            temperature: state.stages.temperature(),
+        })
+    }
+
+    fn forward(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Output<f64>> {
+        let (operators, memory) = (&mut state.operators, &mut state.stages);
+        let Some(stages) = &self.stages else {
+            let step = self.model.step(operators, inputs.signal)?;
+            let output = self.offset + self.sign * step.output;
+            return Ok(Output { output, ..step });
+        };
+        let sample = Sample {
+            input: inputs.signal,
+            dt: Some(dt),
+            load: Some(inputs.load),
+        };
+        let stages = stages.core(self.offset, self.sign);
+        Ok(stages.step(&self.model, operators, memory, sample)?)
+    }
+
+    fn inverse(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Solution<f64>> {
+        let inverse = self.model.inverse()?;
+        let (operators, memory) = (&mut state.operators, &mut state.stages);
+        let Some(stages) = &self.stages else {
+            let solution = inverse.step(operators, self.inward(inputs))?;
+            let status = match self.sign < 0.0 {
+                true => solution.status.mirrored(),
+                false => solution.status,
+            };
+            return Ok(Solution { status, ..solution });
+        };
+        let target = Target {
+            output: inputs.signal,
+            heading: heading(inputs.heading),
+            tolerance: inputs.tolerance,
+        };
+        let wanted = Wanted {
+            dt: Some(dt),
+            load: Some(inputs.load),
+            drive: stages.drive,
+            ..target.into()
+        };
+        let stages = stages.core(self.offset, self.sign);
+        Ok(stages.invert(&inverse, operators, memory, wanted)?)
     }
 
     /// The target for the output without sign.
-    fn target(&self, inputs: &Inputs) -> Target<f64> {
-        let rising = (inputs.heading > 0) == (self.sign > 0.0);
+    fn inward(&self, inputs: &Inputs) -> Target<f64> {
+        let rises = if self.sign > 0.0 { 1 } else { -1 };
         Target {
             output: self.sign * (inputs.signal - self.offset),
-            heading: match (inputs.heading, rising) {
-                (0, _) => None,
-                (_, true) => Some(Direction::Rising),
-                (_, false) => Some(Direction::Falling),
-            },
+            heading: heading(rises * inputs.heading),
             tolerance: inputs.tolerance,
         }
+    }
+}
+
+fn heading(number: i32) -> Option<Direction> {
+    match number {
+        0 => None,
+        1.. => Some(Direction::Rising),
+        _ => Some(Direction::Falling),
     }
 }

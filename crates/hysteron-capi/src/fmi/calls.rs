@@ -233,6 +233,9 @@ mod tests {
             model: Model::new(plane, Operator::Mkp, &[1.0; 3], table).unwrap(),
             offset: 0.0,
             sign: 1.0,
+            stages: None,
+            start: None,
+            first: (0.0, 0.0),
         };
         let mut said = OK;
         let logger = Logger::new("spring", (&raw mut said).cast(), Callback::Fmi3(note));

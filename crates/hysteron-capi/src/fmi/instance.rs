@@ -1,6 +1,6 @@
 //! An instance: a block, its state in the standard's state machine, and its run.
 
-use super::block::{Block, Inputs, Kind, Outputs, State};
+use super::block::{Block, Inputs, Outputs, State};
 use super::snapshot::SAVED;
 use super::values::Value;
 use super::{Problem, Result};
@@ -44,8 +44,8 @@ impl Instance {
         })
     }
 
-    pub(crate) fn kind(&self) -> Kind {
-        self.block.kind
+    pub(crate) fn block(&self) -> &Block {
+        &self.block
     }
 
     pub(crate) fn time(&self) -> f64 {
@@ -67,7 +67,7 @@ impl Instance {
     /// The state after the start inputs. It is not kept, so that a tool can try other inputs.
     fn begun(&self) -> Result<(State, Outputs)> {
         let mut state = self.block.start(self.run.inputs.start_on)?;
-        let outputs = self.block.step(&mut state, &self.run.inputs)?;
+        let outputs = self.block.step(&mut state, &self.run.inputs, 0.0)?;
         Ok((state, outputs))
     }
 
@@ -108,7 +108,7 @@ impl Instance {
         Ok(())
     }
 
-    /// The inputs act at once, because the model depends on their order and not on time.
+    /// The inputs act over the whole step. Operators alone depend on their order and not on time.
     pub(crate) fn step(&mut self, from: f64, size: f64) -> Result<()> {
         self.expect(&[Phase::Stepping])?;
         let to = from + size;
@@ -127,7 +127,8 @@ impl Instance {
                 "the step ends at {to}, after the stop time {stop}"
             )));
         }
-        self.run.outputs = self.block.step(&mut self.run.state, &self.run.inputs)?;
+        let (state, inputs) = (&mut self.run.state, &self.run.inputs);
+        self.run.outputs = self.block.step(state, inputs, size)?;
         self.run.time = to;
         Ok(())
     }
@@ -148,7 +149,7 @@ impl Instance {
         self.expect(&[Phase::Instantiated, Phase::Initialising, Phase::Stepping])?;
         let mut inputs = self.run.inputs;
         for (reference, value) in values {
-            value.set(&mut inputs, self.block.kind, reference)?;
+            value.set(&mut inputs, &self.block, reference)?;
         }
         if self.run.phase == Phase::Stepping && inputs.start_on != self.run.inputs.start_on {
             return Err(Problem::new(
@@ -165,6 +166,7 @@ impl Run {
         let outputs = Outputs {
             signal: 0.0,
             flag: 0,
+            temperature: 0.0,
         };
         Ok(Self {
             phase: Phase::Instantiated,

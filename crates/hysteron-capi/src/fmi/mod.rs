@@ -19,6 +19,7 @@ mod location;
 mod logger;
 mod resource;
 mod snapshot;
+mod stages;
 mod states;
 mod values;
 

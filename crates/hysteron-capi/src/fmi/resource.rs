@@ -12,10 +12,34 @@
 //! …
 //! end 217 b1946ac92492d234
 //! ```
+//! A model with stages, or one that does not start with every operator off, has version 2. Between
+//! `output` and `weights` it has more lines, each with as many numbers as there are:
+//!
+//! ```text
+//! first 0.0 100.0
+//! start 12.5 4.0 1.5
+//! body 20.0 2.0 1.5 3.0
+//! drive 0.0 100.0
+//! loads 0.0 200.0
+//! shifts 0.0 12.0
+//! scales
+//! gains
+//! offsets
+//! spacing
+//! creep 0.05
+//! taus 10.0
+//! lag 0.2
+//! ```
+//! These are the start values of signal and load; the operators' input and turning points at the
+//! start; ambient temperature, gain and time constants of heating and cooling; the range of the
+//! drive; the curves over the load; the corners of the grid; coefficients and time constants of the
+//! creep; the time constant of the lag.
+//!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
 
 use super::block::{Block, Kind};
+use super::stages::More;
 use super::{Problem, Result, checksum};
 use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
 use std::path::Path;
@@ -23,6 +47,8 @@ use std::str::FromStr;
 
 const FILE: &str = "model.txt";
 const HEAD: &str = "hysteron-fmu 1";
+/// The first line of a model with stages or with a start.
+const HEAD_STAGES: &str = "hysteron-fmu 2";
 
 /// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
@@ -47,21 +73,21 @@ fn content(path: &Path) -> std::io::Result<Vec<u8>> {
 }
 
 #[derive(Debug)]
-struct Fault {
+pub(crate) struct Fault {
     line: usize,
     problem: String,
 }
 
-type Parsed<T> = std::result::Result<T, Fault>;
+pub(crate) type Parsed<T> = std::result::Result<T, Fault>;
 
 /// Lines with their numbers.
-struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     lines: std::str::Split<'a, char>,
     line: usize,
 }
 
 impl<'a> Lines<'a> {
-    fn fault<T>(&self, problem: impl Into<String>) -> Parsed<T> {
+    pub(crate) fn fault<T>(&self, problem: impl Into<String>) -> Parsed<T> {
         Err(Fault {
             line: self.line,
             problem: problem.into(),
@@ -86,6 +112,19 @@ impl<'a> Lines<'a> {
         match words.and_then(|words| words.try_into().ok()) {
             Some(words) => Ok(words),
             None => self.fault(format!("`{key}` and {N} value(s) are expected")),
+        }
+    }
+
+    /// The numbers after `key` on the next line, as many as there are.
+    pub(crate) fn numbers(&mut self, key: &str) -> Parsed<Vec<f64>> {
+        let line = self.next()?;
+        let Some(rest) = line.strip_prefix(key) else {
+            return self.fault(format!("`{key}` is expected"));
+        };
+        let mut words = rest.split(' ');
+        match words.next() {
+            Some("") => words.map(|word| self.finite(word)).collect(),
+            _ => self.fault(format!("`{key}` is expected")),
         }
     }
 
@@ -116,7 +155,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         line: 0,
     };
     let head = lines.next()?;
-    if head != HEAD {
+    if head != HEAD && head != HEAD_STAGES {
         let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
@@ -147,6 +186,10 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         "-1" => -1.0,
         other => return lines.fault(format!("the sign {other} is neither 1 nor -1")),
     };
+    let more = match head == HEAD_STAGES {
+        true => Some(More::read(&mut lines)?),
+        false => None,
+    };
     let [count] = lines.entry("weights")?;
     if lines.number::<usize>(count)? != operator_count(levels) {
         let needed = operator_count(levels);
@@ -172,14 +215,31 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
             .inverse()
             .or_else(|error| lines.fault(error.to_string()))?;
     }
-    Ok(Block {
+    let mut block = Block {
         kind,
         token: token.into(),
         checksum,
-        model,
         offset,
         sign,
-    })
+        stages: None,
+        start: None,
+        first: match kind {
+            Kind::Forward => (plane.bottom(), 0.0),
+            Kind::Inverse => (offset + sign * model.output_range().0, 0.0),
+        },
+        model,
+    };
+    if let Some(more) = more {
+        let stages = more.stages.core(offset, sign);
+        let checked = stages.check(&block.model);
+        checked.or_else(|error| lines.fault(error.to_string()))?;
+        (block.start, block.first) = (more.start, more.first);
+        block.stages = Some(more.stages).filter(|stages| !stages.is_none());
+    }
+    if let Err(problem) = block.start(false) {
+        return lines.fault(problem.0);
+    }
+    Ok(block)
 }
 
 /// Checks the last line and returns its checksum.
@@ -260,7 +320,8 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 2", "`hysteron-fmu 2` where"),
+            (1, "hysteron-fmu 3", "`hysteron-fmu 3` where"),
+            (1, "hysteron-fmu 2", "`first` is expected"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),

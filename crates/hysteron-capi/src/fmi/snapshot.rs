@@ -4,6 +4,7 @@ use super::block::{Block, Inputs, Outputs};
 use super::instance::{Instance, Phase, Run};
 use super::{Problem, Result, checksum};
 use crate::handles::Table;
+use hysteron_core::{StageState, Status};
 use std::sync::{Mutex, PoisonError};
 
 /// A run at some time, and the checksum of its model.
@@ -81,7 +82,7 @@ impl Instance {
 }
 
 /// The first word: the kind of data and the version of the format.
-const MARK: u64 = u64::from_le_bytes(*b"hysfmu01");
+const MARK: u64 = u64::from_le_bytes(*b"hysfmu02");
 const PHASES: [Phase; 4] = [
     Phase::Instantiated,
     Phase::Initialising,
@@ -90,10 +91,10 @@ const PHASES: [Phase; 4] = [
 ];
 
 impl Run {
-    /// Words of 8 bytes, little-endian: mark, model, 11 that [`Run::of_bytes`] reads in the same
+    /// Words of 8 bytes, little-endian: mark, model, 19 that [`Run::of_bytes`] reads in the same
     /// order, number of turning points, these, checksum.
     fn bytes(&self, block: &Block) -> Vec<u8> {
-        let points = self.state.turning_points();
+        let points = self.state.operators.turning_points();
         let points: Vec<u64> = points.map(f64::to_bits).collect();
         let head = [
             MARK,
@@ -102,15 +103,21 @@ impl Run {
             self.time.to_bits(),
             self.stop.unwrap_or(f64::INFINITY).to_bits(),
             self.inputs.signal.to_bits(),
+            self.inputs.load.to_bits(),
             i64::from(self.inputs.heading) as u64,
             self.inputs.tolerance.to_bits(),
             u64::from(self.inputs.start_on),
             self.outputs.signal.to_bits(),
             i64::from(self.outputs.flag) as u64,
-            self.state.input().to_bits(),
-            points.len() as u64,
+            self.outputs.temperature.to_bits(),
         ];
-        let words = head.into_iter().chain(points);
+        let stages = self.state.stages.to_numbers().map(f64::to_bits);
+        let operators = [self.state.operators.input().to_bits(), points.len() as u64];
+        let words = head
+            .into_iter()
+            .chain(stages)
+            .chain(operators)
+            .chain(points);
         let mut bytes: Vec<u8> = words.flat_map(u64::to_le_bytes).collect();
         bytes.extend(checksum(&bytes).to_le_bytes());
         bytes
@@ -127,11 +134,20 @@ impl Run {
             time,
             stop,
             signal,
+            load,
             heading,
             band,
             start_on,
             result,
             flag,
+            temperature,
+            s0,
+            s1,
+            s2,
+            s3,
+            s4,
+            s5,
+            s6,
             input,
             count,
             points @ ..,
@@ -156,16 +172,19 @@ impl Run {
         }
         // From here on, data can be wrong only if somebody forged the checksum. They must do no
         // harm either.
-        let one = |word: &u64| {
+        let one = |word: &u64, most: i32| {
             i32::try_from(*word as i64)
                 .ok()
-                .filter(|n| n.abs() <= 1)
+                .filter(|n| (-1..=most).contains(n))
                 .ok_or_else(broken)
         };
         let number = |word: &u64| f64::from_bits(*word);
         let points: Vec<f64> = points.iter().map(number).collect();
         let mut state = block.start(false)?;
-        block.model.restore(&mut state, &points, number(input))?;
+        block
+            .model
+            .restore(&mut state.operators, &points, number(input))?;
+        state.stages = StageState::from_numbers(&[s0, s1, s2, s3, s4, s5, s6].map(number))?;
         let run = Self {
             phase: *usize::try_from(*phase)
                 .ok()
@@ -175,19 +194,21 @@ impl Run {
             stop: Some(number(stop)).filter(|stop| *stop != f64::INFINITY),
             inputs: Inputs {
                 signal: number(signal),
-                heading: one(heading)?,
+                load: number(load),
+                heading: one(heading, 1)?,
                 tolerance: number(band),
                 start_on: *start_on == 1,
             },
             outputs: Outputs {
                 signal: number(result),
-                flag: one(flag)?,
+                flag: one(flag, Status::Limited.number().into())?,
+                temperature: number(temperature),
             },
             state,
         };
+        let numbers = [run.time, run.outputs.signal, run.outputs.temperature];
         // Written so that NaN fails the comparison.
-        match run.inputs.tolerance >= 0.0 && run.time.is_finite() && run.outputs.signal.is_finite()
-        {
+        match run.inputs.tolerance >= 0.0 && numbers.iter().all(|number| number.is_finite()) {
             true => Ok(run),
             false => Err(broken()),
         }

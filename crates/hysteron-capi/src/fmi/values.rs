@@ -1,6 +1,6 @@
 //! The variables of a block by their value references, as in the FMU's description.
 
-use super::block::{Inputs, Kind};
+use super::block::{Block, Inputs, Kind};
 use super::instance::Instance;
 use super::{Problem, Result};
 
@@ -14,29 +14,37 @@ const FLAG: u32 = 3;
 const HEADING: u32 = 4;
 const TOLERANCE: u32 = 5;
 const START_ON: u32 = 6;
+/// Of a model that depends on a load.
+const LOAD: u32 = 7;
+/// Of a model with a thermal body.
+const TEMPERATURE: u32 = 8;
 
 /// A type of the FMU's variables.
 pub(crate) trait Value: Copy {
     fn get(instance: &Instance, reference: u32) -> Result<Self>;
-    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()>;
+    fn set(self, inputs: &mut Inputs, block: &Block, reference: u32) -> Result<()>;
 }
 
 impl Value for f64 {
     fn get(instance: &Instance, reference: u32) -> Result<Self> {
         let inputs = instance.inputs();
-        match (reference, instance.kind()) {
+        match (reference, instance.block().kind) {
             (TIME, _) => Ok(instance.time()),
             (SIGNAL, _) => Ok(inputs.signal),
             (RESULT, _) => Ok(instance.outputs()?.signal),
             (TOLERANCE, Kind::Inverse) => Ok(inputs.tolerance),
+            (LOAD, _) if instance.block().is_loaded() => Ok(inputs.load),
+            (TEMPERATURE, _) if instance.block().has_body() => Ok(instance.outputs()?.temperature),
             _ => unknown("floating-point", reference),
         }
     }
 
-    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()> {
-        match (reference, kind) {
+    fn set(self, inputs: &mut Inputs, block: &Block, reference: u32) -> Result<()> {
+        match (reference, block.kind) {
             // The step refuses numbers that are not finite, with a message.
             (SIGNAL, _) => inputs.signal = self,
+            (LOAD, _) if block.is_loaded() => inputs.load = self,
+            (TEMPERATURE, _) if block.has_body() => return output(reference),
             // Written so that NaN fails the comparison.
             (TOLERANCE, Kind::Inverse) if self >= 0.0 && self.is_finite() => {
                 inputs.tolerance = self
@@ -55,15 +63,15 @@ impl Value for f64 {
 
 impl Value for i32 {
     fn get(instance: &Instance, reference: u32) -> Result<Self> {
-        match (reference, instance.kind()) {
+        match (reference, instance.block().kind) {
             (FLAG, _) => Ok(instance.outputs()?.flag),
             (HEADING, Kind::Inverse) => Ok(instance.inputs().heading),
             _ => unknown("integer", reference),
         }
     }
 
-    fn set(self, inputs: &mut Inputs, kind: Kind, reference: u32) -> Result<()> {
-        match (reference, kind, self) {
+    fn set(self, inputs: &mut Inputs, block: &Block, reference: u32) -> Result<()> {
+        match (reference, block.kind, self) {
             (HEADING, Kind::Inverse, -1..=1) => inputs.heading = self,
             (HEADING, Kind::Inverse, _) => {
                 return Err(Problem(format!(
@@ -85,7 +93,7 @@ impl Value for bool {
         }
     }
 
-    fn set(self, inputs: &mut Inputs, _: Kind, reference: u32) -> Result<()> {
+    fn set(self, inputs: &mut Inputs, _: &Block, reference: u32) -> Result<()> {
         match reference {
             START_ON => inputs.start_on = self,
             _ => return unknown("boolean", reference),

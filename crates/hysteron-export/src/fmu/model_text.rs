@@ -1,10 +1,11 @@
 //! The model as the FMU's binary reads it: `hysteron-capi/src/fmi/resource.rs` says what the lines
 //! are.
 
-use hysteron::{Model, Operator, Sign};
+use super::staged;
+use hysteron::{Model, Operator, Result, Sign};
 use std::fmt::Write;
 
-pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
+pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
     let plane = model.plane();
     let (min, max, levels) = (plane.min(), plane.max(), plane.levels());
     let block = if inverse { "inverse" } else { "forward" };
@@ -18,10 +19,21 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
         Sign::Negative => -1,
     };
     let (offset, weights) = (model.offset(), model.weights());
+    let (version, more) = match staged::is_plain(model) {
+        true => (1, String::new()),
+        false => {
+            let (input, load) = staged::first(model);
+            let signal = match inverse {
+                true => staged::first_target(model)?,
+                false => input,
+            };
+            (2, staged::lines(model, (signal, load)))
+        }
+    };
     let mut text = format!(
-        "hysteron-fmu 1\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} \
+        "hysteron-fmu {version}\nblock {block}\ntoken {token}\noperator {operator}\nplane {min:?} {max:?} \
          {levels}\n\
-         output {offset:?} {sign}\nweights {}\n",
+         output {offset:?} {sign}\n{more}weights {}\n",
         weights.len()
     );
     for weight in weights {
@@ -30,7 +42,7 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> String {
     }
     let (count, checksum) = (text.matches('\n').count(), checksum(text.as_bytes()));
     let _ = writeln!(text, "end {count} {checksum:016x}");
-    text
+    Ok(text)
 }
 
 /// FNV-1a.

@@ -1,6 +1,7 @@
 //! The variables of the blocks.
 
-use hysteron::{Model, Quantity};
+use super::staged::{first, first_target, is_loaded};
+use hysteron::{Model, Quantity, Result};
 
 /// A variable as FMI describes it.
 pub(super) struct Variable {
@@ -28,12 +29,22 @@ pub(super) enum Kind {
 }
 
 const SIGN: (Option<&str>, Option<&str>) = (Some("-1"), Some("1"));
+const STATUS: (Option<&str>, Option<&str>) = (Some("-1"), Some("3"));
 
 /// All of a block, in the order of the description.
-pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
-    let plane = model.plane();
-    let (bottom, max) = (plane.bottom(), plane.max());
-    let active = format!("active from {bottom} to {max}");
+pub(super) fn of(model: &Model, inverse: bool) -> Result<Vec<Variable>> {
+    let (low, high) = model.active_range();
+    let active = match model.thermal {
+        None => format!("active from {low} to {high}"),
+        Some(_) => {
+            let (low, high) = model.drive_range();
+            format!("the drive of a thermal body, held over the step; from {low} to {high}")
+        }
+    };
+    let outside = match model.thermal {
+        None => "; outside it is taken as the nearest end",
+        Some(_) => "",
+    };
     let (off, on) = model.output_range();
     let reach = format!("from {off} with all operators off to {on} with all on");
     // Where the model file has no names: an input called `output` would say the wrong thing.
@@ -41,20 +52,21 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
     if wanted.name == "output" {
         wanted.name = "target".into();
     }
-    let variables = match inverse {
+    let mut variables = match inverse {
         false => vec![
             time(),
             // No minimum and maximum: tools stop at them, and the model does not.
             input(
                 1,
                 &model.input,
-                bottom,
-                format!("{active}; outside it is taken as the nearest end"),
+                first(model).0,
+                format!("{active}{outside}"),
             ),
             output(2, &model.output, reach),
             flag(
                 3,
                 "clipped",
+                SIGN,
                 "whether the input lay outside the active range: -1 below, 1 above",
             ),
             start_on(),
@@ -64,7 +76,7 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
             input(
                 1,
                 &wanted,
-                off,
+                first_target(model)?,
                 format!("the output that is wanted; {reach}"),
             ),
             output(
@@ -75,16 +87,41 @@ pub(super) fn of(model: &Model, inverse: bool) -> Vec<Variable> {
             flag(
                 3,
                 "status",
+                STATUS,
                 "whether the wanted output is reached: 0; -1 below and 1 above every output; 2 \
-                 where a relay jumps past it",
+                 where a relay jumps past it; 3 where it cannot be reached in this step",
             ),
             heading(),
             tolerance(&model.output),
             start_on(),
         ],
     };
-    with_names(variables)
+    variables[0].description = match model.is_timed() {
+        true => "simulation time; a communication step is a step of the model",
+        false => "simulation time, on which nothing depends",
+    }
+    .into();
+    if let Some(load) = model.load.as_ref().filter(|_| is_loaded(model)) {
+        let (low, high) = load.range();
+        let description = format!("the load, from {low} to {high}");
+        variables.push(input(7, &load.quantity, first(model).1, description));
+    }
+    if model.thermal.is_some() {
+        let temperature = Quantity::named("temperature");
+        let description = "of the thermal body, at the end of the step".into();
+        variables.push(output(8, &temperature, description));
+    }
+    if model.fitted().is_some() {
+        let start = variables
+            .iter_mut()
+            .filter(|variable| variable.reference == 6);
+        start.for_each(|start| start.description = START_FITTED.into());
+    }
+    Ok(with_names(variables))
 }
+
+const START_FITTED: &str = "start with all operators on, as after an input at the top, instead of \
+                            the state that the fit found";
 
 fn time() -> Variable {
     Variable {
@@ -126,7 +163,12 @@ fn output(reference: u32, quantity: &Quantity, description: String) -> Variable 
     }
 }
 
-fn flag(reference: u32, name: &str, description: &str) -> Variable {
+fn flag(
+    reference: u32,
+    name: &str,
+    range: (Option<&'static str>, Option<&'static str>),
+    description: &str,
+) -> Variable {
     Variable {
         name: name.into(),
         reference,
@@ -134,7 +176,7 @@ fn flag(reference: u32, name: &str, description: &str) -> Variable {
         causality: "output",
         variability: "discrete",
         initial: Some("calculated"),
-        range: SIGN,
+        range,
         description: description.into(),
         ..time()
     }
@@ -211,18 +253,18 @@ fn with_names(mut variables: Vec<Variable>) -> Vec<Variable> {
         } = &variables[n];
         let taken = |name: &str| {
             let others = variables.iter().enumerate();
-            // If the two signals have one name, the second is renamed; a clash with our own names
+            // If two signals have one name, the later is renamed; a clash with our own names
             // renames the signal.
-            others
-                .clone()
-                .any(|(m, other)| m != n && other.name == name && (m < n || other.reference > 2))
+            others.clone().any(|(m, other)| {
+                m != n && other.name == name && (m < n || (3..=6).contains(&other.reference))
+            })
         };
         let mut name = if name.is_empty() {
             causality.to_string()
         } else {
             name.clone()
         };
-        if *reference == 1 || *reference == 2 {
+        if [1, 2, 7, 8].contains(reference) {
             while taken(&name) {
                 name = format!("{name}_{causality}");
             }
@@ -244,7 +286,11 @@ mod tests {
             Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive).unwrap();
         model.input.name = input.into();
         model.output.name = output.into();
-        of(&model, false).into_iter().map(|v| v.name).collect()
+        of(&model, false)
+            .unwrap()
+            .into_iter()
+            .map(|v| v.name)
+            .collect()
     }
 
     #[test]

@@ -1,0 +1,107 @@
+//! What an FMU of a model with stages has more.
+
+use hysteron::{Error, Model, Remedy, Result, Sample, Setting};
+use std::fmt::Write;
+
+/// Refuses a model whose weights depend on the load.
+pub(super) fn check(model: &Model) -> Result<()> {
+    match model.load.as_ref().filter(|load| load.parts().len() > 1) {
+        None => Ok(()),
+        Some(load) => {
+            let name = &load.quantity.name;
+            let what = format!(
+                "the model has other weights at each load `{name}`, and a block has one set"
+            );
+            let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
+            Err(Error::Export(what).remedied(remedy))
+        }
+    }
+}
+
+/// Whether the load is an input of the block.
+pub(super) fn is_loaded(model: &Model) -> bool {
+    !model.stages().axis.load.loads.is_empty()
+}
+
+/// Whether the model has nothing but operators, all of them off at the start.
+pub(super) fn is_plain(model: &Model) -> bool {
+    let stages = !model.stages().axis.spacing.is_empty() || model.is_timed() || is_loaded(model);
+    !stages && model.fitted().is_none()
+}
+
+/// The start values of input and load: the drive or input at the lower end, and the middle load.
+pub(super) fn first(model: &Model) -> (f64, f64) {
+    let load = match &model.load {
+        Some(load) => {
+            let (low, high) = load.range();
+            0.5 * (low + high)
+        }
+        None => 0.0,
+    };
+    let input = match model.thermal {
+        Some(_) => model.drive_range().0,
+        None if is_plain(model) => model.plane().bottom(),
+        None => model.active_range().0,
+    };
+    (input, load)
+}
+
+/// The start value of the wanted output: that at rest with the first input.
+pub(super) fn first_target(model: &Model) -> Result<f64> {
+    if is_plain(model) {
+        return Ok(model.output_range().0);
+    }
+    let (input, load) = first(model);
+    let sample = Sample {
+        input,
+        dt: None,
+        load: model.load.as_ref().map(|_| load),
+    };
+    Ok(model.step(&mut model.start(), sample)?.output)
+}
+
+/// The lines of `model.txt` for stages and start.
+pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
+    let stages = model.stages();
+    let start = model.fitted().map_or_else(Vec::new, |state| {
+        [state.input()]
+            .into_iter()
+            .chain(state.turning_points())
+            .collect()
+    });
+    let body = stages.body.map_or_else(Vec::new, |body| {
+        vec![body.ambient, body.gain, body.tau_heating, body.tau_cooling]
+    });
+    let (low, high) = model.drive_range();
+    let drive = if stages.body.is_some() {
+        &[low, high][..]
+    } else {
+        &[]
+    };
+    let load = stages.axis.load;
+    let entries: [(&str, &[f64]); 13] = [
+        ("first", &[first.0, first.1]),
+        ("start", &start),
+        ("body", &body),
+        ("drive", drive),
+        ("loads", load.loads),
+        ("shifts", load.shifts),
+        ("scales", load.scales),
+        ("gains", load.gains),
+        ("offsets", load.offsets),
+        ("spacing", stages.axis.spacing),
+        ("creep", stages.creep.coefficients),
+        ("taus", stages.creep.taus),
+        ("lag", &[stages.lag]),
+    ];
+    let mut text = String::new();
+    for (key, numbers) in entries {
+        text += key;
+        for number in numbers {
+            // The shortest that reads back as the same number. Writing to a text cannot fail.
+            let _ = write!(text, " {number:?}");
+        }
+        text.push('\n');
+    }
+    text
+}
