@@ -432,3 +432,12 @@ def test_pages_and_figures_of_stages():
     plt.close("all")
     with pytest.raises(ValueError, match="creep or a lag"):
         plot.major_loops(made("lag"))
+
+
+def test_errors_of_an_adaptation_are_before_creep():
+    model = made("creep", "lag")
+    input, around = driven(model)
+    measured = model.simulate(input, **around)
+    adapted = pyhysteron.adapt(model, input, measured, **around)
+    assert np.abs(adapted.table["error"]).max() < 1e-9
+    np.testing.assert_allclose(adapted.table["output_model"], measured, atol=1e-9)

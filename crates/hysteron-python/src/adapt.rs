@@ -58,6 +58,9 @@ impl Adapted {
 
 /// Let a model learn from a recording, sample by sample: first simulate, then learn.
 ///
+/// Of a model with a thermal body, unequal levels, creep or a lag, the weights learn and these stages
+/// stay. Errors are then those of the operators, before creep and lag.
+///
 /// Parameters
 /// ----------
 /// model : Model
@@ -66,7 +69,8 @@ impl Adapted {
 /// output : array_like, shape (n,), optional
 ///     Where `recording` is the input.
 /// time : array_like, shape (n,), optional
-///     As in `Recording`. Only checked for going back.
+///     As in `Recording`. Needed for a model that depends on time, otherwise only checked for going
+///     back.
 /// method : {'drift', 'least-squares', 'gradient', 'increments'}
 ///     The estimator; see `Adaptive`. 'drift' errs least on measured recordings.
 /// start : {'off', 'on', 'unknown'}

@@ -77,8 +77,10 @@ use pyo3::types::PyDict;
 /// ------
 /// CoreError
 ///     For an option out of range and for negative weights.
+/// ThermalError
+///     For a model that depends on time. `adapt` learns its weights from a recording.
 /// FitError
-///     For an option that the method does not use, a model with a thermal body, a model that
+///     For an option that the method does not use, a model with unequal levels, a model that
 ///     depends on a load (with another method than 'drift'), and too many levels for the memory
 ///     of the method.
 ///

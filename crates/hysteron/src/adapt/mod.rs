@@ -204,6 +204,11 @@ fn adapt_within(
     let mut whole = model.around(adapted.model.operators().clone());
     whole.fit = adapted.model.fit.take();
     adapted.model = whole;
+    // With these, measured minus expected is the error of the operators.
+    let outputs = recording.output.iter().zip(&seen.output);
+    for (expected, (measured, before)) in adapted.output_model.iter_mut().zip(outputs) {
+        *expected += measured - before;
+    }
     Ok(adapted)
 }
 
