@@ -64,13 +64,8 @@ fn a_body_is_fitted_simulated_and_judged() {
     let rmse = |value: &Value| value["rmse"].as_f64().unwrap();
     // Both run the same body and weights over the same rows, in another order of additions.
     assert!((rmse(&judged["forward"]) / rmse(&said["fit"]) - 1.0).abs() < 1e-9);
-    assert_eq!(judged["inverse"], Value::Null);
-    assert!(
-        judged["inverse_refused"]
-            .as_str()
-            .unwrap()
-            .contains("not the drive")
-    );
+    // The inverse is compared with the temperature behind the body.
+    assert!(judged["inverse"]["nrmse_percent"].as_f64().unwrap() < 10.0);
 
     let done = run(
         folder.path(),

@@ -57,8 +57,7 @@ pub(crate) struct Fit {
     /// the number of terms, up to 4. Needs --time
     #[arg(long, value_name = "N", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) creep: Step,
-    /// Lag of the output: `auto` (as for --creep), `off`, or the time constant in seconds. Needs
-    /// --time
+    /// Lag of the output: `auto` (as for --creep), `off`, or its time constant in s. Needs --time
     #[arg(long, value_name = "SECONDS", default_value = "off", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) lag: Step,
     /// Identify a thermal body in front of the operators, for an input that heats while the

@@ -46,11 +46,10 @@ fn error(model: &Model, recording: &Recording, start: Start) -> Result<f64> {
 fn loads(folder: &Path) -> Result<()> {
     println!("## A load that was left out\n");
     println!(
-        "RMSE in percent of the range at that load, {LEVELS} levels. *Shift* is the default law, \
-         *weights* is `--load-law weights`. *Neighbours* is the rival without a model: the branches \
-         of the two neighbouring loads, averaged at each temperature. *Itself* is a fit to the load \
-         that was left out. The lowest and the highest load are not predicted: a model refuses \
-         loads outside its range.\n"
+        "RMSE in percent of the range at that load, {LEVELS} levels. *Shift* is the default law, *weights*\n\
+         is `--load-law weights`. *Neighbours* is the rival without a model: the branches of the two\n\
+         neighbouring loads, averaged at each temperature. *Itself* is a fit to the load that was left out.\n\
+         The lowest and the highest load are not predicted: a model refuses loads outside its range.\n"
     );
     println!("| recordings | left out | shift | weights | neighbours | itself |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: |");
@@ -186,8 +185,8 @@ fn extreme(values: &[f64], sign: f64) -> usize {
 fn spacing(folder: &Path) -> Result<()> {
     println!("## Levels where the output moves\n");
     println!(
-        "Error of the fit in percent of the range. The numbers of levels are those of the plane; \
-         `auto` is `--spacing auto`.\n"
+        "Error of the fit in percent of the range. The numbers of levels are those of the plane; `auto` is\n\
+         `--spacing auto`.\n"
     );
     println!("| recording | 20 auto | 20 | 40 | 60 |");
     println!("| --- | ---: | ---: | ---: | ---: |");
@@ -220,10 +219,10 @@ fn spacing(folder: &Path) -> Result<()> {
 fn valve(folder: &Path) -> Result<()> {
     println!("## Creep and lag, from one frequency to another\n");
     println!(
-        "A piezo valve with the same pattern at 20 and at 100 Hz, 20 levels, start unknown. Errors in \
-         percent of the range: of the recording fitted, simulated from the start that the fit found, \
-         and of the other one. `auto` takes a stage only where blocks of the recording fitted that \
-         were left out say so.\n"
+        "A piezo valve with the same pattern at 20 and at 100 Hz, 20 levels, start unknown. Errors in\n\
+         percent of the range: of the recording fitted, simulated from the start that the fit found, and of\n\
+         the other one. `auto` takes a stage only where blocks of the recording fitted that were left out\n\
+         say so.\n"
     );
     println!("| fitted | stages | found | fitted | other |");
     println!("| --- | --- | --- | ---: | ---: |");
@@ -273,11 +272,10 @@ fn valve(folder: &Path) -> Result<()> {
 fn drive(folder: &Path) -> Result<()> {
     println!("## From displacement to drive\n");
     println!(
-        "A measured wire, duty to position, with a thermal body fitted to ramp and step. The measured \
-         position is the target. The drives found go back through the model. *Met* is the share of \
-         samples with status `ok`; the next column is their largest error, the last one the RMSE of \
-         all samples, in percent of the range. A preview tells the drive what comes next; the drive \
-         stays within {:?}.\n",
+        "A measured wire, duty to position, with a thermal body fitted to ramp and step. The measured\n\
+         position is the target. The drives found go back through the model. *Met* is the share of samples\n\
+         with status `ok`; the next column is their largest error, the last one the RMSE of all samples, in\n\
+         percent of the range. A preview tells the drive what comes next; the drive stays within {:?}.\n",
         (0.0, 0.2)
     );
     println!("| reference | policy, preview | met | largest error | RMSE | drives |");
