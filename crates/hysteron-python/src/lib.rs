@@ -30,6 +30,7 @@ mod recording;
 mod relay_test;
 mod run;
 mod shared;
+mod stages;
 mod state;
 mod trace;
 mod track;
