@@ -100,7 +100,8 @@ void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
     }
     if (status == HYSTERON_OK) {
         status = hysteron_inverse_run_in(block->state, mxGetPr(target), heading, tolerance, time,
-                                         block->time, load, &limits, mxGetPr(plhs[0]), flags, count);
+                                         block->time, load, &limits, mxGetPr(plhs[0]), flags,
+                                         count);
     }
     if (status == HYSTERON_OK) {
         passed(block, time, count);

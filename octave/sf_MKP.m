@@ -13,12 +13,12 @@
 %
 %   B = SF_MKP('open', FILE) opens a block that remembers, also with 'start'; with 'load', L it is
 %   the model at the load L, which needs no load any more. Then
-%       Y = SF_MKP(B, X, ...)      goes on from where the block stands, with one sample or many; time
-%                                  counts from the last sample
+%       Y = SF_MKP(B, X, ...)      goes on from where the block stands, with one sample or many;
+%                                  time counts from the last sample
 %       SF_MKP('reset', B)         every operator off; SF_MKP('reset', B, 'on'): every operator on;
 %                                  SF_MKP('reset', B, 'fitted'): where the model starts
-%       S = SF_MKP('save', B)      what the block remembers: a struct of turning_points, input, stages
-%                                  and time
+%       S = SF_MKP('save', B)      what the block remembers: a struct of turning_points, input,
+%                                  stages and time
 %       SF_MKP('restore', B, S)    puts it back, bit for bit
 %       I = SF_MKP('info', B)      what the model is, and what it needs; also of a FILE
 %       T = SF_MKP('temperature', B)   the temperature after the last sample
@@ -26,8 +26,8 @@
 %
 %   Units are those of the model; info tells them. X is real and finite, of any numeric type. Errors
 %   have the identifiers hysteron:argument, notFinite, block, file, modelFile, load, thermal,
-%   turningPoints; `thermal` is a time that is missing or goes back. After one the block stands where
-%   it stood.
+%   turningPoints; `thermal` is a time that is missing or goes back. After one the block stands
+%   where it stood.
 %
 %   Example
 %       T = [20:80, 80:-1:30];

@@ -552,9 +552,9 @@ typedef struct HysteronLimits {
    */
   double drive_max;
   /**
-   * Seconds in which a thermal body reaches the temperature it needs, from 0; the time step where
-   * that is longer. With a longer horizon noise of the target moves the drive less, and the
-   * output follows late.
+   * Seconds in which a thermal body reaches the temperature it needs, from 0; the time step
+   * where that is longer. With a longer horizon noise of the target moves the drive less, and
+   * the output follows late.
    */
   double horizon;
   /**
@@ -625,7 +625,8 @@ typedef struct HysteronModelInfo {
  */
 typedef struct HysteronModelNeeds {
   /**
-   * 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else 0.
+   * 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else
+   * 0.
    */
   int32_t time;
   /**
@@ -657,8 +658,8 @@ typedef struct HysteronModelNeeds {
    */
   double drive_max;
   /**
-   * Where the operators are at their lowest: the temperature with a thermal body, else the input;
-   * with a load, at the middle of its range.
+   * Where the operators are at their lowest: the temperature with a thermal body, else the
+   * input; with a load, at the middle of its range.
    */
   double active_min;
   /**
@@ -729,15 +730,15 @@ int32_t hysteron_adaptive_keep(uint64_t adaptive);
 int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 
 /**
- * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to be
- * aligned like a `uint64_t`.
+ * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
+ * be aligned like a `uint64_t`.
  */
 size_t hysteron_core_stages_size(const struct HysteronStages *stages);
 
 /**
  * Makes stages around the operators of `model` in `memory`. The constants are copied, with their
- * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every model
- * of as many levels.
+ * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
+ * model of as many levels.
  */
 int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
                                   const struct HysteronStages *constants,
@@ -746,10 +747,10 @@ int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
                                   struct HysteronCoreStages **stages);
 
 /**
- * Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load` are
- * as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is what
- * the stages remember, zeros before the first sample. `clipped` may be null. After an error nothing
- * has moved.
+ * Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load`
+ * are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
+ * what the stages remember, zeros before the first sample. `clipped` may be null. After an error
+ * nothing has moved.
  */
 int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
                                   const struct HysteronCoreModel *model,
@@ -848,7 +849,8 @@ size_t hysteron_last_error(char *text, size_t size);
 
 /**
  * Writes the limits that the inverse of `model` has where none are given. The drive stays within
- * that of the recording fitted, and the horizon is 0. A model without a thermal body has no limits.
+ * that of the recording fitted, and the horizon is 0. A model without a thermal body has no
+ * limits.
  */
 int32_t hysteron_model_limits(uint64_t model, struct HysteronLimits *limits);
 
@@ -990,21 +992,18 @@ int32_t hysteron_model_needs(uint64_t model, struct HysteronModelNeeds *needs);
 
 /**
  * Copies the weights, row by row. Of a model that depends on a load, they are those without its
- * curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too small.
+ * curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too
+ * small.
  */
 int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity, size_t *count);
 
 /**
- * Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model that
- * depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
- * with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
- * byte. `text` may be null with size 0.
+ * Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model
+ * that depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`.
+ * Copies as much as fits into the `size` bytes of `text`, with a zero byte at the end. `needed`
+ * becomes the size of the whole text in bytes, with the zero byte. `text` may be null with size 0.
  */
-int32_t hysteron_model_quantity(uint64_t model,
-                                int32_t quantity,
-                                char *text,
-                                size_t size,
-                                size_t *needed);
+int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
 
 /**
  * Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole
@@ -1056,8 +1055,8 @@ int32_t hysteron_state_reset(uint64_t state);
 
 /**
  * Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
- * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the next
- * sample.
+ * (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the
+ * next sample.
  */
 int32_t hysteron_state_start(uint64_t state, int32_t start);
 
@@ -1118,13 +1117,10 @@ int32_t hysteron_headings(const double *target, size_t count, double tolerance, 
 
 /**
  * Saves the state: its turning points as normalised positions, at most `capacity`, and the last
- * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count` becomes the number of turning points, also if `capacity` is too small.
+ * input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
+ * becomes the number of turning points, also if `capacity` is too small.
  */
-int32_t hysteron_state_save(uint64_t state,
-                            double *points,
-                            size_t capacity,
-                            size_t *count,
-                            double *input);
+int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, size_t *count, double *input);
 
 /**
  * Restores, bit for bit, what `hysteron_state_save` gave for a state of this model or of a model
@@ -1137,9 +1133,9 @@ int32_t hysteron_state_restore(uint64_t state, const double *points, size_t coun
  * As `hysteron_step`, for any model.
  *
  * `input` is the one held since the sample before. `dt` is the time since that sample in seconds,
- * from 0; a model that depends on time needs it from its second sample on. `load` is the load, which
- * a model that depends on one needs within its range. `NAN` for a `dt` or a `load` that is not
- * given. `hysteron_model_needs` says what a model needs.
+ * from 0; a model that depends on time needs it from its second sample on. `load` is the load,
+ * which a model that depends on one needs within its range. `NAN` for a `dt` or a `load` that is
+ * not given. `hysteron_model_needs` says what a model needs.
  */
 int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, double *output, int32_t *clipped);
 
@@ -1147,9 +1143,9 @@ int32_t hysteron_step_in(uint64_t state, double input, double dt, double load, d
  * As `hysteron_run`, for any model. After any error the state stays as it is.
  *
  * `time` has the time of each sample in seconds, and `load` its load; each has `count` elements or
- * is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new state,
- * whose first sample has none before it. `clipped` has `count` elements as in `hysteron_step`, or is
- * null.
+ * is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new
+ * state, whose first sample has none before it. `clipped` has `count` elements as in
+ * `hysteron_step`, or is null.
  */
 int32_t hysteron_run_in(uint64_t state,
                         const double *input,
@@ -1165,8 +1161,8 @@ int32_t hysteron_run_in(uint64_t state,
  *
  * With a thermal body `input` becomes the drive to hold since the sample before. `limits` may be
  * null for those of the model itself (`hysteron_model_limits`). `status` is `HYSTERON_LIMITED`
- * where the model can give the target, but not in this sample. The state goes where the drive takes
- * it.
+ * where the model can give the target, but not in this sample. The state goes where the drive
+ * takes it.
  */
 int32_t hysteron_inverse_step_in(uint64_t state,
                                  double target,
@@ -1180,8 +1176,8 @@ int32_t hysteron_inverse_step_in(uint64_t state,
 
 /**
  * As `hysteron_inverse_run`, for any model. `time`, `last_time` and `load` are as for
- * `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays as
- * it is.
+ * `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays
+ * as it is.
  */
 int32_t hysteron_inverse_run_in(uint64_t state,
                                 const double *target,
@@ -1198,8 +1194,8 @@ int32_t hysteron_inverse_run_in(uint64_t state,
 /**
  * Fills in the usual options, of the method that `method` names.
  *
- * Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set them
- * in the output's unit; `docs/options.md` says how the library chooses them.
+ * Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set
+ * them in the output's unit; `docs/options.md` says how the library chooses them.
  */
 int32_t hysteron_adaptation_default(int32_t method, struct HysteronAdaptation *options);
 

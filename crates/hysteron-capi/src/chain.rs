@@ -35,8 +35,8 @@ impl Chain {
     }
 }
 
-/// Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to be
-/// aligned like a `uint64_t`.
+/// Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
+/// be aligned like a `uint64_t`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_size(stages: *const HysteronStages) -> usize {
     // SAFETY: the contract of the crate.
@@ -47,8 +47,8 @@ pub unsafe extern "C" fn hysteron_core_stages_size(stages: *const HysteronStages
 }
 
 /// Makes stages around the operators of `model` in `memory`. The constants are copied, with their
-/// arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every model
-/// of as many levels.
+/// arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
+/// model of as many levels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_init(
     model: *const HysteronCoreModel,
@@ -78,10 +78,10 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
     })
 }
 
-/// Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load` are
-/// as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is what
-/// the stages remember, zeros before the first sample. `clipped` may be null. After an error nothing
-/// has moved.
+/// Moves by one sample and writes the output `y`, with offset and sign. `input`, `dt` and `load`
+/// are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
+/// what the stages remember, zeros before the first sample. `clipped` may be null. After an error
+/// nothing has moved.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_step(
     stages: *const HysteronCoreStages,

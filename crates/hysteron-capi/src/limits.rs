@@ -14,9 +14,9 @@ pub struct HysteronLimits {
     pub drive_min: f64,
     /// Highest input. `INFINITY` for none.
     pub drive_max: f64,
-    /// Seconds in which a thermal body reaches the temperature it needs, from 0; the time step where
-    /// that is longer. With a longer horizon noise of the target moves the drive less, and the
-    /// output follows late.
+    /// Seconds in which a thermal body reaches the temperature it needs, from 0; the time step
+    /// where that is longer. With a longer horizon noise of the target moves the drive less, and
+    /// the output follows late.
     pub horizon: f64,
     /// Lowest temperature, as what comes next may need it: of the input itself without a thermal
     /// body. `-INFINITY` for none.
@@ -78,7 +78,8 @@ impl Arguments {
 }
 
 /// Writes the limits that the inverse of `model` has where none are given. The drive stays within
-/// that of the recording fitted, and the horizon is 0. A model without a thermal body has no limits.
+/// that of the recording fitted, and the horizon is 0. A model without a thermal body has no
+/// limits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_limits(model: u64, limits: *mut HysteronLimits) -> i32 {
     guard(|| {

@@ -159,7 +159,8 @@ pub unsafe extern "C" fn hysteron_model_needs(model: u64, needs: *mut HysteronMo
 }
 
 /// Copies the weights, row by row. Of a model that depends on a load, they are those without its
-/// curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too small.
+/// curves, at the middle of the load range. `count` becomes their number, also if `capacity` is too
+/// small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_weights(
     model: u64,
@@ -182,10 +183,10 @@ pub unsafe extern "C" fn hysteron_model_weights(
     })
 }
 
-/// Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model that
-/// depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`. Copies as much as fits into the `size` bytes of `text`,
-/// with a zero byte at the end. `needed` becomes the size of the whole text in bytes, with the zero
-/// byte. `text` may be null with size 0.
+/// Copies the name of the input (`quantity` 0), of the output (1) or of the load (2, of a model
+/// that depends on one), and its unit in brackets if it has one, as in `"temperature [degC]"`.
+/// Copies as much as fits into the `size` bytes of `text`, with a zero byte at the end. `needed`
+/// becomes the size of the whole text in bytes, with the zero byte. `text` may be null with size 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_quantity(
     model: u64,

@@ -71,8 +71,8 @@ pub extern "C" fn hysteron_state_reset(state: u64) -> i32 {
 }
 
 /// Starts a state again: as a new one (`HYSTERON_START_FITTED`), with all operators off
-/// (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the next
-/// sample.
+/// (`HYSTERON_START_OFF`) or on (`HYSTERON_START_ON`). Body, creep and lag are at rest with the
+/// next sample.
 #[unsafe(no_mangle)]
 pub extern "C" fn hysteron_state_start(state: u64, start: i32) -> i32 {
     guard(|| {
@@ -260,7 +260,8 @@ pub unsafe extern "C" fn hysteron_headings(
 }
 
 /// Saves the state: its turning points as normalised positions, at most `capacity`, and the last
-/// input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count` becomes the number of turning points, also if `capacity` is too small.
+/// input of the operators. A model with stages also needs `hysteron_state_save_stages`. `count`
+/// becomes the number of turning points, also if `capacity` is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_state_save(
     state: u64,

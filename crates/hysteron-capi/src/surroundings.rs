@@ -20,7 +20,8 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// A model that does not depend on time takes no notice of it. An array without elements is none.
+    /// A model that does not depend on time takes no notice of it. An array without elements is
+    /// none.
     fn new(model: &Model, time: &'a [f64], last_time: f64, load: &'a [f64]) -> Self {
         let series = |values: &'a [f64]| (!values.is_empty()).then_some(values);
         Self {
@@ -55,9 +56,9 @@ fn inverse(model: &Model, limits: Option<HysteronLimits>) -> Result<Inverse<'_>>
 /// As `hysteron_step`, for any model.
 ///
 /// `input` is the one held since the sample before. `dt` is the time since that sample in seconds,
-/// from 0; a model that depends on time needs it from its second sample on. `load` is the load, which
-/// a model that depends on one needs within its range. `NAN` for a `dt` or a `load` that is not
-/// given. `hysteron_model_needs` says what a model needs.
+/// from 0; a model that depends on time needs it from its second sample on. `load` is the load,
+/// which a model that depends on one needs within its range. `NAN` for a `dt` or a `load` that is
+/// not given. `hysteron_model_needs` says what a model needs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_step_in(
     state: u64,
@@ -92,9 +93,9 @@ pub unsafe extern "C" fn hysteron_step_in(
 /// As `hysteron_run`, for any model. After any error the state stays as it is.
 ///
 /// `time` has the time of each sample in seconds, and `load` its load; each has `count` elements or
-/// is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new state,
-/// whose first sample has none before it. `clipped` has `count` elements as in `hysteron_step`, or is
-/// null.
+/// is null. `last_time` is the time of the sample before the first one. It is `NAN` for a new
+/// state, whose first sample has none before it. `clipped` has `count` elements as in
+/// `hysteron_step`, or is null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_run_in(
     state: u64,
@@ -139,8 +140,8 @@ pub unsafe extern "C" fn hysteron_run_in(
 ///
 /// With a thermal body `input` becomes the drive to hold since the sample before. `limits` may be
 /// null for those of the model itself (`hysteron_model_limits`). `status` is `HYSTERON_LIMITED`
-/// where the model can give the target, but not in this sample. The state goes where the drive takes
-/// it.
+/// where the model can give the target, but not in this sample. The state goes where the drive
+/// takes it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_inverse_step_in(
     state: u64,
@@ -179,8 +180,8 @@ pub unsafe extern "C" fn hysteron_inverse_step_in(
 }
 
 /// As `hysteron_inverse_run`, for any model. `time`, `last_time` and `load` are as for
-/// `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays as
-/// it is.
+/// `hysteron_run_in`, `limits` as for `hysteron_inverse_step_in`. After any error the state stays
+/// as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_inverse_run_in(
     state: u64,

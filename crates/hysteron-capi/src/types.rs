@@ -93,7 +93,8 @@ pub struct HysteronModelInfo {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct HysteronModelNeeds {
-    /// 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else 0.
+    /// 1 if the model depends on time (thermal body, creep, lag), so that samples need `dt`; else
+    /// 0.
     pub time: i32,
     /// 1 if the model depends on a load, which samples then need; else 0.
     pub load: i32,
@@ -109,8 +110,8 @@ pub struct HysteronModelNeeds {
     pub drive_min: f64,
     /// Highest drive of the inverse. `INFINITY` without a thermal body.
     pub drive_max: f64,
-    /// Where the operators are at their lowest: the temperature with a thermal body, else the input;
-    /// with a load, at the middle of its range.
+    /// Where the operators are at their lowest: the temperature with a thermal body, else the
+    /// input; with a load, at the middle of its range.
     pub active_min: f64,
     /// Where the operators are at their highest.
     pub active_max: f64,
@@ -167,8 +168,8 @@ pub struct HysteronLearning {
 
 /// Fills in the usual options, of the method that `method` names.
 ///
-/// Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set them
-/// in the output's unit; `docs/options.md` says how the library chooses them.
+/// Three cannot follow from a model here: `noise` is 0.01, `spread` 1 and `offset_share` 1. Set
+/// them in the output's unit; `docs/options.md` says how the library chooses them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_adaptation_default(
     method: i32,
