@@ -106,6 +106,74 @@ def series(fmus, folder):
         print(f"   FMI {fmi}: largest error {worst / reach:.1e} of the range")
 
 
+def stages(folder):
+    """A model with a body, a load, spacing, creep and lag: the command's numbers, bit for bit."""
+    weights = [1.0, 0.5, 1.0, 0.0, 0.5, 1.0]
+    curves = {"loads": [0, 200], "shifts": [0, 8], "gains": [1, 1.2], "offsets": [0, 0.3]}
+    model = folder / "every.json"
+    model.write_text(
+        json.dumps(
+            {
+                "format": "hysteron-model",
+                "version": 2,
+                "operator": "mkp",
+                "plane": {"min": 1, "max": 3, "levels": 3},
+                "input": {"name": "duty"},
+                "output": {"name": "stroke", "offset": 3.5, "sign": -1},
+                "weights": weights,
+                "thermal": {
+                    "kind": "first-order",
+                    "ambient": 20,
+                    "gain": 80,
+                    "tau_heating": 0.4,
+                    "tau_cooling": 0.9,
+                },
+                "drive": {"min": 0, "max": 1},
+                "load": {
+                    "name": "stress",
+                    "unit": "MPa",
+                    "min": 0,
+                    "max": 200,
+                    "parts": [{"offset": 3.5, "weights": weights}],
+                    "curves": curves,
+                },
+                "spacing": [30, 50, 58, 80],
+                "creep": [{"coefficient": 0.05, "tau": 2}],
+                "lag": 0.05,
+            }
+        )
+    )
+    count, dt = 400, 0.03125  # times without rounding
+    time = dt * np.arange(count)
+    load = 100 + 80 * np.sin(0.3 * time)
+    signals = {
+        False: 0.5 - 0.6 * np.cos(1.7 * time),
+        True: 1.6 - 2.2 * np.cos(1.1 * time),
+    }
+    for inverse, signal in signals.items():
+        table, out = folder / "every.csv", folder / "out.csv"
+        rows = zip(time.tolist(), signal.tolist(), load.tolist())
+        table.write_text("t,x,stress\n" + "".join(f"{t!r},{x!r},{s!r}\n" for t, x, s in rows))
+        names = ["--time", "t", "--load", "stress", "-o", out]
+        names += ["--target", "x", "--preview", 0] if inverse else ["--input", "x"]
+        run(HYSTERON, "invert" if inverse else "simulate", model, table, *names)
+        with out.open() as rows:
+            own = list(csv.DictReader(rows))
+        column = "input_model" if inverse else "output_model"
+        for fmi in (2, 3):
+            fmu = Fmu(folder, model, inverse, fmi)
+            problems = validate_fmu(str(fmu.path))
+            check(not problems, f"{fmu.path.name}: {problems}")
+            check("stress" in fmu.about["inputs"], "the load is an input")
+            check("temperature" in fmu.about["outputs"], "the temperature is an output")
+            found = fmu.held(time, [1, 7], list(zip(signal, load)))
+            check(
+                found == [float(row[column]) for row in own],
+                f"{fmu.path.name}: not the command's numbers",
+            )
+    print(f"   {4 * count} samples: equal to the command's bit for bit")
+
+
 def states(fmus):
     """Two instances; save, restore, bytes and reset in the middle of a run."""
     run_ = vectors()["forward-mkp-20"]["runs"][1]["input"]
@@ -311,6 +379,8 @@ def main():
         every_vector(folder, fmus)
         step("both blocks in series")
         series(fmus, folder)
+        step("a model with every stage")
+        stages(folder)
         step("two instances, states, reset")
         states(fmus)
         step("a corrupted model")

@@ -119,6 +119,35 @@ class Fmu:
         slave.doStep(currentCommunicationPoint=n, communicationStepSize=1)
         return (slave.getReal if two else slave.getFloat64)([2])[0]
 
+    def held(self, time, references, values):
+        """The output at each time, after a step over which the values of that row were held. The
+        first row is the start."""
+        two = self.fmi == 2
+        kind = FMU2Slave if two else FMU3Slave
+        slave = kind(
+            guid=self.description.guid,
+            unzipDirectory=str(self.folder),
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName="held",
+        )
+        slave.instantiate()
+        put, get = (slave.setReal, slave.getReal) if two else (slave.setFloat64, slave.getFloat64)
+        if two:
+            slave.setupExperiment()
+        slave.enterInitializationMode()
+        found = []
+        for n, row in enumerate(values):
+            put(references, list(row))
+            if n == 0:
+                slave.exitInitializationMode()
+            else:
+                size = time[n] - time[n - 1]
+                slave.doStep(currentCommunicationPoint=time[n - 1], communicationStepSize=size)
+            found.append(get([2])[0])
+        slave.terminate()
+        slave.freeInstance()
+        return found
+
     @property
     def binary(self):
         return self.folder / f"binaries/linux64/{self.about['name']}.so"

@@ -126,7 +126,7 @@ fn bad_names_and_folders_are_refused() {
 }
 
 #[test]
-fn models_that_need_more_than_an_input_are_refused() {
+fn a_model_with_a_thermal_body() {
     let folder = models();
     let spring = fs::read_to_string(folder.path().join("spring.json")).unwrap();
     let thermal = r#""thermal": {"kind": "first-order", "tau_heating": 1.0, "tau_cooling": 1.0,
@@ -139,4 +139,22 @@ fn models_that_need_more_than_an_input_are_refused() {
     let said = refused(folder.path(), "export c wire.json -o mcu");
     assert!(said.contains("--dt"), "{said}");
     assert!(!folder.path().join("mcu").exists());
+    let said = refused(folder.path(), "export c spring.json -o mcu --dt 0.1");
+    assert!(said.contains("leave --dt out"), "{said}");
+    let said = json(
+        folder.path(),
+        "export c wire.json -o mcu --dt 0.1 --drive-range 20,80",
+    );
+    assert_eq!(said["stages"], serde_json::json!(["body"]));
+    assert_eq!(
+        (&said["dt"], said["files"].as_array().unwrap().len()),
+        (&0.1.into(), 10)
+    );
+    let source = fs::read_to_string(folder.path().join("mcu/wire.c")).unwrap();
+    assert!(source.contains(".drive_max = 80.0f"), "{source}");
+    let said = json(folder.path(), "export fmu wire.json -o wire.fmu");
+    assert_eq!(
+        said["outputs"],
+        serde_json::json!(["lift", "clipped", "temperature"])
+    );
 }

@@ -1,7 +1,8 @@
 /* The forward step of an actuator with stages, and its state. */
 #include "hysteron_mcu_stages_internal.h"
 
-int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns, size_t count)
+int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
+                       size_t count)
 {
     size_t k;
     int code;
@@ -10,7 +11,8 @@ int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, 
     }
     code = hys_start(actuator->operators, &state->operators, turns, count);
     if (code == HYS_OK && actuator->start != NULL) {
-        code = hys_restore(&state->operators, actuator->start, actuator->start_count, actuator->start_input);
+        code = hys_restore(&state->operators, actuator->start, actuator->start_count,
+                           actuator->start_input);
     }
     if (code != HYS_OK) {
         return code;
@@ -30,7 +32,7 @@ int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, 
 static hys_real heated(const hys_actuator_state *state, hys_real drive)
 {
     const hys_actuator *actuator = state->actuator;
-    hys_real rest;
+    hys_real rest, factor;
     if (!actuator->body) {
         return drive;
     }
@@ -38,7 +40,8 @@ static hys_real heated(const hys_actuator_state *state, hys_real drive)
     if (!state->started) {
         return rest;
     }
-    return rest + (state->temperature - rest) * (rest > state->temperature ? actuator->heating : actuator->cooling);
+    factor = rest > state->temperature ? actuator->heating : actuator->cooling;
+    return rest + (state->temperature - rest) * factor;
 }
 
 /* Creep and lag of the operators' sum. */

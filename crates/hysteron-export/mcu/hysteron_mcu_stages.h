@@ -2,9 +2,9 @@
  *
  *   drive -> body -> temperature -> load, spacing -> operators -> creep -> lag -> output
  *
- * Body: first-order heating and cooling. Load: curves over the load that shift and scale the axis of
- * the operators and change stroke and offset. Spacing: unequal distances of the levels. Each of the
- * stages may be missing. The inverse is exact for the sample.
+ * Body: first-order heating and cooling. Load: curves over the load that shift and scale the axis
+ * of the operators and change stroke and offset. Spacing: unequal distances of the levels. Each of
+ * the stages may be missing. The inverse is exact for the sample.
  *
  * The sample time is fixed when the model is exported: the factors e^(-dt/tau) are constants. So
  * this needs no library either, and what hysteron_mcu.h says of compilers, errors and threads holds
@@ -73,30 +73,31 @@ typedef struct {
 } hys_actuator_state;
 
 /* Starts a state where the model starts. Arguments and errors as for hys_start. */
-int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns, size_t count);
+int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
+                       size_t count);
 
 /* Moves by one sample time, in which `drive` was held, and writes the output at its end. At the
- * first sample body, creep and lag are at rest. A load beyond the outermost ones acts as the nearest
- * one; a model without a load ignores it. Errors: HYS_INPUT_NOT_FINITE, HYS_LOAD. */
+ * first sample body, creep and lag are at rest. A load beyond the outermost ones acts as the
+ * nearest one; a model without a load ignores it. Errors: HYS_INPUT_NOT_FINITE, HYS_LOAD. */
 int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, hys_real *output);
 
 /* Finds the drive that gives `target` at the end of one sample time, within the range of the drive,
  * moves there and writes it. Heading and tolerance as for hys_inverse_step.
  *
- * `*status` becomes HYS_REACHED if the output is the target, up to tolerance and rounding. It becomes
- * HYS_LOW or HYS_HIGH for a target below or above every output at rest, HYS_PASSED as for
+ * `*status` becomes HYS_REACHED if the output is the target, up to tolerance and rounding. It
+ * becomes HYS_LOW or HYS_HIGH for a target below or above every output at rest, HYS_PASSED as for
  * hys_inverse_step, and else HYS_LIMITED.
  *
  * Errors: HYS_VALUE, HYS_NEGATIVE_WEIGHTS, HYS_INPUT_NOT_FINITE, HYS_LOAD. */
-int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading, hys_real tolerance,
-                              hys_real load, hys_real *drive, int *status);
+int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading,
+                              hys_real tolerance, hys_real load, hys_real *drive, int *status);
 
 /* Writes what body, creep and lag remember into HYS_STAGE_NUMBERS numbers. With hys_save of
  * `operators` it is the whole state. */
 int hys_actuator_save(const hys_actuator_state *state, hys_real *numbers);
 
-/* Restores, bit for bit, what hys_actuator_save wrote. hys_restore of `operators` restores the rest.
- * Error: HYS_INPUT_NOT_FINITE. */
+/* Restores, bit for bit, what hys_actuator_save wrote. hys_restore of `operators` restores the
+ * rest. Error: HYS_INPUT_NOT_FINITE. */
 int hys_actuator_restore(hys_actuator_state *state, const hys_real *numbers);
 
 #ifdef __cplusplus

@@ -48,7 +48,8 @@ static inline hys_real line(hys_real x, hys_real x0, hys_real x1, hys_real y0, h
 }
 
 /* A curve at a load within the range, or `none` without the curve. */
-static inline hys_real curve(const hys_actuator *actuator, const hys_real *values, hys_real none, hys_real load)
+static inline hys_real curve(const hys_actuator *actuator, const hys_real *values, hys_real none,
+                             hys_real load)
 {
     const hys_real *loads = actuator->loads;
     size_t k;
@@ -83,7 +84,8 @@ static inline int curves_at(const hys_actuator *actuator, hys_real load, loaded_
 }
 
 /* The operators' input at a temperature. */
-static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *at, hys_real temperature)
+static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *at,
+                               hys_real temperature)
 {
     const hys_model *model = actuator->operators;
     const hys_real *corners = actuator->spacing;

@@ -4,7 +4,8 @@
 
 /* Eight times the distance from one to the next larger number. */
 static const hys_real EIGHT_EPSILON =
-    (hys_real)8 * (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON);
+    (hys_real)8
+    * (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON);
 
 static hys_real magnitude(hys_real x)
 {
@@ -18,7 +19,8 @@ static hys_real inward(const hys_actuator *actuator, hys_real output)
 
 /* The operators' sum that gives an output in this sample, and the gain from that sum to the
  * output. */
-static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, hys_real output, hys_real *gain)
+static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, hys_real output,
+                       hys_real *gain)
 {
     const hys_actuator *actuator = state->actuator;
     hys_real base = ZERO, rise = actuator->creep_gain;
@@ -40,7 +42,8 @@ static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, h
 /* The operators' input for a sum. hys_inverse_step goes there, and everything goes back to where it
  * was. It writes over two turning points that are needed afterwards, those of a corner that merges
  * with another; it writes over others only after the last one. */
-static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance, hys_real *input, int *status)
+static int solve(hys_state *state, hys_real aim, int heading, hys_real tolerance,
+                 hys_real *input, int *status)
 {
     hys_turn *corner = state->turns + (state->top - 2u);
     hys_turn first = corner[0], second = corner[1];
@@ -97,7 +100,8 @@ static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hy
 }
 
 /* A relay switches at its level and not an ulp before it. */
-static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input, hys_real temperature)
+static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
+                       hys_real temperature)
 {
     const hys_actuator *actuator = state->actuator;
     int rising = input > state->operators.input, n;
@@ -127,25 +131,26 @@ static hys_real holding(const hys_actuator *actuator, hys_real temperature)
 static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
 {
     const hys_actuator *actuator = state->actuator;
-    hys_real factor, drive;
+    hys_real now = state->temperature, factor, drive;
     if (!actuator->body) {
         return within_range(actuator, temperature);
     }
     if (!state->started) {
         return within_range(actuator, holding(actuator, temperature));
     }
-    if (temperature == state->temperature) {
+    if (temperature == now) {
         drive = holding(actuator, temperature);
     } else {
-        factor = temperature > state->temperature ? actuator->heating : actuator->cooling;
-        drive = holding(actuator, state->temperature + (temperature - state->temperature) / (ONE - factor));
+        factor = temperature > now ? actuator->heating : actuator->cooling;
+        drive = holding(actuator, now + (temperature - now) / (ONE - factor));
     }
     drive = within_range(actuator, drive);
-    return is_finite(drive) ? drive : holding(actuator, state->temperature);
+    return is_finite(drive) ? drive : holding(actuator, now);
 }
 
 /* Whether a target lies beyond the outputs at rest. */
-static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_real target, hys_real tolerance)
+static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_real target,
+                    hys_real tolerance)
 {
     const hys_model *model = actuator->operators;
     hys_real gain = at->gain * actuator->creep_gain;
@@ -160,8 +165,8 @@ static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_rea
     return HYS_REACHED;
 }
 
-int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading, hys_real tolerance,
-                              hys_real load, hys_real *drive, int *status)
+int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading,
+                              hys_real tolerance, hys_real load, hys_real *drive, int *status)
 {
     const hys_actuator *actuator;
     const hys_model *model;
