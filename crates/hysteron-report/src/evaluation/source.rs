@@ -1,6 +1,6 @@
 //! The only place that touches the model: what the figures need of it, in their terms.
 
-use hysteron::{FitSummary, LoadDependence, Model, Plane, Quantity};
+use hysteron::{FitSummary, LoadDependence, Model, Plane, Quantity, Surroundings};
 
 /// A model's plane, weights and operator states on the half `α ≤ β`.
 #[derive(Clone, Copy)]
@@ -58,19 +58,38 @@ impl<'a> Source<'a> {
         // Inputs that are not finite never come this far; were one to, the plane is drawn all off.
         let off = || vec![0.0; self.weights().len()];
         let operators = self.model.operators();
+        let model = self.model.without_body();
+        // Where they depend on a load, those of the middle of its range.
+        let load = model.load.as_ref().map(|load| {
+            let (low, high) = load.range();
+            vec![0.5 * (low + high); history.len()]
+        });
+        let time = vec![0.0; history.len()];
+        let around = Surroundings {
+            time: Some(&time),
+            load: load.as_deref(),
+        };
         let mut state = operators.start();
-        let run = operators.run(&mut state, history, &mut vec![0.0; history.len()]);
+        let seen = model.seen(history, around);
+        let run =
+            seen.and_then(|seen| operators.run(&mut state, &seen, &mut vec![0.0; history.len()]));
         run.and_then(|_| operators.operator_states(&state))
             .unwrap_or_else(|_| off())
     }
 
     /// The outputs for `input` at `load`, from every operator off; `None` for a load out of range.
     pub(crate) fn at_load(self, load: f64, input: &[f64]) -> Option<Vec<f64>> {
-        let part = self.load()?.at(load).ok()?;
-        let model = self.model;
-        let (operator, sign) = (model.operator(), model.sign());
-        let at_load = Model::new(operator, *self.plane(), part.weights, part.offset, sign);
-        at_load.ok()?.simulate(input).ok()
+        let model = self.model.without_body().at_load(load).ok()?;
+        let mut output = vec![0.0; input.len()];
+        let time = vec![0.0; input.len()];
+        let around = Surroundings {
+            time: Some(&time),
+            load: None,
+        };
+        model
+            .run_in(&mut model.off(), input, around, &mut output)
+            .ok()?;
+        Some(output)
     }
 
     /// What the model's input is.
