@@ -447,6 +447,8 @@ class Model:
         real: Literal["float", "double"] = "float",
         name: str | None = None,
         adaptation: bool = False,
+        dt: float | None = None,
+        drive_range: _Range | None = None,
     ) -> CExport: ...
     def export_fmu(
         self,

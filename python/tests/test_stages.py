@@ -441,3 +441,13 @@ def test_errors_of_an_adaptation_are_before_creep():
     adapted = pyhysteron.adapt(model, input, measured, **around)
     assert np.abs(adapted.table["error"]).max() < 1e-9
     np.testing.assert_allclose(adapted.table["output_model"], measured, atol=1e-9)
+
+
+def test_a_model_with_a_body_is_exported_at_a_sample_time(tmp_path):
+    body = {"kind": "first-order", "gain": 1.0, "tau_heating": 1.0, "tau_cooling": 2.0}
+    text = json.loads(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)).to_json())
+    model = pyhysteron.Model.from_json(json.dumps({**text, "thermal": body}))
+    export = model.export_c(tmp_path / "c", dt=0.01, drive_range=(0.0, 1.0))
+    assert any(str(file).endswith("hysteron_mcu_stages.c") for file in export.files)
+    with pytest.raises(pyhysteron.ExportError, match="dt"):
+        model.export_c(tmp_path / "no")

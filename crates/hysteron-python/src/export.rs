@@ -6,7 +6,7 @@ use crate::error::Raise;
 use crate::integer::Integer;
 use crate::model::Model;
 use hysteron::Destination;
-use hysteron_export::{COptions, CReal, Fmi, FmuOptions};
+use hysteron_export::{COptions, CReal, CSampling, Fmi, FmuOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,12 @@ impl Model {
     ///     The model's name in C, and of its files. By default 'model'.
     /// adaptation : bool
     ///     Also write the code that adapts the weights there, by the gradient method.
+    /// dt : float, optional
+    ///     The sample time in seconds, above 0. Needed by a model that depends on time, and only
+    ///     by one.
+    /// drive_range : tuple of float, optional
+    ///     The lowest and the highest drive that the inverse may give, for a model with stages. By
+    ///     default the model's own.
     ///
     /// Returns
     /// -------
@@ -35,8 +41,8 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For a model that depends on a load or has a thermal body, and for an
-    ///     invalid C name.
+    ///     For a sample time that is missing or not needed, for weights that depend on a load, and
+    ///     for an invalid C name.
     /// FileError
     ///
     /// Examples
@@ -47,7 +53,10 @@ impl Model {
     /// ...     export = model.export_c(folder, name='wire')
     /// ...     sorted(os.path.basename(file) for file in export.files)
     /// ['hysteron_mcu.c', 'hysteron_mcu.h', 'hysteron_mcu_internal.h', 'hysteron_mcu_inverse.c', 'wire.c', 'wire.h']
-    #[pyo3(signature = (folder, *, real="float", name=None, adaptation=false))]
+    #[pyo3(signature = (
+        folder, *, real="float", name=None, adaptation=false, dt=None, drive_range=None,
+    ))]
+    #[allow(clippy::too_many_arguments)]
     fn export_c<'py>(
         &self,
         py: Python<'py>,
@@ -55,6 +64,8 @@ impl Model {
         real: &str,
         name: Option<&str>,
         adaptation: bool,
+        dt: Option<f64>,
+        drive_range: Option<(f64, f64)>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let real = choice(
             "real",
@@ -68,10 +79,15 @@ impl Model {
             source,
             adaptation,
         };
-        let export = hysteron_export::c(
+        let sampling = CSampling {
+            dt,
+            drive: drive_range,
+        };
+        let export = hysteron_export::c_sampled(
             &self.inner,
             Destination::keeping_foreign(&folder, false),
             &options,
+            &sampling,
         )
         .raise()?;
         let dict = PyDict::new(py);
@@ -107,7 +123,7 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For a model that depends on a load or has a thermal body, and for an
+    ///     For weights that depend on a load, and for an
     ///     invalid name or path.
     /// CoreError
     ///     For the inverse of a model with weights below zero.

@@ -3,8 +3,8 @@
 use crate::evaluation::figure::Figure;
 use crate::evaluation::figures::{classes_counted, dead_band_shown};
 use crate::evaluation::view::View;
-use crate::number::count;
 use crate::number::{capitalised, percent};
+use crate::number::{count, significant};
 use crate::quantity::Labelled;
 use crate::stack::Figures;
 use hysteron::Errors;
@@ -94,11 +94,29 @@ fn load_loops(view: &View<'_>) -> String {
     let Some(load) = view.source.load() else {
         return String::new();
     };
-    format!(
-        "One model, whose weights depend on the {}: the whole loop at the smallest, the middle and \
-         the largest that it was identified at.",
+    let what = format!(
+        "One model that depends on the {}: the whole loop at the smallest, the middle and the \
+         largest that it was identified at.",
         load.quantity.name
-    )
+    );
+    // The field states the slope of the phase diagram: load per temperature.
+    match load.curves.as_ref().map(hysteron::LoadCurves::slope) {
+        Some(slope) if slope != 0.0 => {
+            let unit = |quantity: &hysteron::Quantity| {
+                quantity
+                    .unit
+                    .clone()
+                    .unwrap_or_else(|| quantity.name.clone())
+            };
+            let (input, load) = (unit(view.source.input()), unit(&load.quantity));
+            format!(
+                "{what} It shifts the loop by {} {input}/{load} on average, {} {load}/{input}.",
+                significant(slope, 3),
+                significant(1.0 / slope, 3),
+            )
+        }
+        _ => what,
+    }
 }
 
 fn excitation(view: &View<'_>) -> String {

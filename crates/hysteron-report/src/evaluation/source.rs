@@ -77,6 +77,12 @@ impl<'a> Source<'a> {
             .unwrap_or_else(|_| off())
     }
 
+    /// The inputs between which the operators move at `load`; `None` for a load out of range.
+    pub(crate) fn active_range(self, load: f64) -> Option<(f64, f64)> {
+        let model = self.model.without_body().at_load(load).ok()?;
+        Some(model.active_range())
+    }
+
     /// The outputs for `input` at `load`, from every operator off; `None` for a load out of range.
     pub(crate) fn at_load(self, load: f64, input: &[f64]) -> Option<Vec<f64>> {
         let model = self.model.without_body().at_load(load).ok()?;

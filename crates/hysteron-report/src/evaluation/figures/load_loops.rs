@@ -19,7 +19,16 @@ const SAMPLES: usize = 500;
 pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let load = view.source.load()?;
     let (low, high) = load.range();
-    let (bottom, top) = (view.source.plane().bottom(), view.source.max());
+    // The load moves the loops along the axis.
+    let ends = [low, high].map(|load| view.source.active_range(load));
+    let bottom = ends
+        .iter()
+        .flatten()
+        .fold(f64::INFINITY, |a, range| a.min(range.0));
+    let top = ends
+        .iter()
+        .flatten()
+        .fold(f64::NEG_INFINITY, |a, range| a.max(range.1));
     let up = (0..=SAMPLES).map(|n| bottom + (top - bottom) * n as f64 / SAMPLES as f64);
     let input: Vec<f64> = up.clone().chain(up.rev()).collect();
     let mut loops = Vec::new();
