@@ -84,7 +84,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of levels, 2 or more. [`Auto`] chooses it by cross-validation: the error on branches
+    /// Number of levels, 2 or more. [`Auto`](crate::Auto) chooses it by cross-validation: the error on branches
     /// that were left out.
     #[must_use]
     pub fn levels(mut self, levels: impl Into<Choice<usize>>) -> Self {
@@ -95,7 +95,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Strength of the smoothness, 0 or more. [`Auto`] chooses it by cross-validation, as for the
+    /// Strength of the smoothness, 0 or more. [`Auto`](crate::Auto) chooses it by cross-validation, as for the
     /// levels.
     #[must_use]
     pub fn smooth(mut self, smooth: impl Into<Choice<f64>>) -> Self {
@@ -106,7 +106,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of bootstrap replicates, up to 10,000; 0 for none. [`Auto`] takes
+    /// Number of bootstrap replicates, up to 10,000; 0 for none. [`Auto`](crate::Auto) takes
     /// [`FitOptions::usual_bootstrap`].
     #[must_use]
     pub fn bootstrap(mut self, replicates: impl Into<Choice<usize>>) -> Self {
@@ -159,7 +159,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load. [`Auto`]
+    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load. [`Auto`](crate::Auto)
     /// chooses it by loads that are left out.
     #[must_use]
     pub fn load_degree(mut self, degree: impl Into<Choice<usize>>) -> Self {
@@ -177,7 +177,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of creep terms, 0 to 4. [`Auto`] takes creep only if it predicts parts of the
+    /// Number of creep terms, 0 to 4. [`Auto`](crate::Auto) takes creep only if it predicts parts of the
     /// recording that were left out. The recordings need time.
     #[must_use]
     pub fn creep(mut self, terms: impl Into<Choice<usize>>) -> Self {
@@ -185,7 +185,7 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Time constant of a lag of the whole, in seconds. [`Auto`] takes one only if it predicts parts
+    /// Time constant of a lag of the whole, in seconds. [`Auto`](crate::Auto) takes one only if it predicts parts
     /// of the recording that were left out. The recordings need time.
     #[must_use]
     pub fn lag(mut self, seconds: impl Into<Choice<f64>>) -> Self {
