@@ -28,11 +28,6 @@ const LEVELS: usize = 14;
 /// A more complex law has to predict loads left out better by this factor.
 const WORTH: f64 = 0.9;
 
-/// With two loads only: one shape for both is right up to this error in percent, and above it if
-/// weights of their own do not reduce it to this share.
-const ALIKE: f64 = 3.0;
-const OF_THEIR_OWN: f64 = 0.4;
-
 /// Knots for each pair of neighbouring loads, where gain and offset between them are not straight.
 const FINE: usize = 6;
 
@@ -105,7 +100,8 @@ pub(super) fn find(
             (None, None) => candidates.push(Tried::Weights { degree: 1, scaled }),
             (None, Some(_)) => {
                 candidates.extend(powers.iter().map(|&power| Tried::Gain { power, scaled }));
-                let degrees = 1..=groups.knots.len().saturating_sub(2).clamp(1, 2);
+                // Two loads cannot tell weights of their own from one shape.
+                let degrees = 1..=groups.knots.len().saturating_sub(2).min(2);
                 candidates.extend(degrees.map(|degree| Tried::Weights { degree, scaled }));
             }
         }
@@ -128,14 +124,7 @@ pub(super) fn find(
     }
     let mut best = tried[0];
     for next in &tried[1..] {
-        let worth = match inner {
-            // Weights of their own always fit two loads better. They are taken only where the
-            // loops have different shapes.
-            0 if best.1 < ALIKE => 0.0,
-            0 => OF_THEIR_OWN,
-            _ => WORTH,
-        };
-        if next.1 < worth * best.1 {
+        if inner > 0 && next.1 < WORTH * best.1 {
             best = *next;
         }
     }
