@@ -57,7 +57,8 @@ pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
 pub use stages::{
-    Axis, Body, Creep, Load, Loaded, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted, mix,
+    Axis, Body, Creep, Decay, Load, Loaded, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted,
+    mix,
 };
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

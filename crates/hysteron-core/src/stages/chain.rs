@@ -260,7 +260,7 @@ impl<T: Real> Stages<'_, T> {
         if !sample.input.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        self.rates_of(memory, sample.dt)?;
+        self.check_time(memory, sample.dt)?;
         self.axis.load.at(sample.load).map(|_| ())
     }
 
@@ -334,14 +334,23 @@ impl<T: Real> Stages<'_, T> {
         memory: &StageState<T>,
         dt: Option<T>,
     ) -> Result<Rates<T>, Error> {
-        let valid = |dt: T| dt >= T::ZERO && dt.is_finite();
-        match dt {
-            Some(dt) if valid(dt) => Ok(match self.is_timed() {
-                true => self.rates(dt),
-                false => Rates::default(),
-            }),
-            None if !(memory.started && self.is_timed()) => Ok(Rates::default()),
-            _ => Err(Error::TimeStep),
+        self.check_time(memory, dt)?;
+        Ok(match dt {
+            Some(dt) if self.is_timed() => self.rates(dt),
+            _ => Rates::default(),
+        })
+    }
+
+    /// A time step is needed from the second sample on, where a stage depends on time. One that is
+    /// given has to be a number, 0 or more.
+    fn check_time(&self, memory: &StageState<T>, dt: Option<T>) -> Result<(), Error> {
+        let fits = match dt {
+            Some(dt) => dt >= T::ZERO && dt.is_finite(),
+            None => !(memory.started && self.is_timed()),
+        };
+        match fits {
+            true => Ok(()),
+            false => Err(Error::TimeStep),
         }
     }
 

@@ -21,7 +21,7 @@ mod mix;
 
 pub use after::{Creep, MAX_CREEP};
 pub use axis::{Axis, Load, Loaded};
-pub use body::Body;
+pub use body::{Body, Decay};
 pub use chain::{Rates, Sample, StageState, Stages};
 pub use invert::Wanted;
 pub use mix::mix;

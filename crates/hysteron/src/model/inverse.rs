@@ -216,7 +216,7 @@ impl Inverse<'_> {
     /// The outputs with every operator off and with every operator on, at a load.
     pub(crate) fn output_range(&self, load: Option<f64>) -> Result<(f64, f64)> {
         match load.filter(|_| self.model.load.is_some()) {
-            Some(load) => Ok(self.model.at_load(load)?.output_range()),
+            Some(load) => self.model.output_range_at(load),
             None => Ok(self.model.output_range()),
         }
     }

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::model::{Model, Operators, Plane};
 use crate::recording::Quantity;
 use crate::remedy::{Remedy, Setting};
+use hysteron_core::Operator;
 use serde::{Deserialize, Serialize};
 
 /// Offset and weights that belong to one Bernstein polynomial of the load.
@@ -278,6 +279,24 @@ impl LoadDependence {
 }
 
 impl Model {
+    /// As [`Model::output_range`] of [`Model::at_load`], without that model.
+    pub(crate) fn output_range_at(&self, load: f64) -> Result<(f64, f64)> {
+        let Some(dependence) = &self.load else {
+            return Err(no_load());
+        };
+        let LoadPart { offset, weights } = dependence.at(load)?;
+        let curves = dependence.curves.as_ref();
+        let loaded = curves
+            .map_or(hysteron_core::Load::NONE, LoadCurves::core)
+            .at(Some(load))?;
+        let sum = self.sign().factor() * loaded.gain * weights.iter().sum::<f64>();
+        let offset = offset + loaded.offset;
+        Ok(match self.operator() {
+            Operator::Mkp => (offset, offset + sum),
+            Operator::Kp | Operator::Relay => (offset - sum, offset + sum),
+        })
+    }
+
     /// The model at one load. The result does not depend on a load.
     ///
     /// # Errors

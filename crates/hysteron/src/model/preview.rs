@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::model::inverse::{Inverse, Wanted};
 use crate::model::{Model, Sign, State};
-use hysteron_core::{Solution, Status};
+use hysteron_core::{Decay, Solution, Status};
 use std::collections::VecDeque;
 
 /// Bounds the temperature by the targets of the next seconds. A body heats and cools no faster than
@@ -44,6 +44,8 @@ struct Planned {
     /// The output that was asked for.
     asked: f64,
     dt: f64,
+    /// How far the body has forgotten the sample before.
+    decay: Decay<f64>,
     /// The temperature that this sample needs and the plan does not reach.
     missed: Option<f64>,
 }
@@ -93,6 +95,7 @@ impl<'m> Preview<'m> {
             wanted,
             asked,
             dt,
+            decay: self.body.decay(dt),
             missed,
         });
         let mut ready = Vec::new();
@@ -177,7 +180,7 @@ impl<'m> Preview<'m> {
                 low = low.max(needed);
                 high = high.min(needed);
             }
-            let decay = self.body.decay(planned.dt);
+            let decay = planned.decay;
             // The highest temperature from which it still cools down to `high`, and so on.
             high = cold + (high - cold) / decay.cooling;
             low = hot + (low - hot) / decay.heating;

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::identify::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::nelder_mead::minimise;
+use crate::identify::stages::thin;
 use crate::model::{FirstOrder, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -168,30 +169,5 @@ impl<'a> Search<'a> {
             least = least.min(beside_heating).min(beside_cooling);
         }
         Ok(least)
-    }
-}
-
-/// Keeps of each run of `stride` samples the first one and those with extreme temperatures. Without
-/// the extremes the turning points would change, and with them the memory of the operators.
-fn thin(recording: Recording, stride: usize) -> Recording {
-    let theta = &recording.input;
-    let starts = (0..theta.len()).step_by(stride);
-    let mut kept: Vec<usize> = starts
-        .flat_map(|start| {
-            let block = start..(start + stride).min(theta.len());
-            let by = |a: &usize, b: &usize| theta[*a].total_cmp(&theta[*b]);
-            [block.clone().min_by(by), block.max_by(by), Some(start)]
-        })
-        .flatten()
-        .collect();
-    kept.sort_unstable();
-    kept.dedup();
-    let every = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-    Recording {
-        time: recording.time.as_ref().map(every),
-        output: every(&recording.output),
-        load: recording.load.as_ref().map(every),
-        input: every(&recording.input),
-        ..recording
     }
 }

@@ -73,7 +73,7 @@ pub(crate) fn fit(
         seen = Cow::Owned(after::before(&after, &seen)?);
         found.after = after;
     }
-    let changed = !found.after.taus.is_empty() || found.after.lag > 0.0;
+    let changed = !found.after.is_none();
     let mut model = fit_weights(&seen, &options, progress)?.with_stages(found)?;
     if options.start == Start::Unknown && recordings.len() == 1 && model.load.is_none() {
         model = with_found_start(model, &recordings[0], &mut notes)?;
@@ -158,4 +158,29 @@ fn on_grid(spacing: &[f64], plane: &Plane, recording: &Recording) -> Vec<f64> {
     };
     let inputs = recording.input.iter();
     inputs.map(|t| axis.forward(plane, unloaded, *t)).collect()
+}
+
+/// Keeps of each run of `stride` samples the first one and those with extreme inputs. Without the
+/// extremes the turning points would change, and with them the memory of the operators.
+fn thin(recording: Recording, stride: usize) -> Recording {
+    let input = &recording.input;
+    let starts = (0..input.len()).step_by(stride);
+    let mut kept: Vec<usize> = starts
+        .flat_map(|start| {
+            let block = start..(start + stride).min(input.len());
+            let by = |a: &usize, b: &usize| input[*a].total_cmp(&input[*b]);
+            [block.clone().min_by(by), block.max_by(by), Some(start)]
+        })
+        .flatten()
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let every = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
+    Recording {
+        time: recording.time.as_ref().map(every),
+        output: every(&recording.output),
+        load: recording.load.as_ref().map(every),
+        input: every(&recording.input),
+        ..recording
+    }
 }

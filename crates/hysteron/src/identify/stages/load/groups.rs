@@ -1,6 +1,8 @@
 //! The samples of all recordings, and the loads that count as the same.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::identify::options::FitOptions;
+use crate::identify::weights::experiment::Experiment;
 use crate::recording::Recording;
 use crate::series::range;
 
@@ -26,30 +28,20 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// Refuses what an experiment refuses: a recording without a load, and a load that is the same
+    /// throughout.
     pub(super) fn new(recordings: &[Recording]) -> Result<Self> {
-        let mut samples = Self {
-            input: Vec::new(),
-            output: Vec::new(),
-            load: Vec::new(),
+        let options = FitOptions {
+            load_degree: Some(0),
+            ..FitOptions::default()
         };
-        for recording in recordings {
-            recording.check()?;
-            let Some(load) = &recording.load else {
-                let what = "some recordings have a load and some have none";
-                return Err(Error::Fit(what.into()));
-            };
-            samples.input.extend_from_slice(&recording.input);
-            samples.output.extend_from_slice(&recording.output);
-            samples.load.extend_from_slice(load);
-        }
-        let (low, high) = range(&samples.load);
-        // Loads that differ only by rounding are one load.
-        if high - low <= 1e-9 * high.abs().max(low.abs()) {
-            return Err(Error::Fit(format!(
-                "the load is {low} throughout, so its effect cannot be identified: fit without it"
-            )));
-        }
-        Ok(samples)
+        let Experiment { input, output, .. } = Experiment::new(recordings, &options)?;
+        let loads = recordings.iter().flat_map(|recording| &recording.load);
+        Ok(Self {
+            input,
+            output,
+            load: loads.flatten().copied().collect(),
+        })
     }
 }
 

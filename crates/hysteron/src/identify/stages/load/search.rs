@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::load::behind;
 use crate::identify::stages::load::groups::{Groups, Samples};
+use crate::identify::stages::thin;
 use crate::identify::weights::fit::fit_weights;
 use crate::identify::weights::problem::Problem;
 use crate::model::LoadCurves;
@@ -98,16 +99,8 @@ impl Search<'_> {
             return Ok(());
         };
         let spans = self.spans(group);
-        let mut seen = behind(curves, self.recordings);
-        let mut at = 0;
-        for recording in &mut seen {
-            recording.load = None;
-            for y in &mut recording.output {
-                let (low, high) = spans[group[at]];
-                *y = (*y - low) / (high - low).max(f64::MIN_POSITIVE);
-                at += 1;
-            }
-        }
+        let mut seen = behind(curves, &self.scaled());
+        seen.iter_mut().for_each(|recording| recording.load = None);
         let mut problem = Problem::new(&seen, &self.options)?;
         let telling = group.iter().map(|g| f64::from(self.groups.telling[*g]));
         let kept: Vec<f64> = telling.collect();
@@ -225,35 +218,29 @@ impl Search<'_> {
             .collect()
     }
 
-    /// The recordings without much of their samples, each load's loop scaled to its own height.
+    /// The recordings without most of their samples, each load's loop scaled to its own height.
     pub(super) fn normalised(&self) -> Vec<Recording> {
         let stride = self.samples.input.len().div_ceil(SAMPLES);
-        let spans = self.groups.group.as_ref().map(|group| self.spans(group));
-        let mut begin = 0;
-        let each = |recording: &Recording| {
-            let from = begin;
-            begin += recording.len();
-            let kept: Vec<usize> = extremes(&recording.input, stride);
-            let output = kept.iter().map(|n| {
-                let y = recording.output[*n];
-                match (&spans, &self.groups.group) {
-                    (Some(spans), Some(group)) => {
-                        let (low, high) = spans[group[from + n]];
-                        (y - low) / (high - low).max(f64::MIN_POSITIVE)
-                    }
-                    _ => y,
-                }
-            });
-            let every = |values: &[f64]| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-            Recording {
-                output: output.collect(),
-                time: None,
-                load: recording.load.as_deref().map(every),
-                input: every(&recording.input),
-                ..recording.clone()
-            }
+        let scaled = self.scaled().into_iter();
+        scaled.map(|recording| thin(recording, stride)).collect()
+    }
+
+    /// The recordings with each load's loop scaled to its own height. Where the load changes all the
+    /// time they stay as they are.
+    fn scaled(&self) -> Vec<Recording> {
+        let mut scaled = self.recordings.to_vec();
+        let Some(group) = &self.groups.group else {
+            return scaled;
         };
-        self.recordings.iter().map(each).collect()
+        let spans = self.spans(group);
+        let outputs = scaled
+            .iter_mut()
+            .flat_map(|recording| &mut recording.output);
+        for (y, g) in outputs.zip(group) {
+            let (low, high) = spans[*g];
+            *y = (*y - low) / (high - low).max(f64::MIN_POSITIVE);
+        }
+        scaled
     }
 
     /// Error of one set of weights behind this shift. Where the load changes all the time, the
@@ -299,21 +286,4 @@ fn make_monotone(values: &mut [f64], falls: bool) {
         .iter_mut()
         .zip(all)
         .for_each(|(value, pooled)| *value = pooled);
-}
-
-/// Of each run of `stride` samples the first one and those with extreme inputs, so that the turning
-/// points stay.
-fn extremes(input: &[f64], stride: usize) -> Vec<usize> {
-    let mut kept: Vec<usize> = (0..input.len())
-        .step_by(stride)
-        .flat_map(|start| {
-            let block = start..(start + stride).min(input.len());
-            let by = |a: &usize, b: &usize| input[*a].total_cmp(&input[*b]);
-            [block.clone().min_by(by), block.max_by(by), Some(start)]
-        })
-        .flatten()
-        .collect();
-    kept.sort_unstable();
-    kept.dedup();
-    kept
 }
