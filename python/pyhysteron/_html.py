@@ -76,7 +76,7 @@ def fit(fit: Any) -> str:
     """Key figures of a fit, and the candidates of its cross-validation."""
     rows = _fit_rows(fit)
     rows += [("largest error", f"{fit.max_abs:.4g}"), ("weights not zero", f"{fit.weights_not_zero}")]
-    rows += [("solver", f"{fit.solver}, smooth {fit.smooth:g}, start {fit.start}")]
+    rows += [("solver", f"{fit.solver}, smooth {fit.smooth.along:g} along, {fit.smooth.across:g} across, start {fit.start}")]
     if fit.open_at_start:
         rows.append(("unknown at the start", f"{fit.open_at_start} operators"))
     if fit.file:

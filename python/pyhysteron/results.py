@@ -167,30 +167,72 @@ class Errors(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Smooth(_Result):
+    """Strengths of the smoothness of the weights across the plane.
+
+    Attributes
+    ----------
+    along : float
+        Along the diagonal: operators of the same width have similar weights.
+    across : float
+        In both directions.
+    """
+
+    along: float
+    across: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Candidate(_Result):
-    """The cross-validation error of one number of levels and one smoothness.
+    """How good one number of levels with one smoothness is.
 
     Attributes
     ----------
     levels : int
         Number of levels.
-    smooth : float
-        Strength of the smoothness.
+    smooth : Smooth
+        Strengths of the smoothness.
     rmse : float
-        Root mean squared error over all samples, each left out once, in the output's unit.
+        Root mean squared error in the output's unit: over all samples, each left out once. Where
+        the evidence chose, over the samples fitted.
+    log_evidence : float or None
+        Logarithm of the evidence, up to a constant.
     """
 
     levels: int
-    smooth: float
+    smooth: Smooth
     rmse: float
+    log_evidence: float | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Outlier(_Result):
+    """A reading that does not belong to its recording, and had no weight in the fit.
+
+    Attributes
+    ----------
+    recording : int
+        Index of the recording.
+    sample : int
+        Index of the sample.
+    by : float
+        How far the output is from where its neighbours say, in its unit.
+    """
+
+    recording: int
+    sample: int
+    by: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Validation(_Result):
-    """The cross-validation that chose levels or smoothness.
+    """How levels and smoothness were chosen.
 
     Attributes
     ----------
+    criterion : {'left_out', 'evidence'}
+        The error on branches left out, or the evidence of the weights' prior where there are few
+        branches.
     folds : int
         Number of groups of branches, each left out once.
     whole_branches : bool
@@ -203,6 +245,7 @@ class Validation(_Result):
         All candidates.
     """
 
+    criterion: Literal["left_out", "evidence"]
     folds: int
     whole_branches: bool
     rmse: float
@@ -218,8 +261,10 @@ class FitSummary(_Result):
     ----------
     solver : {'nnls', 'ols'}
         How the weights were found.
-    smooth : float
-        Strength of the smoothness.
+    smooth : Smooth
+        Strengths of the smoothness.
+    ridge : float
+        Ridge on the weights.
     start : {'off', 'on', 'unknown'}
         State of the operators before each recording.
     open_at_start : int
@@ -242,14 +287,17 @@ class FitSummary(_Result):
         Checksum of its bytes.
     other_files : tuple of str
         The other files fitted.
+    outliers : tuple of Outlier
+        Readings that had no weight. The errors do not count them.
     validation : Validation or None
-        The cross-validation; None where nothing was 'auto'.
+        How levels and smoothness were chosen; None where neither was 'auto'.
     other : dict
         Further entries of the model file.
     """
 
     solver: Literal["nnls", "ols"]
-    smooth: float
+    smooth: Smooth
+    ridge: float
     start: Literal["off", "on", "unknown"]
     open_at_start: int
     samples: int
@@ -261,6 +309,7 @@ class FitSummary(_Result):
     file: str | None = None
     sha256: str | None = None
     other_files: tuple[str, ...] = ()
+    outliers: tuple[Outlier, ...] = ()
     validation: Validation | None = None
     other: dict[str, Any] = dataclasses.field(default_factory=dict)
 
@@ -291,7 +340,10 @@ class Confidence(_Result):
     condition : float
         Ratio of the best to the worst determined combination.
     noise : float
-        Standard deviation of the residuals, in the output's unit.
+        Standard deviation of what the weights' uncertainty does not explain, in the output's unit:
+        such that the band holds 95 % of the samples that fits left out.
+    sensor : float
+        Standard deviation of the white noise of the readings, in the output's unit.
     branches : int
         Branches of the input.
     replicates : int
@@ -306,6 +358,7 @@ class Confidence(_Result):
     unknowns: int
     condition: float
     noise: float
+    sensor: float
     branches: int
     replicates: int
 
@@ -620,7 +673,7 @@ class LeftOut(_Result):
     nrmse_percent: float
     training_nrmse_percent: float
     branches: int
-    chosen: tuple[tuple[int, float], ...]
+    chosen: tuple[tuple[int, tuple[float, float]], ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

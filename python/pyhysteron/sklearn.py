@@ -47,9 +47,13 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         Lowest and highest level; by default the active range is that of the input.
     operator : {'mkp', 'kp', 'relay'}
     solver : {'nnls', 'ols'}
-    smooth : float or 'auto'
-        Strength of the smoothness across the plane.
-    start : {'off', 'on', 'unknown'}
+    smooth : float, tuple of float, or 'auto'
+        Strengths of the smoothness along the diagonal of the plane, and across it.
+    ridge : float
+        Pulls weights that the data hardly move to zero.
+    robust : bool
+        Whether readings that do not belong to the recording are found and have no weight.
+    start : {'auto', 'off', 'on', 'unknown'}
         State of the operators before the first sample. `fit` estimates 'unknown', and `predict`
         then starts where the model does: `pyhysteron.Model.fitted_start`, or every operator off.
     sign : {None, 1, -1}
@@ -84,12 +88,14 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
 
     def __init__(
         self,
-        levels: int | Literal["auto"] = 20,
+        levels: int | Literal["auto"] = "auto",
         range: tuple[float, float] | None = None,
         operator: Literal["mkp", "kp", "relay"] = "mkp",
         solver: Literal["nnls", "ols"] = "nnls",
-        smooth: float | Literal["auto"] = 0.0,
-        start: Literal["off", "on", "unknown"] = "off",
+        smooth: float | tuple[float, float] | Literal["auto"] = "auto",
+        ridge: float = 1e-6,
+        robust: bool = True,
+        start: Literal["auto", "off", "on", "unknown"] = "auto",
         sign: Literal[1, -1] | None = None,
         offset: float | None = None,
         bootstrap: int = 0,
@@ -98,7 +104,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         load_column: int | None = None,
         load_law: Literal["shift", "weights"] = "shift",
         load_degree: int | Literal["auto"] = "auto",
-        spacing: Literal["uniform", "auto"] = "uniform",
+        spacing: Literal["auto", "uniform"] = "auto",
         creep: int | Literal["auto", "off"] = "off",
         lag: float | Literal["auto", "off"] = "off",
         thermal: Literal["first-order", True, False] | None = None,
@@ -108,6 +114,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.operator = operator
         self.solver = solver
         self.smooth = smooth
+        self.ridge = ridge
+        self.robust = robust
         self.start = start
         self.sign = sign
         self.offset = offset

@@ -3,8 +3,9 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, FirstOrder, Fit, FitOptions, FitSummary, LoadLaw, Model, Preparation,
-    Progress, RateDependence, Recording, Sign, Solver, Spacing, Step,
+    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, LoadLaw, Model,
+    Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
+    Validation,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -57,11 +58,6 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         args::Levels::Auto => Choice::Auto,
         args::Levels::Fixed(levels) => Choice::Fixed(levels),
     };
-    let smooth = match args.smooth {
-        Step::Auto => Choice::Auto,
-        Step::Off => Choice::Fixed(0.0),
-        Step::Value(smooth) => Choice::Fixed(smooth),
-    };
     let options = FitOptions {
         operator: args.operator.into(),
         range: args.range,
@@ -75,7 +71,8 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
             args::Sign::Negative => Some(Sign::Negative),
         },
         offset: args.offset,
-        start: args.start.into(),
+        ridge: args.ridge,
+        robust: args.robust == args::Robust::Auto,
         load_law: match args.load_law {
             args::LoadLaw::Shift => LoadLaw::Shift,
             args::LoadLaw::Weights => LoadLaw::Weights,
@@ -110,7 +107,8 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
     };
     let fit = Fit::from(options)
         .levels(levels)
-        .smooth(smooth)
+        .smooth(args.smooth)
+        .start(args.start)
         .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
         .thermal(args.thermal.is_some())
         .progress(Progress::new(&told));
@@ -166,25 +164,74 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
             text::with_unit(fit.max_abs, &model.output),
         ),
     ];
-    if let Some(validation) = &fit.validation {
-        lines.push(format!(
-            "{} levels, smoothness {}: {:.2} % of the range on {}branches left out",
-            model.plane().levels(),
-            text::number(fit.smooth),
-            validation.nrmse_percent,
-            if validation.whole_branches {
-                ""
-            } else {
-                "parts of "
-            },
-        ));
-    }
+    lines.extend(
+        fit.validation
+            .as_ref()
+            .map(|found| choice_line(model, fit, found)),
+    );
+    lines.extend(outliers_line(fit, model));
     lines.extend(model.thermal.as_ref().map(thermal_line));
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
     lines.extend(start_line(fit));
     lines.extend(text::confidence(fit, model));
     lines.join("\n")
+}
+
+/// What was chosen, why, and what it was better than.
+fn choice_line(model: &Model, fit: &FitSummary, found: &Validation) -> String {
+    let Smooth { along, across } = fit.smooth;
+    let smooth = match fit.smooth.is_none() {
+        true => "no smoothness".to_owned(),
+        false => format!("smoothness {along:e} along, {across:e} across"),
+    };
+    let spacing = match model.spacing().is_empty() {
+        true => "",
+        false => " close together where the output moves",
+    };
+    let by = match found.criterion {
+        Criterion::LeftOut => "the error on branches left out",
+        Criterion::Evidence => "the evidence, as there are few branches",
+    };
+    let parts = if found.whole_branches {
+        ""
+    } else {
+        "parts of "
+    };
+    let plain = found.scores.iter().filter(|score| score.smooth.is_none());
+    let plain = plain.min_by(|a, b| a.rmse.total_cmp(&b.rmse));
+    let better = match (found.criterion, plain) {
+        (Criterion::LeftOut, Some(plain)) if !fit.smooth.is_none() => format!(
+            " ({:.2} % with {} levels without smoothness)",
+            found.nrmse_percent * plain.rmse / found.rmse.max(f64::MIN_POSITIVE),
+            plain.levels,
+        ),
+        _ => String::new(),
+    };
+    format!(
+        "{} levels{spacing}, {smooth}, chosen by {by}: {:.2} % of the range on {parts}branches \
+         left out{better}",
+        model.plane().levels(),
+        found.nrmse_percent,
+    )
+}
+
+/// Which readings had no weight: the first few by recording and row, counted from 1.
+fn outliers_line(fit: &FitSummary, model: &Model) -> Option<String> {
+    const NAMED: usize = 5;
+    let count = fit.outliers.len();
+    let named = fit.outliers.iter().take(NAMED).map(|outlier| {
+        let recording = match fit.other_files.is_empty() {
+            true => String::new(),
+            false => format!("recording {}, ", outlier.recording + 1),
+        };
+        let by = text::with_unit(outlier.by, &model.output);
+        format!("{recording}sample {} by {by}", outlier.sample + 1)
+    });
+    let named = named.collect::<Vec<_>>().join("; ");
+    let more = if count > NAMED { "; …" } else { "" };
+    (count > 0)
+        .then(|| format!("{count} outliers without weight, and not in these errors: {named}{more}"))
 }
 
 /// What the load does.

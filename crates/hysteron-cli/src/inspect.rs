@@ -3,7 +3,8 @@
 use crate::terminal::{Result, print};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, ConfidenceSummary, Model, Plane, RecordingSummary, TableReader, Uncertain, Validation,
+    Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, TableReader, Uncertain,
+    Validation,
 };
 use serde_json::json;
 
@@ -210,7 +211,7 @@ fn least_certain(confidence: &ConfidenceSummary, model: &Model) -> String {
 /// The cross-validation as a table of levels and smoothness.
 fn left_out(validation: &Validation, model: &Model) -> String {
     let (levels, smooth, errors) = validation.table();
-    let mut rows = vec![vec!["  smoothness".to_owned()]];
+    let mut rows = vec![vec!["  smoothness along".to_owned()]];
     rows[0].extend(levels.iter().map(|levels| format!("{levels} levels")));
     for (n, smooth) in smooth.iter().enumerate() {
         let error = |row: &Vec<Option<f64>>| row[n].map_or("–".into(), text::number);
@@ -218,15 +219,15 @@ fn left_out(validation: &Validation, model: &Model) -> String {
         rows.push(name.into_iter().chain(errors.iter().map(error)).collect());
     }
     let unit = model.output.unit.as_ref();
-    format!(
-        "RMSE{} on {}branches left out, {} folds\n{}",
-        unit.map_or(String::new(), |unit| format!(" in {unit}")),
-        if validation.whole_branches {
-            ""
-        } else {
-            "parts of "
-        },
-        validation.folds,
-        text::table(&rows)
-    )
+    let parts = if validation.whole_branches {
+        ""
+    } else {
+        "parts of "
+    };
+    let on = match validation.criterion {
+        Criterion::LeftOut => format!("on {parts}branches left out, {} folds", validation.folds),
+        Criterion::Evidence => "of the fits (the evidence chose)".to_owned(),
+    };
+    let unit = unit.map_or(String::new(), |unit| format!(" in {unit}"));
+    format!("RMSE{unit} {on}\n{}", text::table(&rows))
 }

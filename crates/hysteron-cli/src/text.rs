@@ -57,11 +57,17 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
     vec![
         format!("operators: {}", classes.collect::<Vec<_>>().join(", ")),
         format!(
-            "rank {} of {}, condition {}, noise {}",
+            "rank {} of {}, condition {}; noise of the readings {}, misfit of the model {}",
             confidence.rank,
             confidence.unknowns,
             number(confidence.condition),
-            with_unit(confidence.noise, &model.output)
+            with_unit(confidence.sensor, &model.output),
+            with_unit(misfit(fit.rmse, confidence.sensor), &model.output)
         ),
     ]
+}
+
+/// What is left of an error without the white noise of the readings.
+fn misfit(rmse: f64, noise: f64) -> f64 {
+    (rmse * rmse - noise * noise).max(0.0).sqrt()
 }

@@ -32,6 +32,7 @@ pub(crate) fn confidence<'py>(
     dict.set_item("unknowns", found.unknowns)?;
     dict.set_item("condition", found.condition)?;
     dict.set_item("noise", found.noise)?;
+    dict.set_item("sensor", found.sensor)?;
     dict.set_item("branches", found.branches)?;
     dict.set_item("replicates", found.replicates)?;
     Ok(Some(dict))

@@ -7,7 +7,7 @@ use crate::inputs::recordings_of;
 use crate::integer::Integer;
 use crate::model::{Model, sign_of};
 use crate::progress::with_progress;
-use hysteron::{Auto, Candidates, Choice, Fit, FitOptions, LoadLaw, Solver, Spacing};
+use hysteron::{Auto, Candidates, Choice, Fit, FitOptions, LoadLaw, Smooth, Solver, Spacing};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -25,7 +25,7 @@ use pyo3::types::{PyDict, PyString};
 /// output : array_like, shape (n,), optional
 /// levels : int or 'auto'
 ///     Number of levels ``K`` of the plane, from 2 on; it has ``K (K + 1) / 2`` operators. 'auto'
-///     chooses it by cross-validation.
+///     chooses it by the error on branches left out, or by the evidence where there are few.
 /// range : tuple of float, optional
 ///     Lowest and highest level, in the input's unit. By default the active range is that of the
 ///     input.
@@ -34,11 +34,18 @@ use pyo3::types::{PyDict, PyString};
 /// solver : {'nnls', 'ols'}
 ///     'nnls': weights from zero on; the model has an inverse. 'ols': plain least squares; as a
 ///     rule without an inverse.
-/// smooth : float or 'auto'
-///     Strength of the smoothness across the plane, from 0 on; 1e-10 to 1e-4 are usual. 'auto'
-///     chooses it by cross-validation.
-/// start : {'off', 'on', 'unknown'}
-///     State of the operators before the first sample.
+/// smooth : float, tuple of float, or 'auto'
+///     Strength of the smoothness along the diagonal of the plane, or a pair of strengths along and
+///     across it, from 0 on; 1e-10 to 1e-4 and 1e-10 to 1e-7 are usual. 'auto' chooses them as
+///     `levels`.
+/// ridge : float
+///     Pulls weights that the data hardly move to zero, 0 to 1; relative to the mean diagonal
+///     element of the Gram matrix.
+/// robust : bool
+///     Whether readings that do not belong to the recording are found and have no weight.
+/// start : {'auto', 'off', 'on', 'unknown'}
+///     State of the operators before the first sample. 'auto': 'off' if that sample determines
+///     nearly all operators, otherwise 'unknown'.
 /// sign : {None, 1, -1}
 ///     Direction of the output; None for the one that fits better.
 /// offset : float, optional
@@ -50,8 +57,8 @@ use pyo3::types::{PyDict, PyString};
 /// load_degree : int or 'auto'
 ///     Order of the weights as a function of the load, 0 to 5. 'auto': the one that predicts loads
 ///     left out, of three or more, and otherwise 1.
-/// spacing : {'uniform', 'auto'}
-///     Where the levels are. 'auto': close together where the output moves.
+/// spacing : {'auto', 'uniform'}
+///     Where the levels are. 'auto': close together where the output moves, if that is better.
 /// creep : int, 'auto' or 'off'
 ///     Terms of a creep after the operators, 0 to 4. 'auto' takes creep only where it predicts parts
 ///     of the recording that were left out. Needs `time`.
@@ -93,7 +100,7 @@ use pyo3::types::{PyDict, PyString};
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, bootstrap=None, thermal=None, time=None, load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='uniform', creep='off', lag='off', bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -107,13 +114,22 @@ pub(crate) fn fit(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
     let names = ["bootstrap", "thermal", "time", "load", "progress"];
-    let (options, auto) = fit_options("fit", &[&names[..], &STAGES[..]].concat(), options)?;
+    let defaults = FitOptions {
+        robust: true,
+        spacing: Spacing::Auto,
+        ..FitOptions::default()
+    };
+    let names = [&names[..], &STAGES[..]].concat();
+    let (options, auto) = fit_options("fit", &names, defaults, options)?;
     let mut fit = Fit::from(options);
     if auto.levels {
         fit = fit.levels(Auto);
     }
     if auto.smooth {
         fit = fit.smooth(Auto);
+    }
+    if auto.start {
+        fit = fit.start(Auto);
     }
     fit = match bootstrap {
         None => fit.bootstrap(Auto),
@@ -138,7 +154,7 @@ pub(crate) fn fit(
 ///
 /// Parameters
 /// ----------
-/// recording, output, levels, range, operator, solver, smooth, start, sign, offset, load_degree, time, load, progress
+/// recording, output, levels, range, operator, solver, smooth, ridge, start, sign, offset, load_degree, time, load, progress
 ///     As for `fit`, with the load law 'weights', a `load_degree` of 1 for 'auto', and without the
 ///     stages around the operators. 'auto' of `levels` and `smooth` chooses again for each group,
 ///     without its branches.
@@ -161,7 +177,7 @@ pub(crate) fn fit(
 #[pyfunction]
 #[pyo3(signature = (
     recording, output=None, *, time=None, load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels=20, range=None, operator='mkp', solver='nnls', smooth=0.0, start='off', sign=None, offset=None, load_degree='auto', time=None, load=None, progress=None)")]
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, start='auto', sign=None, offset=None, load_degree='auto', time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn left_out<'py>(
     py: Python<'py>,
@@ -172,7 +188,8 @@ pub(crate) fn left_out<'py>(
     progress: Option<&Bound<'py, PyAny>>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (options, auto) = fit_options("left_out", &["time", "load", "progress"], options)?;
+    let names = ["time", "load", "progress"];
+    let (mut options, auto) = fit_options("left_out", &names, FitOptions::default(), options)?;
     let candidates = (auto.levels || auto.smooth).then(|| {
         Candidates::new(
             (!auto.levels).then_some(options.levels),
@@ -181,6 +198,9 @@ pub(crate) fn left_out<'py>(
     });
     let recordings = recordings_of(recording, output, time, load)?;
     let found = with_progress(py, progress, |progress| {
+        if auto.start {
+            options.start = hysteron::usual_start(&recordings, &options)?;
+        }
         hysteron::left_out(&recordings, &options, candidates.as_ref(), progress)
     })?;
     let dict = PyDict::new(py);
@@ -190,27 +210,36 @@ pub(crate) fn left_out<'py>(
     dict.set_item("nrmse_percent", found.nrmse_percent)?;
     dict.set_item("training_nrmse_percent", found.training_nrmse_percent)?;
     dict.set_item("branches", found.branches)?;
-    dict.set_item("chosen", found.chosen)?;
+    let chosen = found.chosen.iter();
+    let chosen = chosen.map(|(levels, smooth)| (*levels, (smooth.along, smooth.across)));
+    dict.set_item("chosen", chosen.collect::<Vec<_>>())?;
     result(py, "LeftOut", dict)
 }
 
 /// What is `'auto'`.
-#[derive(Default)]
 struct LeftToTheData {
     levels: bool,
     smooth: bool,
+    start: bool,
+}
+
+impl Default for LeftToTheData {
+    fn default() -> Self {
+        Self {
+            levels: true,
+            smooth: true,
+            start: true,
+        }
+    }
 }
 
 /// The options that `fit` and `left_out` share.
 fn fit_options(
     call: &str,
     names: &[&str],
+    mut options: FitOptions,
     keywords: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<(FitOptions, LeftToTheData)> {
-    let mut options = FitOptions {
-        bootstrap: 0,
-        ..FitOptions::default()
-    };
     let mut auto = LeftToTheData::default();
     for (name, value) in keywords.into_iter().flatten() {
         let name: String = name.extract()?;
@@ -221,13 +250,24 @@ fn fit_options(
             "levels" if value.is_instance_of::<PyString>() => {
                 return Err(another_kind(&name, "a whole number or 'auto'", &value));
             }
-            "levels" => options.levels = value.extract::<Integer>()?.of("levels")?,
+            "levels" => {
+                options.levels = value.extract::<Integer>()?.of("levels")?;
+                auto.levels = false;
+            }
             "range" => options.range = Some(named(&name, "a pair of numbers", &value)?),
             "operator" => options.operator = operator(&text()?)?,
             "solver" => options.solver = choice("solver", &text()?, &SOLVERS)?,
             "smooth" if is_auto(&value) => auto.smooth = true,
-            "smooth" => options.smooth = named(&name, "a number or 'auto'", &value)?,
-            "start" => options.start = start_of(&text()?)?,
+            "smooth" => {
+                options.smooth = smooth_of(&name, &value)?;
+                auto.smooth = false;
+            }
+            "ridge" => options.ridge = named(&name, "a number", &value)?,
+            "start" if is_auto(&value) => auto.start = true,
+            "start" => {
+                options.start = start_of(&text()?)?;
+                auto.start = false;
+            }
             "sign" => options.sign = Some(sign_of(value.extract()?)?),
             "offset" => options.offset = Some(named(&name, "a number", &value)?),
             "load_degree" if is_auto(&value) => options.load_degree = None,
@@ -241,6 +281,7 @@ fn fit_options(
                 return Err(no_argument(call, &name, &[names, &OPTIONS].concat()));
             }
             "load_law" => options.load_law = choice("load_law", &text()?, &LAWS)?,
+            "robust" => options.robust = named(&name, "True or False", &value)?,
             "spacing" => options.spacing = choice("spacing", &text()?, &SPACINGS)?,
             "creep" => {
                 let terms = |value: &Bound<'_, PyAny>| value.extract::<Integer>()?.of("creep");
@@ -256,12 +297,13 @@ fn fit_options(
     Ok((options, auto))
 }
 
-const OPTIONS: [&str; 9] = [
+const OPTIONS: [&str; 10] = [
     "levels",
     "range",
     "operator",
     "solver",
     "smooth",
+    "ridge",
     "start",
     "sign",
     "offset",
@@ -269,13 +311,23 @@ const OPTIONS: [&str; 9] = [
 ];
 
 /// The options of the stages around the operators, which only `fit` has.
-const STAGES: [&str; 4] = ["load_law", "spacing", "creep", "lag"];
+const STAGES: [&str; 5] = ["load_law", "robust", "spacing", "creep", "lag"];
 
 const LAWS: [(&str, LoadLaw); 2] = [("shift", LoadLaw::Shift), ("weights", LoadLaw::Weights)];
 
 const SPACINGS: [(&str, Spacing); 2] = [("uniform", Spacing::Uniform), ("auto", Spacing::Auto)];
 
 const SOLVERS: [(&str, Solver); 2] = [("nnls", Solver::Nnls), ("ols", Solver::Ols)];
+
+/// A strength along the diagonal, or a pair of strengths along and across it.
+fn smooth_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Smooth> {
+    match value.extract::<(f64, f64)>() {
+        Ok(strengths) => Ok(strengths.into()),
+        Err(_) => {
+            named::<f64>(name, "a number, a pair of numbers or 'auto'", value).map(Smooth::from)
+        }
+    }
+}
 
 fn is_auto(value: &Bound<'_, PyAny>) -> bool {
     value.cast::<PyString>().is_ok_and(|text| *text == "auto")

@@ -48,7 +48,7 @@ fn fits_with_their_confidence() {
     let recording = recording();
     let usual = options();
     let smooth = FitOptions {
-        smooth: 1e-6,
+        smooth: (0.0, 1e-6).into(),
         ..options()
     };
     let unknown = FitOptions {
@@ -57,7 +57,7 @@ fn fits_with_their_confidence() {
     };
     let ols = FitOptions {
         solver: Solver::Ols,
-        smooth: 1e-6,
+        smooth: (0.0, 1e-6).into(),
         ..options()
     };
     let relay = FitOptions {

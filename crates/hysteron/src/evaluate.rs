@@ -106,11 +106,7 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         Ok(inverse) => Ok(evaluate_inverse(&inner, &inverse, &begin, &behind)?),
         Err(error) => Err(error.to_string()),
     };
-    let band = match begin == model.off() {
-        // The band is defined only from every operator off.
-        true => BandEvaluation::of(model, recording, &output_model)?,
-        false => None,
-    };
+    let band = BandEvaluation::of(model, &begin, recording, &output_model)?;
     Ok(Evaluation {
         band,
         output_model,

@@ -56,16 +56,17 @@ pub use hysteron_core::{
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, LoadLaw, Spacing,
-    advice, cross_validate, excitation, left_out, plane_of, way_against_input,
+    advice, cross_validate, excitation, left_out, plane_of, usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,
     inspect_model, inspect_recording,
 };
 pub use model::{
-    Band, BandEvaluation, Confidence, CreepTerm, Excitation, FirstOrder, FitSummary, FittedStart,
-    INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState, Operators,
-    Plane, Policy, Sample, Score, Sign, Solver, Start, State, Surroundings, Validation, Wanted,
+    Band, BandEvaluation, Confidence, CreepTerm, Criterion, Excitation, FirstOrder, FitSummary,
+    FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState,
+    Operators, Plane, Policy, Sample, Score, Sign, Smooth, Solver, Start, State, Surroundings,
+    Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

@@ -31,6 +31,7 @@ fn options(operator: Operator, levels: usize, solver: Solver) -> FitOptions {
         levels,
         range: Some((20.0, 80.0)),
         solver,
+        ridge: 0.0,
         ..FitOptions::default()
     }
 }
@@ -198,6 +199,7 @@ fn long_rests_do_not_spoil_the_fit() {
             let options = FitOptions {
                 levels,
                 solver,
+                ridge: 0.0,
                 ..FitOptions::default()
             };
             let model = Fit::from(&options).run(&recording).unwrap();

@@ -28,6 +28,7 @@ fn the_optimum_is_scipys() {
                 levels,
                 range: Some((0.0, 3.5)),
                 solver,
+                ridge: 0.0,
                 ..FitOptions::default()
             };
             let model = Fit::from(&options).run(&recording).unwrap();

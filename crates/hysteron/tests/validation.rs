@@ -59,7 +59,7 @@ fn the_choice_beats_the_plain_fit_on_noise() {
         let candidates = Candidates::new(None, None);
         let (options, validation) =
             cross_validate(all, &FitOptions::default(), &candidates, Progress::NONE).unwrap();
-        assert!(validation.whole_branches && options.smooth > 0.0);
+        assert!(validation.whole_branches && !options.smooth.is_none());
         // What is left out has noise too: 3 % of the range.
         assert!(
             (2.5..4.5).contains(&validation.nrmse_percent),
@@ -84,7 +84,7 @@ fn strength_means_the_same_at_any_number_of_levels() {
         .map(|levels| {
             let options = FitOptions {
                 levels,
-                smooth: 1e-5,
+                smooth: (0.0, 1e-5).into(),
                 ..FitOptions::default()
             };
             let model = Fit::from(&options).run(&noisy).unwrap();

@@ -23,7 +23,7 @@ pub(crate) struct Adapt {
     /// State of the operators before the first sample; `unknown`: off or on, whichever gives the
     /// smaller error
     #[arg(long, value_enum, default_value = "off")]
-    pub(crate) start: FitStart,
+    pub(crate) start: AdaptStart,
     /// What follows the error, and how
     #[arg(long, value_enum, default_value = "drift")]
     pub(crate) method: Learner,

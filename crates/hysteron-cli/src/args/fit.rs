@@ -18,21 +18,30 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
     /// Number of levels K of the plane; it has K(K+1)/2 operators. `auto` chooses it by the error
-    /// on branches left out
-    #[arg(long, value_name = "K", default_value = "20", value_parser = parse_levels_or_auto)]
+    /// on branches left out, or by the evidence where there are few branches
+    #[arg(long, value_name = "K", default_value = "auto", value_parser = parse_levels_or_auto)]
     pub(crate) levels: Levels,
-    /// Strength of the smoothness across the plane, 1e-10 to 1e-4 as a rule; `auto` chooses it as
-    /// the levels
+    /// Strength of the smoothness along the diagonal of the plane, and across it: 1e-10 to 1e-4 and
+    /// 1e-10 to 1e-7 as a rule; `auto` chooses them as the levels
     #[arg(
         long,
-        value_name = "STRENGTH",
-        default_value = "off",
+        value_name = "ALONG[,ACROSS]",
+        default_value = "auto",
         allow_hyphen_values = true,
-        value_parser = parse_step
+        value_parser = parse_smooth
     )]
-    pub(crate) smooth: Step,
-    /// State of the operators before the first sample
-    #[arg(long, value_enum, default_value = "off")]
+    pub(crate) smooth: Smooth,
+    /// Ridge on the weights, 0 to 1: pulls weights that the data hardly move to zero. Relative to
+    /// the mean diagonal element of the Gram matrix
+    #[arg(long, value_name = "SHARE", default_value = "1e-6", allow_hyphen_values = true, value_parser = parse_finite)]
+    pub(crate) ridge: f64,
+    /// Readings that do not belong to the recording: `auto` finds them, names them, and gives them
+    /// no weight
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) robust: Robust,
+    /// State of the operators before the first sample; `auto` takes off if the first sample
+    /// determines nearly all operators, otherwise unknown
+    #[arg(long, value_enum, default_value = "auto")]
     pub(crate) start: FitStart,
     /// Column of the load or stress: the model depends on it
     #[arg(long, value_name = "COL")]
@@ -50,8 +59,9 @@ pub(crate) struct Fit {
         value_parser = parse_degree
     )]
     pub(crate) load_degree: Degree,
-    /// Where the levels are
-    #[arg(long, value_enum, default_value = "uniform")]
+    /// Where the levels are: close together where the output moves, if that is better, or at equal
+    /// distances
+    #[arg(long, value_enum, default_value = "auto")]
     pub(crate) spacing: Spacing,
     /// Creep of the output: `auto` (where it predicts parts of the recording left out), `off`, or
     /// the number of terms, up to 4. Needs --time

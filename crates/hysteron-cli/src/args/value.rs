@@ -21,9 +21,42 @@ pub(crate) enum Solver {
     Ols,
 }
 
-/// The start of a fit, and of an adaptation.
+/// The start of a fit.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum FitStart {
+    /// Off if the first sample determines nearly all operators, otherwise unknown
+    Auto,
+    /// All off, as after the lowest input
+    Off,
+    /// All on, as after the highest input
+    On,
+    /// Not known: estimated together with the weights
+    Unknown,
+}
+
+impl From<FitStart> for hysteron::Choice<hysteron::Start> {
+    fn from(start: FitStart) -> Self {
+        match start {
+            FitStart::Auto => Self::Auto,
+            FitStart::Off => Self::Fixed(hysteron::Start::Off),
+            FitStart::On => Self::Fixed(hysteron::Start::On),
+            FitStart::Unknown => Self::Fixed(hysteron::Start::Unknown),
+        }
+    }
+}
+
+/// What happens to readings that do not belong to the recording.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub(crate) enum Robust {
+    /// They are found and have no weight
+    Auto,
+    /// Every reading has the same weight
+    Off,
+}
+
+/// The start of an adaptation.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum AdaptStart {
     /// All off, as after the lowest input
     Off,
     /// All on, as after the highest input
@@ -146,12 +179,12 @@ pub(crate) enum Sign {
     Negative,
 }
 
-impl From<FitStart> for hysteron::Start {
-    fn from(start: FitStart) -> Self {
+impl From<AdaptStart> for hysteron::Start {
+    fn from(start: AdaptStart) -> Self {
         match start {
-            FitStart::Off => Self::Off,
-            FitStart::On => Self::On,
-            FitStart::Unknown => Self::Unknown,
+            AdaptStart::Off => Self::Off,
+            AdaptStart::On => Self::On,
+            AdaptStart::Unknown => Self::Unknown,
         }
     }
 }
@@ -192,6 +225,22 @@ pub(super) fn parse_step(text: &str) -> Result<Step, String> {
             Ok(value) if value >= 0.0 => Ok(Step::Value(value)),
             _ => Err("`auto`, `off` or a number from zero on is needed".into()),
         },
+    }
+}
+
+/// Strengths of the smoothness, or the choice of them.
+pub(crate) type Smooth = hysteron::Choice<hysteron::Smooth>;
+
+pub(super) fn parse_smooth(text: &str) -> Result<Smooth, String> {
+    let strength = |text: &str| match parse_finite(text) {
+        Ok(value) if value >= 0.0 => Ok(value),
+        _ => Err("`auto`, `off`, or one or two numbers from zero on are needed".to_owned()),
+    };
+    match (text.trim(), text.split_once(',')) {
+        ("auto", _) => Ok(Smooth::Auto),
+        ("off", _) => Ok(hysteron::Smooth::NONE.into()),
+        (_, Some((along, across))) => Ok((strength(along)?, strength(across)?).into()),
+        (along, None) => Ok(strength(along)?.into()),
     }
 }
 

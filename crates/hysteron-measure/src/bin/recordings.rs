@@ -111,7 +111,7 @@ fn row(name: &str, recording: Recording) -> Result<(), Box<dyn Error>> {
         )
     };
     let mut levels: Vec<usize> = auto.chosen.iter().map(|(levels, _)| *levels).collect();
-    let mut smooth: Vec<f64> = auto.chosen.iter().map(|(_, smooth)| *smooth).collect();
+    let mut smooth: Vec<f64> = auto.chosen.iter().map(|(_, smooth)| smooth.along).collect();
     levels.sort_unstable();
     smooth.sort_by(f64::total_cmp);
     let middle = levels.len() / 2;

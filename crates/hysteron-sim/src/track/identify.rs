@@ -25,7 +25,7 @@ pub(super) fn identify(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Resul
     let mut model = Fit::from(&FitOptions {
         levels: options.levels,
         range: Some(options.range),
-        smooth: options.smooth,
+        smooth: (0.0, options.smooth).into(),
         ..FitOptions::default()
     })
     .run(&recording)?;

@@ -12,8 +12,7 @@ pub struct ModelOptions {
     pub levels: usize,
     /// Lowest and highest level, in the input's unit.
     pub range: (f64, f64),
-    /// Strength of the smoothness, from 0; see
-    /// [`FitOptions::smooth`](hysteron::FitOptions::smooth). Default 0.
+    /// Strength of the smoothness across, from 0; see [`Smooth`](hysteron::Smooth). Default 0.
     #[serde(default)]
     pub smooth: f64,
     /// How fast the input rises and falls in the experiment, in its unit per second; both above 0.

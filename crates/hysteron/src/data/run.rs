@@ -66,7 +66,10 @@ pub fn simulate_table(
     let names = ["output_model", "output_low", "output_high"].map(Added::Numbers);
     let added = if what.band.is_some() { 3 } else { 1 };
     let mut sink = Sink::start(table, out, &names[..added])?;
-    let mut band = what.band.map(|band| (band, band.start()));
+    let mut band = match what.band {
+        Some(band) => Some((band, band.states(&state)?)),
+        None => None,
+    };
     while table.advance()? {
         let sample = samples.read(table)?;
         let step = model.step(&mut state, sample);

@@ -1,15 +1,12 @@
 //! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
 use crate::error::Result;
+use crate::identify::choose::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use std::fmt;
-
-/// From this share of the operators on, it matters that the first sample does not determine their
-/// state.
-const MANY: f64 = 0.05;
 
 /// A warning about a fit. [`Advice::remedy`] suggests what may help.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,7 +125,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
             advice.push(Advice::AgainstInput { part: against });
         }
         let operators = fit.open_at_start;
-        if fit.start == Start::Off && operators as f64 > MANY * plane.operators() as f64 {
+        if fit.start == Start::Off && operators as f64 > MANY_OPEN * plane.operators() as f64 {
             advice.push(Advice::OpenStart { operators });
         }
     }

@@ -1,41 +1,44 @@
 //! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
 use crate::error::Result;
-use crate::identify::choose::validate::{Candidates, cross_validate};
+use crate::identify::choose::{self, Open};
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
-use crate::identify::stages;
-use crate::model::{Model, Sign, Solver, Start, Validation};
+use crate::identify::outliers;
+use crate::identify::stages::{self, Asked};
+use crate::model::{Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
+use std::borrow::Cow;
 
 /// Identifies a model from recordings. Set the options that differ from the defaults, then call
 /// [`run`](Fit::run).
 ///
-/// The defaults are those of [`FitOptions`], with one exception: [`Fit::new`] runs a bootstrap with
-/// [`FitOptions::usual_bootstrap`] replicates, so the model has standard errors and a band.
+/// [`Fit::new`] leaves everything to the data: levels, smoothness, spacing, start, outliers. It runs
+/// a bootstrap with [`FitOptions::usual_bootstrap`] replicates, so the model has standard errors and
+/// a band. A fit made from [`FitOptions`] leaves nothing to the data.
 ///
 /// The `n × N` matrix of operator states is never formed. The Gram matrix takes `O(N²)` memory and,
 /// for inputs with few turning points at once, `O(n + N²)` time. The solver then takes about `p`
 /// steps of `O(N p + p²)` each, where `p` is the number of weights that are not zero.
 ///
 /// ```
-/// use hysteron::{Auto, Fit, Recording};
+/// use hysteron::{Fit, Recording};
 /// let input: Vec<f64> = (0..200).map(|n| (1.0 - (f64::from(n) * 0.1).cos()) * 30.0).collect();
 /// let output = input.iter().map(|t| 0.5 * t).collect(); // no hysteresis at all
 /// let recording = Recording::new(input, output)?;
-/// let model = Fit::new().levels(5).run(&recording)?;
-/// assert!(model.fit.is_some_and(|fit| fit.nrmse_percent < 1e-6));
+/// let model = Fit::new().run(&recording)?;
+/// assert!(model.fit.is_some_and(|fit| fit.nrmse_percent < 1e-3));
 ///
-/// let chosen = Fit::new().levels(Auto).bootstrap(0).run(&recording)?;
-/// assert!(chosen.fit.is_some_and(|fit| fit.validation.is_some()));
+/// let plain = Fit::new().levels(5).smooth(0.0).bootstrap(0).run(&recording)?;
+/// assert_eq!(plain.plane().levels(), 5);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Fit<'a> {
     options: FitOptions,
-    auto_levels: bool,
-    auto_smooth: bool,
+    open: Open,
+    auto_start: bool,
     auto_bootstrap: bool,
     body: bool,
     progress: Progress<'a>,
@@ -43,9 +46,19 @@ pub struct Fit<'a> {
 
 impl Default for Fit<'_> {
     fn default() -> Self {
+        let options = FitOptions {
+            robust: true,
+            spacing: Spacing::Auto,
+            ..FitOptions::default()
+        };
         Self {
+            open: Open {
+                levels: true,
+                smooth: true,
+            },
+            auto_start: true,
             auto_bootstrap: true,
-            ..FitOptions::default().into()
+            ..options.into()
         }
     }
 }
@@ -55,8 +68,11 @@ impl From<FitOptions> for Fit<'_> {
     fn from(options: FitOptions) -> Self {
         Self {
             options,
-            auto_levels: false,
-            auto_smooth: false,
+            open: Open {
+                levels: false,
+                smooth: false,
+            },
+            auto_start: false,
             auto_bootstrap: false,
             body: false,
             progress: Progress::NONE,
@@ -89,19 +105,19 @@ impl<'a> Fit<'a> {
     #[must_use]
     pub fn levels(mut self, levels: impl Into<Choice<usize>>) -> Self {
         match levels.into() {
-            Choice::Auto => self.auto_levels = true,
-            Choice::Fixed(levels) => (self.options.levels, self.auto_levels) = (levels, false),
+            Choice::Auto => self.open.levels = true,
+            Choice::Fixed(levels) => (self.options.levels, self.open.levels) = (levels, false),
         }
         self
     }
 
-    /// Strength of the smoothness, 0 or more. [`Auto`](crate::Auto) chooses it by cross-validation, as for the
-    /// levels.
+    /// Strengths of the smoothness, along the diagonal or a pair of along and across.
+    /// [`Auto`](crate::Auto) chooses them together with the levels.
     #[must_use]
-    pub fn smooth(mut self, smooth: impl Into<Choice<f64>>) -> Self {
+    pub fn smooth(mut self, smooth: impl Into<Choice<Smooth>>) -> Self {
         match smooth.into() {
-            Choice::Auto => self.auto_smooth = true,
-            Choice::Fixed(smooth) => (self.options.smooth, self.auto_smooth) = (smooth, false),
+            Choice::Auto => self.open.smooth = true,
+            Choice::Fixed(smooth) => (self.options.smooth, self.open.smooth) = (smooth, false),
         }
         self
     }
@@ -145,10 +161,28 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// State of the operators before the first sample of each recording.
+    /// State of the operators before the first sample of each recording. [`Auto`](crate::Auto)
+    /// takes off if the first samples determine nearly all operators, otherwise unknown.
     #[must_use]
-    pub fn start(mut self, start: Start) -> Self {
-        self.options.start = start;
+    pub fn start(mut self, start: impl Into<Choice<Start>>) -> Self {
+        match start.into() {
+            Choice::Auto => self.auto_start = true,
+            Choice::Fixed(start) => (self.options.start, self.auto_start) = (start, false),
+        }
+        self
+    }
+
+    /// Ridge on the weights, 0 to 1, relative to the mean diagonal element of the Gram matrix.
+    #[must_use]
+    pub fn ridge(mut self, ridge: f64) -> Self {
+        self.options.ridge = ridge;
+        self
+    }
+
+    /// Whether readings that do not belong to the recording are found and given no weight.
+    #[must_use]
+    pub fn robust(mut self, robust: bool) -> Self {
+        self.options.robust = robust;
         self
     }
 
@@ -223,31 +257,29 @@ impl<'a> Fit<'a> {
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
-        let chosen =
-            |recordings: &[Recording], options: &FitOptions| self.chosen(recordings, options);
-        stages::fit(recordings, &self.options, self.body, &chosen, self.progress)
-    }
-
-    /// The options with levels, smoothness and replicates, for recordings as the operators see them.
-    fn chosen(
-        &self,
-        recordings: &[Recording],
-        options: &FitOptions,
-    ) -> Result<(FitOptions, Option<Validation>)> {
-        let mut options = options.clone();
-        let mut validation = None;
-        if self.auto_levels || self.auto_smooth {
-            let candidates = Candidates::new(
-                (!self.auto_levels).then_some(options.levels),
-                (!self.auto_smooth).then_some(options.smooth),
-            );
-            let (chosen, found) = cross_validate(recordings, &options, &candidates, self.progress)?;
-            options = chosen;
-            validation = Some(found);
+        let mut options = self.options.clone();
+        if self.auto_start {
+            // A body and a load change what the operators see of the first sample. Of these
+            // recordings most begin at rest.
+            let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
+            options.start = match plain {
+                true => choose::usual_start(recordings, &options)?,
+                false => Start::Off,
+            };
         }
-        if self.auto_bootstrap {
-            options.bootstrap = FitOptions::usual_bootstrap(options.levels);
+        let (seen, outliers) = match options.robust {
+            true => outliers::mended(recordings, &options, self.progress)?,
+            false => (Cow::Borrowed(recordings), Vec::new()),
+        };
+        let asked = Asked {
+            body: self.body,
+            open: self.open,
+            auto_bootstrap: self.auto_bootstrap,
+        };
+        let mut model = stages::fit(&seen, &options, asked, self.progress)?;
+        if let Some(fit) = &mut model.fit {
+            fit.outliers = outliers;
         }
-        Ok((options, validation))
+        Ok(model)
     }
 }

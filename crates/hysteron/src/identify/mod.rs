@@ -1,7 +1,7 @@
 //! Identification: finds the weights of a model from recordings.
 //!
 //! `fit` is the entry point; `options` are its settings. `weights` solves the least-squares
-//! problem. `choose` selects levels and smoothness by cross-validation. `doubt` estimates how well
+//! problem. `outliers` are found first. `choose` selects levels and smoothness. `doubt` estimates how well
 //! the data determine the weights. `stages` identifies the thermal body in front of the operators.
 //! `advice` and `monotone` warn about data that the model cannot follow.
 
@@ -12,11 +12,13 @@ mod fit;
 mod history;
 mod monotone;
 mod options;
+mod outliers;
 mod stages;
 mod weights;
 
 pub use advice::{Advice, advice};
 pub use choose::left_out::{LeftOut, left_out};
+pub use choose::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
 pub(crate) use doubt::excitation::Unresolved;
 pub use doubt::excitation::excitation;

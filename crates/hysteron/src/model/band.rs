@@ -1,8 +1,9 @@
-//! The 95 % band around the modelled output, from the uncertainty of the weights and the noise.
+//! The 95 % band around the modelled output, from the uncertainty of the weights and from what that
+//! does not explain.
 
 use crate::error::{Error, Result};
 use crate::model::confidence::{Confidence, INTERVAL};
-use crate::model::{Model, OperatorState, Operators};
+use crate::model::{Model, OperatorState, Operators, State};
 use crate::recording::Recording;
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ use serde::Serialize;
 /// let options = FitOptions { levels: 5, bootstrap: 50, ..FitOptions::default() };
 /// let model = Fit::from(&options).run(&Recording::new(input, output)?)?;
 /// let band = model.band()?.ok_or("a bootstrap was asked for")?;
-/// let half_width = band.run(&[20.0, 60.0, 40.0])?;
+/// let half_width = band.run(&model.off(), &[20.0, 60.0, 40.0])?;
 /// assert!(half_width.iter().all(|h| (0.1..1.0).contains(h)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -71,10 +72,17 @@ impl Band {
         })
     }
 
-    /// The states of all factors with every operator off.
-    #[must_use]
-    pub fn start(&self) -> Vec<OperatorState> {
-        self.factors.iter().map(Operators::start).collect()
+    /// The states of all factors where the model is in `state`: they have the same history.
+    ///
+    /// # Errors
+    /// As [`Model::restore`], for the state of another plane.
+    pub fn states(&self, state: &State) -> Result<Vec<OperatorState>> {
+        let history: Vec<f64> = state.turning_points().collect();
+        let of_factor = |factor: &Operators| match history.is_empty() {
+            true => Ok(factor.start()),
+            false => factor.restore(&history, state.input()),
+        };
+        self.factors.iter().map(of_factor).collect()
     }
 
     /// Moves `states` to `input` and returns half the width of the band there, in the output's
@@ -90,16 +98,16 @@ impl Band {
         Ok(INTERVAL * variance.sqrt())
     }
 
-    /// Half the width of the band at each sample of `input`, in the output's unit, from every
-    /// operator off.
+    /// Half the width of the band at each sample of `input`, in the output's unit, from `state` on.
+    /// `input` is what the operators see, see [`Model::seen`].
     ///
     /// # Errors
-    /// As [`Model::run`].
-    pub fn run(&self, input: &[f64]) -> Result<Vec<f64>> {
+    /// As [`Model::run`] and [`Band::states`].
+    pub fn run(&self, state: &State, input: &[f64]) -> Result<Vec<f64>> {
         let mut variance = vec![self.noise * self.noise; input.len()];
         let mut output = vec![0.0; input.len()];
-        for factor in &self.factors {
-            factor.run(&mut factor.start(), input, &mut output)?;
+        for (factor, mut state) in self.factors.iter().zip(self.states(state)?) {
+            factor.run(&mut state, input, &mut output)?;
             for (variance, deviation) in variance.iter_mut().zip(&output) {
                 *variance += deviation * deviation;
             }
@@ -132,9 +140,11 @@ impl BandEvaluation {
         ends(output_model, &self.half_width)
     }
 
-    /// The band of `model` on `recording`. `output_model` is the modelled output.
+    /// The band of `model` on `recording` from the state `begin` on. `output_model` is the modelled
+    /// output.
     pub(crate) fn of(
         model: &Model,
+        begin: &State,
         recording: &Recording,
         output_model: &[f64],
     ) -> Result<Option<Self>> {
@@ -142,7 +152,7 @@ impl BandEvaluation {
             return Ok(None);
         };
         let around = crate::model::Surroundings::of(model, recording);
-        let half_width = band.run(&model.seen(&recording.input, around)?)?;
+        let half_width = band.run(begin, &model.seen(&recording.input, around)?)?;
         let modelled = output_model.iter().zip(&half_width);
         let inside = recording
             .output
@@ -200,8 +210,8 @@ mod tests {
             for sign in [Sign::Positive, Sign::Negative] {
                 let (model, input) = uncertain(operator, sign, 5);
                 let band = model.band().unwrap().unwrap();
-                let found = band.run(&input).unwrap();
-                let mut states = band.start();
+                let found = band.run(&model.off(), &input).unwrap();
+                let mut states = band.states(&model.off()).unwrap();
                 let factors = &model
                     .fit
                     .as_ref()
@@ -232,9 +242,34 @@ mod tests {
     }
 
     #[test]
+    fn from_any_state_the_band_goes_on_as_after_its_history() {
+        for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
+            let (model, input) = uncertain(operator, Sign::Positive, 4);
+            let band = model.band().unwrap().unwrap();
+            let whole = band.run(&model.off(), &input).unwrap();
+            for cut in [1, 7, 100, 250] {
+                let mut state = model.off();
+                for &t in &input[..cut] {
+                    model.step(&mut state, t).unwrap();
+                }
+                let rest = band.run(&state, &input[cut..]).unwrap();
+                for (a, b) in rest.iter().zip(&whole[cut..]) {
+                    // The sums of the history are added in another order.
+                    assert!((a - b).abs() < 1e-12, "{operator:?}, {cut}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_coverage_counts_the_samples_inside() {
         let (model, input) = uncertain(Operator::Mkp, Sign::Positive, 3);
-        let half = model.band().unwrap().unwrap().run(&input).unwrap();
+        let half = model
+            .band()
+            .unwrap()
+            .unwrap()
+            .run(&model.off(), &input)
+            .unwrap();
         let modelled = model.simulate(&input).unwrap();
         // Every fourth sample is just outside, the others are just inside, above and below in turn.
         let output = (0..input.len())

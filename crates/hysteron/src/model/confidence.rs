@@ -19,8 +19,13 @@ pub struct Confidence {
     /// Condition number: ratio of the largest to the smallest non-zero singular value of the
     /// centred regressor.
     pub condition: f64,
-    /// Standard deviation of the residuals, in the output's unit.
+    /// Standard deviation of what the weights' uncertainty does not explain, in the output's unit:
+    /// such that the band holds 95 % of the samples that fits left out.
     pub noise: f64,
+    /// Standard deviation of the white noise of the readings, in the output's unit. What the model
+    /// cannot follow is no part of it.
+    #[serde(default)]
+    pub sensor: f64,
     /// Number of bootstrap replicates.
     pub replicates: usize,
     /// How well the input determines each operator, in the order of the weights.
@@ -53,6 +58,7 @@ impl Confidence {
         let sizes = [
             ("condition", self.condition),
             ("noise", self.noise),
+            ("sensor", self.sensor),
             ("offset_error", self.offset_error),
         ];
         let errors = self.standard_error.iter().map(|e| ("standard_error", *e));

@@ -5,7 +5,8 @@
 //! stages around them, and `stages` hands them to the core. `state` moves a model sample by sample
 //! from its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it
 //! (`policy` says how). `band` is the interval around the output. `file` reads and writes models;
-//! `summary`, `validation`, `confidence` and `excitation` are the record of the fit.
+//! `summary`, `smooth`, `validation`, `confidence` and `excitation` are the record of the
+//! fit.
 
 mod after;
 mod band;
@@ -19,6 +20,7 @@ mod operators;
 mod policy;
 mod preview;
 mod sign;
+mod smooth;
 mod stages;
 mod start;
 mod state;
@@ -41,11 +43,12 @@ pub use operators::{OperatorState, Operators};
 pub use policy::Policy;
 pub(crate) use preview::Preview;
 pub use sign::Sign;
+pub use smooth::Smooth;
 pub use start::FittedStart;
 pub use state::{Sample, State};
-pub use summary::{FitSummary, Solver, Start};
+pub use summary::{FitSummary, Outlier, Solver, Start};
 pub use surroundings::Surroundings;
-pub use validation::{Score, Validation};
+pub use validation::{Criterion, Score, Validation};
 pub(crate) use within::Found;
 
 use crate::error::{Error, Result};

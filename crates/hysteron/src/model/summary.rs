@@ -1,6 +1,7 @@
 //! The record of a fit in the model file: options, data and errors.
 
 use crate::model::confidence::Confidence;
+use crate::model::smooth::Smooth;
 use serde::{Deserialize, Serialize};
 
 /// How the weights are found.
@@ -33,14 +34,27 @@ pub enum Start {
     Unknown,
 }
 
+/// A reading that does not belong to its recording. A fit that is robust gives it no weight.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Outlier {
+    /// Index of the recording, from 0.
+    pub recording: usize,
+    /// Index of the sample, from 0.
+    pub sample: usize,
+    /// How far the output is from where its neighbours say, in its unit.
+    pub by: f64,
+}
+
 /// How a model was obtained, as stored in the model file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FitSummary {
     /// How the weights were found.
     pub solver: Solver,
-    /// Strength of the smoothness.
-    pub smooth: f64,
+    /// Strengths of the smoothness.
+    pub smooth: Smooth,
+    /// Ridge on the weights, relative to the mean diagonal element of the Gram matrix.
+    pub ridge: f64,
     /// State of the operators that was assumed before each recording.
     pub start: Start,
     /// Number of operators whose state the first sample of a recording does not determine. Only
@@ -56,6 +70,9 @@ pub struct FitSummary {
     pub nrmse_percent: f64,
     /// Number of weights that are not zero.
     pub weights_not_zero: usize,
+    /// Readings that had no weight. The errors do not count them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub outliers: Vec<Outlier>,
     /// Whether the data came from a simulated plant.
     pub simulated: bool,
     /// The file fitted; the first one if there were several.

@@ -101,7 +101,7 @@ impl Model {
             return Err(Error::Fit(what.into()).remedied(remedy));
         };
         let output = self.simulate_in(input, surroundings)?;
-        let half = band.run(&self.seen(input, surroundings)?)?;
+        let half = band.run(&self.start(), &self.seen(input, surroundings)?)?;
         Ok(ends(&output, &half))
     }
 

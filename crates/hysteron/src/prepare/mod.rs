@@ -24,6 +24,7 @@ mod tests;
 pub use noise::noise;
 pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
+pub(crate) use spikes::isolated;
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;

@@ -69,6 +69,9 @@ impl RateDependence {
 /// # Errors
 /// As [`Fit::run`].
 pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> {
+    if recording.time.is_none() {
+        return Ok(None);
+    }
     // A spike changes fast as well, but this is not a property of the material.
     let without_spikes = PrepareOptions {
         spikes: Step::Auto,

@@ -25,8 +25,29 @@ const SMALLEST: f64 = 0.02;
 /// place. Returns the indices of the samples replaced.
 pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     let (low, high) = range(values);
+    remove_above(values, deviations, SMALLEST * (high - low))
+}
+
+/// The values that stand out from those on both sides by more than `deviations` and `floor`, as
+/// pairs of index and height. Unlike in [`remove`], the first and last ones count too.
+pub(crate) fn isolated(values: &[f64], deviations: f64, floor: f64) -> Vec<(usize, f64)> {
+    if values.len() <= REACH {
+        return Vec::new();
+    }
+    // Mirrored at both ends.
+    let before = values[1..=REACH].iter().rev();
+    let after = values[values.len() - 1 - REACH..values.len() - 1]
+        .iter()
+        .rev();
+    let mut padded: Vec<f64> = before.chain(values).chain(after).copied().collect();
+    let replaced = remove_above(&mut padded, deviations, floor).into_iter();
+    let own = replaced.filter(|n| (REACH..REACH + values.len()).contains(n));
+    own.map(|n| (n - REACH, values[n - REACH] - padded[n]))
+        .collect()
+}
+
+fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
     let sigma = noise(values);
-    let floor = SMALLEST * (high - low);
     // For each sample its signed distance from the line, if that is too large.
     let mut off = vec![None; values.len()];
     for (place, window) in off[REACH.min(values.len())..]

@@ -12,6 +12,7 @@ use crate::evaluation::view::View;
 use crate::number::{magnitude, power_of_ten, significant};
 use crate::quantity::Labelled;
 use crate::stack::Figures;
+use hysteron::Criterion;
 
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 340.0;
@@ -30,14 +31,17 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let (name, labels): (&str, Vec<String>) = match smooth.len() {
         1 => ("levels K", levels.iter().map(usize::to_string).collect()),
         _ => (
-            "strength of the smoothness",
+            "strength of the smoothness along",
             smooth.iter().copied().map(strength).collect(),
         ),
     };
     let all = || lines.iter().flat_map(|(_, errors)| errors).flatten();
     let best = all().copied().fold(f64::INFINITY, f64::min);
     let shown = all().filter(|error| **error <= SHOWN * best);
-    let error = view.output.renamed("RMSE left out");
+    let error = view.output.renamed(match view.validation()?.criterion {
+        Criterion::LeftOut => "RMSE left out",
+        Criterion::Evidence => "RMSE",
+    });
     let y = Axis::new(&error, Span::of(shown).with(0.0).padded(0.05).from(0.0));
     let name = Labelled {
         name: name.into(),
@@ -71,9 +75,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         let ys: Vec<f64> = errors.iter().map(|e| e.unwrap_or(f64::NAN)).collect();
         panel.curve(&mut sheet.canvas, &xs, &ys, &stroke(n));
     }
-    // The choice is what the model has: the one-standard-error rule takes a smoother one than the
-    // best.
-    let fitted = view.source.fit()?.smooth;
+    let fitted = view.source.fit()?.smooth.along;
     let row = levels.iter().position(|k| *k == view.source.levels());
     let column = smooth.iter().position(|s| *s == fitted);
     if let (Some(row), Some(column)) = (row, column) {

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::identify::choose::validate::{Candidates, choose};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
+use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -27,7 +28,7 @@ pub struct LeftOut {
     /// Number of branches of the input.
     pub branches: usize,
     /// Levels and smoothness of each fold.
-    pub chosen: Vec<(usize, f64)>,
+    pub chosen: Vec<(usize, Smooth)>,
 }
 
 /// Leaves out whole branches in turn and compares them with a fit to the others. The fits use the

@@ -1,13 +1,15 @@
-//! Cross-validation over whole branches. Neighbouring samples of a branch are almost equal, so
-//! leaving out single samples would test nothing.
+//! The choice of levels and smoothness.
+//!
+//! Where there are enough branches, whole branches are left out. Neighbouring samples of a branch
+//! are almost equal, so leaving out single samples would test nothing. A few branches say little
+//! about each other. Then the evidence of the prior decides, which needs nothing left out.
 
 use crate::error::Result;
+use crate::identify::choose::criterion::Level;
+use crate::identify::choose::search::{Place, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::identify::weights::solve::NormalEquations;
-use crate::model::Solver;
-use crate::model::{Score, Validation};
-use crate::parallel;
+use crate::model::{Criterion, Score, Smooth, Solver, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -15,7 +17,8 @@ use crate::series::range;
 /// Largest number of folds.
 const FOLDS: usize = 10;
 
-/// With fewer branches than this, parts of branches are left out instead of whole ones.
+/// With fewer branches than this, the evidence decides, and parts of branches are left out instead
+/// of whole ones.
 const ENOUGH_BRANCHES: usize = 6;
 
 /// The candidates to choose from.
@@ -23,34 +26,31 @@ const ENOUGH_BRANCHES: usize = 6;
 pub struct Candidates {
     /// Numbers of levels, ascending.
     pub levels: Vec<usize>,
-    /// Strengths of the smoothness.
-    pub smooth: Vec<f64>,
+    /// The smoothness; `None` to search for it.
+    pub smooth: Option<Smooth>,
 }
 
 impl Candidates {
     /// The usual candidates, where the argument is `None`; otherwise only the value given.
     ///
     /// The usual numbers of levels are from 5 to 40 in steps of `√2`. The usual strengths are
-    /// decades, and 0.
+    /// decades from 1e-10 to 1e-3 along and to 1e-5 across, and 0.
     #[must_use]
-    pub fn new(levels: Option<usize>, smooth: Option<f64>) -> Self {
+    pub fn new(levels: Option<usize>, smooth: Option<Smooth>) -> Self {
         Self {
             levels: levels.map_or(vec![5, 7, 10, 14, 20, 28, 40], |levels| vec![levels]),
-            smooth: smooth.map_or_else(
-                || (-10..=-3).map(|n| 10_f64.powi(n)).chain([0.0]).collect(),
-                |smooth| vec![smooth],
-            ),
+            smooth,
         }
     }
 }
 
-/// Chooses levels and smoothness by the error on left-out branches. Returns the options with these
-/// values, and the record of the choice.
+/// Chooses levels and smoothness. Returns the options with these values, and the record of the
+/// choice.
 ///
-/// The choice is the smoothest candidate that is worse than the best by at most one standard error
-/// over the folds. More levels are tried until two numbers in a row have not reduced the error by 1
-/// %. If the starts of several recordings are unknown, only two patterns of starts are tried: all
-/// off and all on.
+/// With six branches or more the criterion is the error on branches left out. Otherwise it is the
+/// evidence, see [`Criterion`]. More levels are tried until two numbers in a row have not been
+/// better by 1 % (by 1 in the logarithm of the evidence). If the starts of several recordings are
+/// unknown, only two patterns of starts are tried: all off and all on.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -71,147 +71,102 @@ pub(crate) fn choose(
     progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
     let mut options = options.clone();
-    let first = FitOptions {
-        levels: candidates.levels.first().copied().unwrap_or(options.levels),
-        ..options.clone()
-    };
-    let mut problem = Problem::new(recordings, &first)?;
-    if options.sign.is_none() && options.solver == Solver::Nnls {
-        options.sign = Some(problem.solve(kept, Progress::NONE)?.sign);
-    }
-    let (folds, whole_branches) = folds(&problem, kept);
-    let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
-    // The strongest first, because each solution is the starting point of the next.
-    let mut smooth = candidates.smooth.clone();
-    smooth.sort_by(|a, b| b.total_cmp(a));
-    let mut scores: Vec<Score> = Vec::new();
-    let mut by_fold: Vec<Vec<f64>> = Vec::new();
-    let mut best: Option<Score> = None;
-    let mut no_better = 0;
-    for (n, &levels) in candidates.levels.iter().enumerate() {
-        progress.tell(
-            "cross-validation",
-            n as f64 / candidates.levels.len() as f64,
-        )?;
-        let at = FitOptions {
+    let at = |levels: usize, options: &FitOptions| {
+        let options = FitOptions {
             levels,
             ..options.clone()
         };
-        let problem = Problem::new(recordings, &at)?;
-        let all: Vec<Vec<f64>> = parallel::map(count, |fold| {
-            squares_left_out(&problem, &folds, fold, &smooth, progress)
-        })?;
-        let samples = folds.iter().flatten().count() as f64;
-        let before = best.map_or(f64::INFINITY, |best| best.rmse);
-        for (k, &smooth) in smooth.iter().enumerate() {
-            let squares: f64 = all.iter().map(|fold| fold[k]).sum();
-            let rmse = (squares / samples).sqrt();
-            let score = Score {
+        Problem::new(recordings, &options)
+    };
+    let first = candidates.levels.first().copied().unwrap_or(options.levels);
+    let mut problem = at(first, &options)?;
+    if options.sign.is_none() && options.solver == Solver::Nnls {
+        options.sign = Some(problem.solve(kept, Progress::NONE)?.sign);
+    }
+    let sign = options.sign.unwrap_or_default();
+    let (unit, units, whole_branches) = problem.experiment.units(kept, ENOUGH_BRANCHES);
+    let count = units.min(FOLDS);
+    let folds: Vec<Option<usize>> = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
+    let (low, high) = range(&problem.experiment.output);
+    let criterion = match whole_branches {
+        true => Criterion::LeftOut,
+        false => Criterion::Evidence,
+    };
+
+    let mut scores: Vec<Score> = Vec::new();
+    let mut from: Vec<Place> = Vec::new();
+    let mut best_value = f64::INFINITY;
+    let mut no_better = 0;
+    for (n, &levels) in candidates.levels.iter().enumerate() {
+        progress.tell(
+            "choice of levels",
+            n as f64 / candidates.levels.len() as f64,
+        )?;
+        let level = Level::new(at(levels, &options)?, sign, &folds, progress)?;
+        let mut starts = level.starts();
+        let mut rate = |smooth: Smooth| -> Result<f64> {
+            let mut score = Score {
                 levels,
                 smooth,
-                rmse,
+                rmse: 0.0,
+                log_evidence: None,
             };
-            if best.is_none_or(|best| rmse < best.rmse) {
-                best = Some(score);
+            match criterion {
+                Criterion::LeftOut => {
+                    let squares: f64 = level.left_out(smooth, &mut starts)?.iter().sum();
+                    score.rmse = (squares / level.samples()).sqrt();
+                }
+                Criterion::Evidence => {
+                    score.log_evidence = Some(level.log_evidence(smooth, &mut starts)?);
+                    score.rmse = level.fitted(smooth, &starts)?;
+                }
             }
             scores.push(score);
-            by_fold.push(all.iter().map(|fold| fold[k]).collect());
-        }
-        no_better = match best {
-            Some(best) if best.rmse < before * 0.99 => 0,
-            _ => no_better + 1,
+            Ok(criterion.value(&score))
         };
+        let value = match candidates.smooth {
+            Some(smooth) => rate(smooth)?,
+            None => {
+                let known = walk(&from, |place| rate(smooth_at(place)))?;
+                from = best(&known).into_iter().collect();
+                known.values().copied().fold(f64::INFINITY, f64::min)
+            }
+        };
+        no_better = match criterion.is_worth(value, best_value) {
+            true => 0,
+            false => no_better + 1,
+        };
+        best_value = best_value.min(value);
         if no_better == 2 {
             break;
         }
     }
-    let best = simplest(&scores, &by_fold)
+    let chosen = scores
+        .iter()
+        .copied()
+        .min_by(|a, b| criterion.value(a).total_cmp(&criterion.value(b)))
         .ok_or_else(|| crate::error::Error::Fit("there are no candidates".into()))?;
-    let (low, high) = range(&problem.experiment.output);
-    let validation = Validation {
-        folds: count,
-        whole_branches,
-        rmse: best.rmse,
-        nrmse_percent: 100.0 * best.rmse / (high - low),
-        scores,
-    };
-    options.levels = best.levels;
-    options.smooth = best.smooth;
-    Ok((options, validation))
-}
-
-/// The one-standard-error rule of Breiman et al. (1984). Among the candidates that are worse than
-/// the best by at most one standard error of that difference over the folds, take the smoothest,
-/// and of these the best. Otherwise the noise of the folds could choose too little smoothness.
-fn simplest(scores: &[Score], by_fold: &[Vec<f64>]) -> Option<Score> {
-    let best = (0..scores.len()).min_by(|a, b| scores[*a].rmse.total_cmp(&scores[*b].rmse))?;
-    let as_good = |n: &usize| {
-        let pairs = by_fold[*n].iter().zip(&by_fold[best]);
-        let worse: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-        let folds = worse.len() as f64;
-        let mean = worse.iter().sum::<f64>() / folds;
-        let variance = worse.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (folds - 1.0);
-        mean <= (variance / folds).sqrt()
-    };
-    let chosen = (0..scores.len()).filter(as_good).min_by(|a, b| {
-        let (a, b) = (scores[*a], scores[*b]);
-        b.smooth
-            .total_cmp(&a.smooth)
-            .then(a.rmse.total_cmp(&b.rmse))
-    });
-    chosen.map(|n| scores[n])
-}
-
-/// For each sample the fold that leaves it out, `None` for samples that are not kept at all. Also
-/// whether the folds are of whole branches.
-fn folds(problem: &Problem, kept: Option<&[f64]>) -> (Vec<Option<usize>>, bool) {
-    let (unit, units, whole) = problem.experiment.units(kept, ENOUGH_BRANCHES);
-    let count = units.min(FOLDS);
-    let folds = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
-    (folds, whole)
-}
-
-/// Squared errors on the samples that a fold leaves out, for each strength of the smoothness.
-fn squares_left_out(
-    problem: &Problem,
-    folds: &[Option<usize>],
-    fold: usize,
-    smooth: &[f64],
-    progress: Progress<'_>,
-) -> Result<Vec<f64>> {
-    let rest = |f: &Option<usize>| {
-        if f.is_some_and(|f| f != fold) {
-            1.0
-        } else {
-            0.0
+    options.levels = chosen.levels;
+    options.smooth = chosen.smooth;
+    // What the choice is worth is the error on what was left out, whatever chose.
+    let rmse = match criterion {
+        Criterion::LeftOut => chosen.rmse,
+        Criterion::Evidence => {
+            let level = Level::new(at(chosen.levels, &options)?, sign, &folds, progress)?;
+            let squares: f64 = level
+                .left_out(chosen.smooth, &mut level.starts())?
+                .iter()
+                .sum();
+            (squares / level.samples()).sqrt()
         }
     };
-    let kept: Vec<f64> = folds.iter().map(rest).collect();
-    let target = problem.target(problem.options.sign.unwrap_or_default());
-    let free = problem.free(Some(&kept))?;
-    let told = |_: &'static str, _: f64| progress.tell("cross-validation", f64::NAN);
-    let quiet = Progress::new(&told);
-    let gram = problem
-        .regressor
-        .gram(&problem.experiment, Some(&kept), quiet)?;
-    let mut start: Option<Vec<f64>> = None;
-    let mut squares = Vec::with_capacity(smooth.len());
-    for &smooth in smooth {
-        let equations = NormalEquations::of_gram(
-            &problem.regressor,
-            &problem.experiment,
-            &free,
-            Some(&kept),
-            smooth,
-            gram.clone(),
-        )?;
-        // Without smoothness most weights are zero. Then zero is a better starting point.
-        let start_here = start.as_deref().filter(|_| smooth > 0.0);
-        let solution = equations.solve(&target, problem.options.solver, start_here, 1, quiet)?;
-        let predicted = problem.predict(&solution)?;
-        let left_out = (0..target.len()).filter(|&n| folds[n] == Some(fold));
-        squares.push(left_out.map(|n| (target[n] - predicted[n]).powi(2)).sum());
-        start = Some(solution.x);
-    }
-    Ok(squares)
+    let validation = Validation {
+        criterion,
+        folds: count,
+        whole_branches,
+        rmse,
+        nrmse_percent: 100.0 * rmse / (high - low),
+        scores,
+    };
+    Ok((options, validation))
 }

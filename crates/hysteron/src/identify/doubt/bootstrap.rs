@@ -12,6 +12,7 @@ use faer::Mat;
 use faer::linalg::solvers::Llt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// With fewer branches than this, parts of branches are the units instead.
@@ -31,35 +32,53 @@ const FACTORS: usize = 12;
 /// fit that left a branch out are added to the fitted output, with a random sign for each whole
 /// branch. Then the model is fitted again. Errors of a model are similar along a branch, and a
 /// common sign for the branch preserves that.
+///
+/// The prior counts as data with noise of standard deviation `noise`: its pull on the weights is
+/// drawn anew as well (randomise, then optimise: Bardsley et al. 2014). So weights that only the
+/// prior determines differ between replicates as much as the prior allows.
 pub(crate) fn replicates(
     problem: &Problem,
     fitted: &Fitted,
     equations: &NormalEquations<'_>,
     free: &FreeColumns,
+    (left_out, noise): (&LeftOutErrors, f64),
     progress: Progress<'_>,
 ) -> Result<Vec<LoadPart>> {
     let (options, experiment) = (&problem.options, &problem.experiment);
     let solution = &fitted.solution;
     let factor = match options.solver {
-        Solver::Ols => Some(equations.factor()?),
+        Solver::Ols => Some(equations.penalised.factor()?),
         Solver::Nnls => None,
     };
-    let (unit, units, _) = experiment.units(None, ENOUGH_BRANCHES);
-    let errors = left_out_errors(problem, fitted, &unit, units, progress)?;
+    let LeftOutErrors {
+        unit,
+        units,
+        errors,
+    } = left_out;
     let done = AtomicUsize::new(0);
     parallel::map(options.bootstrap, |seed| {
         let count = done.fetch_add(1, Ordering::Relaxed);
         progress.tell("confidence", count as f64 / options.bootstrap as f64)?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
-        let signs: Vec<f64> = (0..units)
+        let signs: Vec<f64> = (0..*units)
             .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
             .collect();
-        let turned = errors.iter().zip(&unit);
-        let mut noise: Vec<f64> = turned
+        let turned = errors.iter().zip(unit);
+        let mut added: Vec<f64> = turned
             .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
             .collect();
-        let moved = free.take_off(&mut noise);
-        let x = replicate(equations, factor.as_ref(), problem, &solution.x, &noise)?;
+        let moved = free.take_off(&mut added);
+        let pull = equations.penalised.draw(&problem.regressor, || {
+            let normal: f64 = StandardNormal.sample(&mut rng);
+            noise * normal
+        });
+        let x = replicate(
+            equations,
+            factor.as_ref(),
+            problem,
+            &solution.x,
+            (&added, &pull),
+        )?;
         // The free columns have two parts: those of the noise, and the change caused by the new
         // weights.
         let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
@@ -75,13 +94,12 @@ pub(crate) fn replicates(
 /// For each sample, the error of a fit without its unit. A fit bends towards each branch, more so
 /// if few other branches determine the same weights. These residuals are free of that (MacKinnon,
 /// Nielsen and Webb 2023).
-fn left_out_errors(
+pub(crate) fn left_out_errors(
     problem: &Problem,
     fitted: &Fitted,
-    unit: &[Option<usize>],
-    units: usize,
     progress: Progress<'_>,
-) -> Result<Vec<f64>> {
+) -> Result<LeftOutErrors> {
+    let (unit, units, _) = problem.experiment.units(None, ENOUGH_BRANCHES);
     let groups = units.min(GROUPS);
     let target = problem.target(fitted.sign);
     let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
@@ -94,7 +112,7 @@ fn left_out_errors(
             &problem.experiment,
             &free,
             Some(&kept),
-            problem.options.smooth,
+            problem.options.prior(),
             Progress::NONE,
         )?;
         let start = Some(&fitted.solution.x[..]);
@@ -111,24 +129,38 @@ fn left_out_errors(
     for (n, error) in all.into_iter().flatten() {
         errors[n] = error;
     }
-    Ok(errors)
+    Ok(LeftOutErrors {
+        unit,
+        units,
+        errors,
+    })
+}
+
+/// Errors of fits that left the sample's unit out, and the units.
+pub(crate) struct LeftOutErrors {
+    unit: Vec<Option<usize>>,
+    units: usize,
+    pub(crate) errors: Vec<f64>,
 }
 
 /// The weights fitted to the fitted output plus `noise`, from which the free columns have been
-/// removed.
+/// removed, with `pull` added by the prior.
 fn replicate(
     equations: &NormalEquations<'_>,
     factor: Option<&Llt<f64>>,
     problem: &Problem,
     x: &[f64],
-    noise: &[f64],
+    (noise, pull): (&[f64], &[f64]),
 ) -> Result<Vec<f64>> {
     let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
-    let mut right = equations.times(x);
+    let mut right = equations.penalised.times(x);
     // The penalty shrinks the solution again. Subtract that effect, so that the replicates stay
     // around the fit.
     right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
-    equations.minimum(&right, x, factor, Progress::NONE)
+    right.iter_mut().zip(pull).for_each(|(b, p)| *b += p);
+    equations
+        .penalised
+        .minimum(&right, x, factor, Progress::NONE)
 }
 
 /// Root mean squared deviations of the replicates from the fit, and their principal components.

@@ -2,12 +2,15 @@
 
 use crate::error::Result;
 use crate::identify::doubt::bootstrap;
+use crate::identify::doubt::calibrate::calibrate;
 use crate::identify::doubt::excitation::Unresolved;
+use crate::identify::options::Prior;
 use crate::identify::weights::problem::{Fitted, Problem};
-use crate::identify::weights::solve::{NormalEquations, not_definite};
+use crate::identify::weights::solve::{NormalEquations, Penalised, not_definite};
 use crate::identify::weights::sparse::Initial;
 use crate::model::Confidence;
 use crate::model::Start;
+use crate::prepare::noise;
 use crate::progress::Progress;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
@@ -28,41 +31,43 @@ pub(crate) fn of(
     let experiment = &problem.experiment;
     progress.tell("confidence", 0.0)?;
     let free = problem.free(None)?;
-    let equations = NormalEquations::new(
-        &problem.regressor,
-        experiment,
-        &free,
-        None,
-        options.smooth,
-        progress,
-    )?;
-    // The matrix without the penalty: what the data alone determine.
-    let plain = match options.smooth > 0.0 {
-        true => Some(NormalEquations::new(
-            &problem.regressor,
-            experiment,
-            &free,
-            None,
-            0.0,
-            progress,
-        )?),
-        false => None,
+    let gram = problem.regressor.gram(experiment, None, progress)?;
+    let with = |prior| {
+        let gram = gram.clone();
+        NormalEquations::of_gram(&problem.regressor, experiment, &free, None, prior, gram)
     };
-    let (rank, condition) = rank(plain.as_ref().unwrap_or(&equations))?;
+    let equations = with(options.prior())?;
+    // The matrix without the prior: what the data alone determine.
+    let plain = with(Prior::NONE)?;
+    let (rank, condition) = rank(&plain.penalised)?;
     let free_count = fitted.solution.free.len() as f64;
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
     // Fitted residuals are smaller than the errors themselves, so correct for the degrees of
     // freedom.
-    let used = degrees_of_freedom(&solution.x, &equations, plain.as_ref()) + free_count;
+    let used = degrees_of_freedom(&solution.x, &equations.penalised, &plain.penalised) + free_count;
     let left = (samples - used).max(1.0);
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
-    let replicates = bootstrap::replicates(problem, fitted, &equations, &free, progress)?;
-    let (standard, factors) = bootstrap::spread(
+    let spread = (squares / left).sqrt();
+    let left_out = bootstrap::left_out_errors(problem, fitted, progress)?;
+    let replicates = bootstrap::replicates(
+        problem,
+        fitted,
+        &equations,
+        &free,
+        (&left_out, spread),
+        progress,
+    )?;
+    let (standard, mut factors) = bootstrap::spread(
         &replicates,
         &problem.at_middle(&solution.x, &solution.free, fitted.sign),
     );
+    let own = experiment.recordings.iter();
+    let sensor =
+        own.map(|range| noise(&solution.residual[range.clone()]).powi(2) * range.len() as f64);
+    let sensor = (sensor.sum::<f64>() / samples).sqrt();
+    let width = calibrate(&mut factors, &left_out.errors, sensor, problem, fitted.sign)?;
     let inputs: Vec<&[f64]> = experiment
         .recordings
         .iter()
@@ -79,7 +84,8 @@ pub(crate) fn of(
         rank,
         unknowns: solution.x.len(),
         condition,
-        noise: (squares / left).sqrt(),
+        noise: width,
+        sensor,
         replicates: options.bootstrap,
         excitation: Unresolved::of(&inputs, *problem.regressor.plane(), options.operator, start)?
             .classes(&inputs)?,
@@ -92,19 +98,11 @@ pub(crate) fn of(
 /// Effective number of parameters: one for each weight above zero, fewer where the penalty ties
 /// weights together. `tr (G + P)⁻¹ G` over these weights (Hastie, Tibshirani and Friedman 2009,
 /// 7.6).
-fn degrees_of_freedom(
-    x: &[f64],
-    equations: &NormalEquations<'_>,
-    plain: Option<&NormalEquations<'_>>,
-) -> f64 {
+fn degrees_of_freedom(x: &[f64], equations: &Penalised, plain: &Penalised) -> f64 {
     let above: Vec<usize> = (0..x.len()).filter(|n| x[*n] != 0.0).collect();
     let size = above.len();
-    let Some(plain) = plain else {
-        return size as f64;
-    };
-    let part = |of: &NormalEquations<'_>| {
-        Mat::from_fn(size, size, |i, j| of.matrix[above[i] * x.len() + above[j]])
-    };
+    let part =
+        |of: &Penalised| Mat::from_fn(size, size, |i, j| of.matrix[above[i] * x.len() + above[j]]);
     match part(equations).llt(Side::Lower) {
         Ok(factor) => {
             let shrunk = factor.solve(&part(plain));
@@ -116,7 +114,7 @@ fn degrees_of_freedom(
 
 /// Rank of the centred regressor, and the ratio of its largest to its smallest non-zero singular
 /// value.
-fn rank(equations: &NormalEquations<'_>) -> Result<(usize, f64)> {
+fn rank(equations: &Penalised) -> Result<(usize, f64)> {
     let count = equations.matrix.len().isqrt();
     let element = |i: usize, j: usize| equations.matrix[i * count + j];
     let matrix = Mat::from_fn(count, count, element);

@@ -1,5 +1,6 @@
-//! How well the data determine the weights: excitation, bootstrap, confidence.
+//! How well the data determine the weights: excitation, bootstrap, calibration, confidence.
 
 pub(super) mod bootstrap;
+mod calibrate;
 pub(super) mod confidence;
 pub(super) mod excitation;

@@ -4,7 +4,7 @@
 use crate::error::{Error, Result};
 use crate::identify::options::{Choice, FitOptions};
 use crate::identify::weights::problem::Problem;
-use crate::model::{After, CreepTerm, Model, Operators, needs_time};
+use crate::model::{After, CreepTerm, Model, Operators, Smooth, needs_time};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
@@ -31,7 +31,10 @@ const SINGLE: usize = 5;
 const REFINED: i32 = 4;
 
 /// Smoothness of the weights in the search, so that operators that a block left out do not run away.
-const SMOOTH: f64 = 1e-6;
+const SMOOTH: Smooth = Smooth {
+    along: 0.0,
+    across: 1e-6,
+};
 
 /// Terms that are tried by `auto`.
 const TERMS: [usize; 2] = [1, 3];
@@ -151,7 +154,7 @@ impl<'a> Search<'a> {
         }
         let options = FitOptions {
             bootstrap: 0,
-            smooth: options.smooth.max(SMOOTH),
+            smooth: options.smooth.at_least(SMOOTH),
             ..options.clone()
         };
         Ok(Self {

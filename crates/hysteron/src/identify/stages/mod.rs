@@ -11,11 +11,11 @@ mod nelder_mead;
 mod spacing;
 
 use crate::error::Result;
+use crate::identify::choose::Open;
 use crate::identify::history::find_start;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
-use crate::identify::weights::experiment::plane_of_all;
 use crate::identify::weights::fit::fit_weights;
-use crate::model::{Found, Model, Plane, Start, Surroundings, Validation};
+use crate::model::{Found, Model, Plane, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::{Errors, range};
@@ -23,21 +23,27 @@ use hysteron_core::Axis;
 use serde_json::json;
 use std::borrow::Cow;
 
-/// Chooses levels, smoothness and replicates for recordings as the operators see them.
-type Chosen<'a> = &'a dyn Fn(&[Recording], &FitOptions) -> Result<(FitOptions, Option<Validation>)>;
+/// What a fit identifies besides the weights.
+pub(crate) struct Asked {
+    /// A thermal body.
+    pub(crate) body: bool,
+    /// What is left to the data.
+    pub(crate) open: Open,
+    /// Whether the number of replicates follows from the levels.
+    pub(crate) auto_bootstrap: bool,
+}
 
-/// Identifies stages and weights. With `body`, a thermal body too.
+/// Identifies stages and weights.
 pub(crate) fn fit(
     recordings: &[Recording],
     options: &FitOptions,
-    body: bool,
-    chosen: Chosen<'_>,
+    asked: Asked,
     progress: Progress<'_>,
 ) -> Result<Model> {
     let mut found = Found::default();
     let mut notes = std::collections::BTreeMap::new();
     let mut seen: Cow<'_, [Recording]> = Cow::Borrowed(recordings);
-    if body {
+    if asked.body {
         let (first_order, told_apart) = body::find(recordings, options, progress)?;
         let heated = recordings
             .iter()
@@ -58,12 +64,17 @@ pub(crate) fn fit(
         found.curves = Some(law.curves.clone());
         options.load_curves = law.uses_curves.then_some(law.curves);
     }
-    let (mut options, validation) = chosen(&seen, &options)?;
+    let (mut options, mut validation) = asked.open.choose(&seen, &options, progress)?;
     if options.spacing == Spacing::Auto {
-        let plane = plane_of_all(&seen, &options)?;
-        found.spacing = spacing::find(&seen, &plane, &options, progress)?;
-        options.range = Some((plane.min(), plane.max()));
-        seen = Cow::Owned(spacing::behind(&found.spacing, &plane, &seen));
+        let spaced = spacing::find(&seen, &options, (asked.open, &validation), progress)?;
+        if let Some(spaced) = spaced {
+            found.spacing = spaced.corners;
+            seen = Cow::Owned(spaced.recordings);
+            (options, validation) = (spaced.options, spaced.validation);
+        }
+    }
+    if asked.auto_bootstrap {
+        options.bootstrap = FitOptions::usual_bootstrap(options.levels);
     }
     if options.creep != crate::identify::Choice::Fixed(0)
         || options.lag != crate::identify::Choice::Fixed(0.0)

@@ -1,10 +1,12 @@
 //! Places the levels where the output moves.
 
 use crate::error::Result;
+use crate::identify::choose::Open;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::{on_grid, with_inputs};
+use crate::identify::weights::experiment::plane_of_all;
 use crate::identify::weights::fit::fit_weights;
-use crate::model::Plane;
+use crate::model::{Plane, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
 
@@ -21,9 +23,59 @@ const BINS: usize = 50;
 /// Other spacings have to fit better than equal distances by this share.
 const WORTH: f64 = 0.05;
 
-/// Finds the `K + 1` corners of the grid, ascending, from the bottom of the plane to its top: those
-/// of the candidates that fit the recordings best. Empty if equal distances fit as well.
+/// Levels that are not at equal distances.
+pub(super) struct Spaced {
+    /// The `K + 1` corners of the grid, ascending, from the bottom of the plane to its top.
+    pub(super) corners: Vec<f64>,
+    /// The recordings on the uniform grid of the plane.
+    pub(super) recordings: Vec<Recording>,
+    /// The options, with the smoothness that is best with these levels.
+    pub(super) options: FitOptions,
+    pub(super) validation: Option<Validation>,
+}
+
+/// Finds the corners that fit the recordings best. `None` if equal distances fit as well. Where
+/// levels or smoothness were chosen (`chosen`), the same criterion decides.
 pub(super) fn find(
+    recordings: &[Recording],
+    options: &FitOptions,
+    (open, chosen): (Open, &Option<Validation>),
+    progress: Progress<'_>,
+) -> Result<Option<Spaced>> {
+    let plane = plane_of_all(recordings, options)?;
+    let mut options = FitOptions {
+        range: Some((plane.min(), plane.max())),
+        ..options.clone()
+    };
+    let corners = best_fit(recordings, &plane, &options, progress)?;
+    if corners.is_empty() {
+        return Ok(None);
+    }
+    let recordings = behind(&corners, &plane, recordings);
+    let mut validation = None;
+    if let Some(uniform) = chosen {
+        let open = Open {
+            levels: false,
+            ..open
+        };
+        let (again, found) = open.choose(&recordings, &options, progress)?;
+        if let Some(found) = &found
+            && !found.is_better_than(uniform)
+        {
+            return Ok(None);
+        }
+        // Without the smoothness to choose, the fits themselves have decided.
+        (options, validation) = (again, found.or_else(|| chosen.clone()));
+    }
+    Ok(Some(Spaced {
+        corners,
+        recordings,
+        options,
+        validation,
+    }))
+}
+
+fn best_fit(
     recordings: &[Recording],
     plane: &Plane,
     options: &FitOptions,
@@ -31,7 +83,6 @@ pub(super) fn find(
 ) -> Result<Vec<f64>> {
     let options = FitOptions {
         bootstrap: 0,
-        range: Some((plane.min(), plane.max())),
         ..options.clone()
     };
     let rated = |corners: &[f64]| {

@@ -46,6 +46,7 @@ pub(crate) fn fit_weights(
     model.fit = Some(FitSummary {
         solver: options.solver,
         smooth: options.smooth,
+        ridge: options.ridge,
         start: options.start,
         open_at_start: problem.regressor.open_at_start,
         samples: errors.samples,
@@ -53,6 +54,7 @@ pub(crate) fn fit_weights(
         max_abs: errors.max_abs,
         nrmse_percent: errors.nrmse_percent.unwrap_or_default(),
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
+        outliers: Vec::new(),
         simulated: recordings.iter().any(|r| r.origin == Origin::Simulated),
         file: path(first),
         sha256: first.source.as_ref().map(|s| s.sha256.clone()),

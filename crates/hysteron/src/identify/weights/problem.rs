@@ -116,7 +116,7 @@ impl Problem {
                     &self.experiment,
                     &free,
                     kept,
-                    self.options.smooth,
+                    self.options.prior(),
                     progress,
                 )?;
                 let fitted = self.best_sign(&equations, progress)?;
@@ -192,6 +192,7 @@ fn check(options: &FitOptions) -> Result<()> {
     let FitOptions {
         offset,
         smooth,
+        ridge,
         load_degree,
         bootstrap,
         ..
@@ -201,9 +202,16 @@ fn check(options: &FitOptions) -> Result<()> {
             "the offset {offset} is not a number, or is too large to be squared"
         )));
     }
-    if !(*smooth >= 0.0 && *smooth <= 1e6) {
+    for strength in [smooth.along, smooth.across] {
+        if !(0.0..=1e6).contains(&strength) {
+            return Err(Error::Fit(format!(
+                "the smoothness {strength} is not between 0 and 1e6"
+            )));
+        }
+    }
+    if !(0.0..=1.0).contains(ridge) {
         return Err(Error::Fit(format!(
-            "the smoothness {smooth} is not between 0 and 1e6"
+            "the ridge {ridge} is not between 0 and 1"
         )));
     }
     if options.start == Start::Fitted {

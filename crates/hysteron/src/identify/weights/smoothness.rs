@@ -1,13 +1,14 @@
-//! The smoothness penalty on the weights across the plane. It is scaled so that a given strength
-//! means the same for any number of levels.
+//! The prior of the weights: neighbours in the plane have similar weights. It is scaled so that a
+//! given strength means the same for any number of levels.
 //!
 //! With `α` and `β` in units of the plane's width, the weights are a density `ρ = K² μ` inside the
 //! plane. On the diagonal, where operators have no memory, they are a line density `ρ = K μ`. The
-//! penalty is on the squared slopes of both densities (Tikhonov 1963):
-//! `λ ∫∫ |∇ρ|² = λ K⁴ Σ (μ − μ')²` over neighbours inside, and `λ ∫ ρ'² = λ K³ Σ (μ − μ')²` along
-//! the diagonal. It is added to the mean squared error.
+//! penalty is on squared slopes of both densities (Tikhonov 1963), see [`Smooth`]. With `Δ` the
+//! difference to the neighbour one level on, `λ ∫∫ (∂ρ)² = λ K⁴ Σ Δ²` inside and
+//! `λ ∫ ρ'² = λ K³ Σ Δ²` on the diagonal. It is added to the mean squared error.
 
 use crate::identify::weights::regressor::Column;
+use crate::model::Smooth;
 use hysteron_core::operator_index;
 
 pub(crate) struct Smoothness {
@@ -17,24 +18,28 @@ pub(crate) struct Smoothness {
 }
 
 impl Smoothness {
-    /// A penalty of strength `lambda`, to be added to the sum of squared errors of `samples`.
-    pub(crate) fn new(levels: usize, lambda: f64, samples: f64) -> Self {
+    /// A penalty of these strengths, to be added to the sum of squared errors of `samples`.
+    pub(crate) fn new(levels: usize, smooth: Smooth, samples: f64) -> Self {
         let k = levels as f64;
-        let (inside, diagonal) = (lambda * samples * k.powi(4), lambda * samples * k.powi(3));
+        let [along, across] = [smooth.along, smooth.across].map(|s| s * samples * k.powi(4));
+        let line = (smooth.along + smooth.across) * samples * k.powi(3);
         let mut edges = Vec::new();
-        if lambda > 0.0 {
-            for j in 1..=levels {
-                for i in 1..=j {
-                    let here = operator_index(i, j);
-                    if i + 1 < j {
-                        edges.push((here, operator_index(i + 1, j), inside));
-                    }
-                    if i < j && j < levels {
-                        edges.push((here, operator_index(i, j + 1), inside));
-                    }
-                    if i == j && j < levels {
-                        edges.push((here, operator_index(i + 1, j + 1), diagonal));
-                    }
+        let mut edge = |from: usize, i: usize, j: usize, factor: f64| {
+            if factor > 0.0 {
+                edges.push((from, operator_index(i, j), factor));
+            }
+        };
+        for j in 1..=levels {
+            for i in 1..=j {
+                let here = operator_index(i, j);
+                if j < levels {
+                    edge(here, i + 1, j + 1, if i < j { along } else { line });
+                }
+                if i < j && j < levels {
+                    edge(here, i, j + 1, across);
+                }
+                if i + 1 < j {
+                    edge(here, i + 1, j, across);
                 }
             }
         }
@@ -95,6 +100,20 @@ impl Smoothness {
         columns.iter().map(|c| slopes[self.place(c)]).collect()
     }
 
+    /// A random vector whose covariance is the penalty's matrix: one independent number of variance
+    /// 1 from `normal` for each pair of neighbours.
+    pub(crate) fn draw(&self, columns: &[Column], mut normal: impl FnMut() -> f64) -> Vec<f64> {
+        let mut all = vec![0.0; self.places(columns)];
+        for part in all.chunks_mut(self.operators) {
+            for &(k, l, factor) in &self.edges {
+                let pull = factor.sqrt() * normal();
+                part[k] += pull;
+                part[l] -= pull;
+            }
+        }
+        columns.iter().map(|c| all[self.place(c)]).collect()
+    }
+
     fn place(&self, column: &Column) -> usize {
         column.part * self.operators + column.operator
     }
@@ -121,7 +140,8 @@ mod tests {
             for i in 1..=levels {
                 weights[operator_index(i, i)] = i as f64 / (k * k);
             }
-            let slopes = Smoothness::new(levels, 1.0, 1.0).times(&weights, &columns);
+            let slopes =
+                Smoothness::new(levels, Smooth::from((0.0, 1.0)), 1.0).times(&weights, &columns);
             let value: f64 = weights.iter().zip(&slopes).map(|(w, s)| w * s).sum();
             // K − 1 of K steps.
             assert!(
@@ -146,7 +166,7 @@ mod tests {
                     weights.push(if i < j { inside } else { 0.0 });
                 }
             }
-            let penalty = Smoothness::new(levels, 1.0, 1.0);
+            let penalty = Smoothness::new(levels, Smooth::from((0.0, 1.0)), 1.0);
             let slopes = penalty.times(&weights, &columns);
             let value: f64 = weights.iter().zip(&slopes).map(|(w, s)| w * s).sum();
             // The sum omits a strip of one step along the edges: at most 5 ΔT of the integral.

@@ -1,12 +1,13 @@
 //! Least squares on the normal equations, refined to full accuracy with the sparse form.
 //!
 //! The Gram matrix is usually singular: some operators are never excited, or always move together.
-//! A small ridge makes it definite. Proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar
+//! A tiny ridge makes it definite. Proximal steps `min |A(x + δ) − y|² + ε |δ|²` (Rockafellar
 //! 1976) then remove the effect of the ridge. The residual of each step is computed by a run of the
 //! model, not from the Gram matrix. Started from zero, the steps converge to the solution of
 //! smallest norm.
 
 use crate::error::{Error, Result};
+use crate::identify::options::Prior;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::regressor::Regressor;
@@ -47,109 +48,46 @@ pub(crate) struct Solution {
     pub(crate) objective: f64,
 }
 
-/// `Aᵀ A` of the samples kept, with the free columns eliminated, plus penalty and ridge.
-pub(crate) struct NormalEquations<'a> {
-    regressor: &'a Regressor,
-    experiment: &'a Experiment,
-    free: &'a FreeColumns,
-    kept: Option<&'a [f64]>,
+/// A Gram matrix plus the prior of the weights.
+pub(crate) struct Penalised {
     smoothness: Smoothness,
-    /// The matrix with ridge, `C × C`, row by row.
+    /// The ridge of the prior. Proximal steps do not remove it.
+    shrink: f64,
+    /// The matrix with both ridges, `C × C`, row by row.
     pub(crate) matrix: Vec<f64>,
-    /// The ridge.
+    /// The sum of both ridges.
     pub(crate) ridge: f64,
 }
 
-impl<'a> NormalEquations<'a> {
-    /// `kept` is 1 for samples that count and 0 for others. `smooth` is the strength of the
-    /// penalty.
+impl Penalised {
+    /// From the Gram matrix of `samples` after the free columns were eliminated. `largest` is the
+    /// largest diagonal element before that.
     pub(crate) fn new(
-        regressor: &'a Regressor,
-        experiment: &'a Experiment,
-        free: &'a FreeColumns,
-        kept: Option<&'a [f64]>,
-        smooth: f64,
-        progress: Progress<'_>,
-    ) -> Result<Self> {
-        let gram = regressor.gram(experiment, kept, progress)?;
-        Self::of_gram(regressor, experiment, free, kept, smooth, gram)
-    }
-
-    /// As [`NormalEquations::new`], from a Gram matrix of the samples kept.
-    pub(crate) fn of_gram(
-        regressor: &'a Regressor,
-        experiment: &'a Experiment,
-        free: &'a FreeColumns,
-        kept: Option<&'a [f64]>,
-        smooth: f64,
         mut matrix: Vec<f64>,
-    ) -> Result<Self> {
+        largest: f64,
+        samples: f64,
+        prior: Prior,
+        regressor: &Regressor,
+    ) -> Self {
         let count = regressor.columns().len();
-        let largest = (0..count)
-            .map(|n| matrix[n * count + n])
-            .fold(0.0, f64::max);
-        free.eliminate_from(&mut matrix, regressor, experiment)?;
-        let samples = kept.map_or(experiment.input.len() as f64, |kept| kept.iter().sum());
-        let smoothness = Smoothness::new(regressor.plane().levels(), smooth, samples);
+        let mean = |matrix: &[f64]| {
+            let diagonal = (0..count).map(|n| matrix[n * count + n]);
+            diagonal.sum::<f64>() / count as f64
+        };
+        let shrink = prior.ridge * mean(&matrix);
+        let smoothness = Smoothness::new(regressor.plane().levels(), prior.smooth, samples);
         smoothness.add_to(&mut matrix, regressor.columns());
-        let trace: f64 = (0..count).map(|n| matrix[n * count + n]).sum();
-        let ridge = (RIDGE * trace / count as f64 + ROUNDING * largest).max(f64::MIN_POSITIVE);
+        let tiny = RIDGE * mean(&matrix) + ROUNDING * largest;
+        let ridge = shrink + tiny.max(f64::MIN_POSITIVE);
         for n in 0..count {
             matrix[n * count + n] += ridge;
         }
-        Ok(Self {
-            regressor,
-            experiment,
-            free,
-            kept,
+        Self {
             smoothness,
+            shrink,
             matrix,
             ridge,
-        })
-    }
-
-    /// Finds `x` for which `A x`, with the best free columns, is closest to `target`. Starts from
-    /// `start` and takes at most `steps` proximal steps.
-    pub(crate) fn solve(
-        &self,
-        target: &[f64],
-        solver: Solver,
-        start: Option<&[f64]>,
-        steps: usize,
-        progress: Progress<'_>,
-    ) -> Result<Solution> {
-        let count = self.regressor.columns().len();
-        let full = match solver {
-            Solver::Ols => Some(self.factor()?),
-            Solver::Nnls => None,
-        };
-        let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
-        let mut best = self.solution(target, start)?;
-        let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
-        for _ in 0..steps {
-            progress.tell("weights", 0.0)?;
-            let gradient = self.descent(&best)?;
-            let x = match &full {
-                Some(_) => {
-                    let step = self.minimum(&gradient, &best.x, full.as_ref(), progress)?;
-                    best.x.iter().zip(step).map(|(x, d)| x + d).collect()
-                }
-                None => {
-                    let moved = self.times(&best.x);
-                    let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
-                    self.minimum(&right, &best.x, None, progress)?
-                }
-            };
-            let next = self.solution(target, x)?;
-            let (before, after) = (best.objective, next.objective);
-            if after < before {
-                best = next;
-            }
-            if after >= before * (1.0 - ENOUGH) || after <= nothing {
-                break;
-            }
         }
-        Ok(best)
     }
 
     /// The minimum of `½ xᵀ M x − bᵀ x`. With a `factor` of `M` it is over all `x`. Without a
@@ -178,10 +116,128 @@ impl<'a> NormalEquations<'a> {
 
     /// The factor of the whole matrix, for weights of either sign.
     pub(crate) fn factor(&self) -> Result<Llt<f64>> {
-        let count = self.regressor.columns().len();
+        let count = self.matrix.len().isqrt();
         let element = |i: usize, j: usize| self.matrix[i * count + j];
         let matrix = Mat::from_fn(count, count, element);
         matrix.llt(Side::Lower).map_err(|_| not_definite())
+    }
+
+    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
+        let row_times = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
+        self.matrix
+            .chunks_exact(vector.len())
+            .map(row_times)
+            .collect()
+    }
+
+    /// A random vector whose covariance is the matrix of the prior, from numbers of variance 1.
+    pub(crate) fn draw(&self, regressor: &Regressor, mut normal: impl FnMut() -> f64) -> Vec<f64> {
+        let mut drawn = self.smoothness.draw(regressor.columns(), &mut normal);
+        let size = self.shrink.sqrt();
+        drawn.iter_mut().for_each(|d| *d += size * normal());
+        drawn
+    }
+
+    /// `P x`, half the gradient of the penalty.
+    pub(crate) fn slopes(&self, x: &[f64], regressor: &Regressor) -> Vec<f64> {
+        let mut slopes = self.smoothness.times(x, regressor.columns());
+        let shrunk = slopes.iter_mut().zip(x);
+        shrunk.for_each(|(slope, x)| *slope += self.shrink * x);
+        slopes
+    }
+}
+
+/// `Aᵀ A` of the samples kept, with the free columns eliminated, plus the prior.
+pub(crate) struct NormalEquations<'a> {
+    regressor: &'a Regressor,
+    experiment: &'a Experiment,
+    free: &'a FreeColumns,
+    kept: Option<&'a [f64]>,
+    pub(crate) penalised: Penalised,
+}
+
+impl<'a> NormalEquations<'a> {
+    /// `kept` is 1 for samples that count and 0 for others.
+    pub(crate) fn new(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        prior: Prior,
+        progress: Progress<'_>,
+    ) -> Result<Self> {
+        let gram = regressor.gram(experiment, kept, progress)?;
+        Self::of_gram(regressor, experiment, free, kept, prior, gram)
+    }
+
+    /// As [`NormalEquations::new`], from a Gram matrix of the samples kept.
+    pub(crate) fn of_gram(
+        regressor: &'a Regressor,
+        experiment: &'a Experiment,
+        free: &'a FreeColumns,
+        kept: Option<&'a [f64]>,
+        prior: Prior,
+        mut matrix: Vec<f64>,
+    ) -> Result<Self> {
+        let count = regressor.columns().len();
+        let largest = (0..count)
+            .map(|n| matrix[n * count + n])
+            .fold(0.0, f64::max);
+        free.eliminate_from(&mut matrix, regressor, experiment)?;
+        let samples = kept.map_or(experiment.input.len() as f64, |kept| kept.iter().sum());
+        Ok(Self {
+            regressor,
+            experiment,
+            free,
+            kept,
+            penalised: Penalised::new(matrix, largest, samples, prior, regressor),
+        })
+    }
+
+    /// Finds `x` for which `A x`, with the best free columns, is closest to `target`. Starts from
+    /// `start` and takes at most `steps` proximal steps.
+    pub(crate) fn solve(
+        &self,
+        target: &[f64],
+        solver: Solver,
+        start: Option<&[f64]>,
+        steps: usize,
+        progress: Progress<'_>,
+    ) -> Result<Solution> {
+        let count = self.regressor.columns().len();
+        let full = match solver {
+            Solver::Ols => Some(self.penalised.factor()?),
+            Solver::Nnls => None,
+        };
+        let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
+        let mut best = self.solution(target, start)?;
+        let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
+        for _ in 0..steps {
+            progress.tell("weights", 0.0)?;
+            let gradient = self.descent(&best)?;
+            let x = match &full {
+                Some(_) => {
+                    let step =
+                        self.penalised
+                            .minimum(&gradient, &best.x, full.as_ref(), progress)?;
+                    best.x.iter().zip(step).map(|(x, d)| x + d).collect()
+                }
+                None => {
+                    let moved = self.penalised.times(&best.x);
+                    let right: Vec<f64> = gradient.iter().zip(&moved).map(|(g, m)| g + m).collect();
+                    self.penalised.minimum(&right, &best.x, None, progress)?
+                }
+            };
+            let next = self.solution(target, x)?;
+            let (before, after) = (best.objective, next.objective);
+            if after < before {
+                best = next;
+            }
+            if after >= before * (1.0 - ENOUGH) || after <= nothing {
+                break;
+            }
+        }
+        Ok(best)
     }
 
     /// The solution `x` with its residual from `target`, after the best free columns are
@@ -209,7 +265,7 @@ impl<'a> NormalEquations<'a> {
 
     /// `P x`, half the gradient of the penalty.
     pub(crate) fn slopes(&self, x: &[f64]) -> Vec<f64> {
-        self.smoothness.times(x, self.regressor.columns())
+        self.penalised.slopes(x, self.regressor)
     }
 
     /// Half the negative gradient of the objective: `Aᵀ r − P x`.
@@ -218,14 +274,6 @@ impl<'a> NormalEquations<'a> {
         let slopes = self.slopes(&at.x);
         descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
         Ok(descent)
-    }
-
-    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
-        let row_times = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
-        self.matrix
-            .chunks_exact(vector.len())
-            .map(row_times)
-            .collect()
     }
 }
 

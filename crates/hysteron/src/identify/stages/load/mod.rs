@@ -14,13 +14,16 @@ use crate::identify::options::FitOptions;
 use crate::identify::stages::load::groups::{Groups, Samples};
 use crate::identify::stages::load::search::Search;
 use crate::identify::stages::with_inputs;
-use crate::model::LoadCurves;
+use crate::model::{LoadCurves, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use serde::Serialize;
 
 /// Smoothness of the weights in the search, so that operators that few data touch stay small.
-const SMOOTH: f64 = 1e-6;
+const SMOOTH: Smooth = Smooth {
+    along: 0.0,
+    across: 1e-6,
+};
 
 /// Levels of the search. Shifts do not need more.
 const LEVELS: usize = 14;
@@ -76,7 +79,7 @@ pub(super) fn find(
         options: FitOptions {
             levels: options.levels.min(LEVELS),
             bootstrap: 0,
-            smooth: options.smooth.max(SMOOTH),
+            smooth: options.smooth.at_least(SMOOTH),
             load_degree: Some(0),
             range: None,
             offset: None,

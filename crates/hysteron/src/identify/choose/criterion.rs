@@ -1,0 +1,159 @@
+//! How good a candidate is: one number of levels with one smoothness.
+
+use crate::error::Result;
+use crate::identify::choose::sums::{Reduced, Sums, centred};
+use crate::identify::options::Prior;
+use crate::identify::weights::problem::Problem;
+use crate::model::{Sign, Smooth, Solver};
+use crate::parallel;
+use crate::progress::Progress;
+use faer::{Mat, Side};
+
+/// Ridge of the prior in the evidence where the fit has none: without any, the prior is not a
+/// density.
+const SMALLEST_RIDGE: f64 = 1e-9;
+
+/// The samples of one number of levels, as sums over the folds.
+pub(super) struct Level<'a> {
+    problem: Problem,
+    folds: Vec<Fold>,
+    whole: Reduced,
+    progress: Progress<'a>,
+}
+
+struct Fold {
+    /// The sums over the fold.
+    own: Sums,
+    /// The problem of all other folds.
+    rest: Reduced,
+}
+
+/// Solutions of the folds, from which a search at a similar candidate starts; the last is the
+/// solution of all samples. Zeros are a start too.
+pub(super) type Starts = Vec<Vec<f64>>;
+
+impl<'a> Level<'a> {
+    /// `folds` has the fold of each sample, `None` for samples that do not count.
+    pub(super) fn new(
+        problem: Problem,
+        sign: Sign,
+        folds: &[Option<usize>],
+        progress: Progress<'a>,
+    ) -> Result<Self> {
+        let target = centred(&problem, sign);
+        let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
+        let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
+        let own: Vec<Sums> = parallel::map(count, |fold| {
+            let of: Vec<f64> = folds.iter().map(|f| f64::from(*f == Some(fold))).collect();
+            Sums::new(&problem, &target, &of, Progress::new(&told))
+        })?;
+        let mut all = own[0].clone();
+        own[1..].iter().for_each(|fold| all.add(fold));
+        let folds = own.into_iter().map(|own| {
+            let rest = all.without(&own).reduced()?;
+            Ok(Fold { own, rest })
+        });
+        Ok(Self {
+            folds: folds.collect::<Result<_>>()?,
+            whole: all.reduced()?,
+            problem,
+            progress,
+        })
+    }
+
+    pub(super) fn starts(&self) -> Starts {
+        vec![vec![0.0; self.problem.regressor.columns().len()]; self.folds.len() + 1]
+    }
+
+    pub(super) fn samples(&self) -> f64 {
+        self.whole.samples
+    }
+
+    fn prior(&self, smooth: Smooth) -> Prior {
+        Prior {
+            smooth,
+            ..self.problem.options.prior()
+        }
+    }
+
+    /// Sums of squared errors on each fold, from a fit to the others.
+    pub(super) fn left_out(&self, smooth: Smooth, starts: &mut Starts) -> Result<Vec<f64>> {
+        let solver = self.problem.options.solver;
+        let before = &*starts;
+        let solved = parallel::map(self.folds.len(), |n| {
+            self.progress.tell("choice of levels", f64::NAN)?;
+            let Fold { own, rest } = &self.folds[n];
+            let penalised = rest.penalised(self.prior(smooth), &self.problem);
+            let at = rest.solve(&penalised, solver, &before[n], Progress::NONE)?;
+            Ok((own.error(&at), at.x))
+        })?;
+        let mut errors = Vec::with_capacity(solved.len());
+        for (start, (error, x)) in starts.iter_mut().zip(solved) {
+            errors.push(error);
+            // Without smoothness most weights are zero. Then zero is a better starting point.
+            if !smooth.is_none() {
+                *start = x;
+            }
+        }
+        Ok(errors)
+    }
+
+    /// The logarithm of the evidence, without constants: how probable the outputs are, whatever the
+    /// weights (MacKay 1992).
+    ///
+    /// With the penalty as a Gaussian prior of precision `P`, the Gram matrix `G` and `J` the
+    /// penalised squared error at the best weights, it is `½ ln |P| − ½ ln |G + P| − ½ n ln J`. The
+    /// variance of the errors was replaced by its best value. `J` is that of the non-negative
+    /// weights, so a prior that only negative weights can satisfy is not preferred.
+    pub(super) fn log_evidence(&self, smooth: Smooth, starts: &mut Starts) -> Result<f64> {
+        self.progress.tell("choice of levels", f64::NAN)?;
+        let mut prior = self.prior(smooth);
+        prior.ridge = prior.ridge.max(SMALLEST_RIDGE);
+        let penalised = self.whole.penalised(prior, &self.problem);
+        let solver = self.problem.options.solver;
+        let start = starts.len() - 1;
+        let at = self
+            .whole
+            .solve(&penalised, solver, &starts[start], Progress::NONE)?;
+        let objective = self.whole.objective(&penalised, &at.x);
+        // Rounding of the squares that are subtracted from each other.
+        let objective = objective
+            .max(1e-15 * self.whole.squares)
+            .max(f64::MIN_POSITIVE);
+        let mut alone = penalised.matrix.clone();
+        self.whole.take_off(&mut alone);
+        let left = (self.whole.samples - self.whole.free()).max(1.0);
+        if !smooth.is_none() || solver == Solver::Ols {
+            starts[start] = at.x;
+        }
+        let determinants = half_log_determinant(&alone)? - half_log_determinant(&penalised.matrix)?;
+        Ok(determinants - 0.5 * left * objective.ln())
+    }
+
+    /// Root mean squared error of the fit to all samples.
+    pub(super) fn fitted(&self, smooth: Smooth, starts: &Starts) -> Result<f64> {
+        let penalised = self.whole.penalised(self.prior(smooth), &self.problem);
+        let solver = self.problem.options.solver;
+        let start = &starts[starts.len() - 1];
+        let at = self
+            .whole
+            .solve(&penalised, solver, start, Progress::NONE)?;
+        let mut squares = 0.0;
+        for fold in &self.folds {
+            squares += fold.own.error(&at);
+        }
+        Ok((squares / self.whole.samples).sqrt())
+    }
+}
+
+/// Half the logarithm of the determinant of a positive definite matrix: the sum of the logarithms
+/// of its Cholesky factor's diagonal.
+fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
+    let count = matrix.len().isqrt();
+    let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
+    let factor = matrix
+        .llt(Side::Lower)
+        .map_err(|_| crate::identify::weights::solve::not_definite())?;
+    let lower = factor.L();
+    Ok((0..count).map(|n| lower[(n, n)].ln()).sum())
+}

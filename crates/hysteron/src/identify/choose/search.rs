@@ -1,0 +1,108 @@
+//! The search for the best strengths of the smoothness at one number of levels: a walk on a grid of
+//! decades, from where fewer levels ended.
+
+use crate::error::Result;
+use crate::model::Smooth;
+use std::collections::BTreeMap;
+
+/// Decades of the strengths on the grid; the first element of each row is no smoothness.
+const ALONG: std::ops::RangeInclusive<i32> = -10..=-3;
+const ACROSS: std::ops::RangeInclusive<i32> = -10..=-5;
+
+/// A place on the grid: 0 is no smoothness, `n` the `n`-th decade.
+pub(super) type Place = (usize, usize);
+
+/// Every third place in each direction, where the first walk looks.
+const FIRST: [usize; 3] = [0, 3, 6];
+
+pub(super) fn smooth_at(place: Place) -> Smooth {
+    let at = |place: usize, decades: std::ops::RangeInclusive<i32>| match place {
+        0 => 0.0,
+        n => 10_f64.powi(decades.start() + n as i32 - 1),
+    };
+    Smooth {
+        along: at(place.0, ALONG),
+        across: at(place.1, ACROSS),
+    }
+}
+
+/// Walks to a place where no neighbour has a smaller `value`, from the best of `from` (a coarse
+/// grid, if that is empty). Returns the values of all places it looked at.
+pub(super) fn walk(
+    from: &[Place],
+    mut value: impl FnMut(Place) -> Result<f64>,
+) -> Result<BTreeMap<Place, f64>> {
+    let most = |decades: std::ops::RangeInclusive<i32>| decades.count();
+    let (along, across) = (most(ALONG), most(ACROSS));
+    let mut known: BTreeMap<Place, f64> = BTreeMap::new();
+    let coarse: Vec<Place> = FIRST
+        .iter()
+        .flat_map(|a| FIRST.map(|c| (*a, c.min(across))))
+        .collect();
+    for &place in if from.is_empty() { &coarse[..] } else { from } {
+        known.insert(place, value(place)?);
+    }
+    loop {
+        let Some(best) = best(&known) else {
+            return Ok(known);
+        };
+        let steps: [(isize, isize); 8] = [
+            (1, 0),
+            (-1, 0),
+            (0, 1),
+            (0, -1),
+            (1, 1),
+            (-1, -1),
+            (1, -1),
+            (-1, 1),
+        ];
+        let near = |(a, c): (isize, isize)| {
+            let a = best.0.checked_add_signed(a)?;
+            let c = best.1.checked_add_signed(c)?;
+            (a <= along && c <= across).then_some((a, c))
+        };
+        let new: Vec<Place> = steps
+            .into_iter()
+            .filter_map(near)
+            .filter(|place| !known.contains_key(place))
+            .collect();
+        if new.is_empty() {
+            return Ok(known);
+        }
+        for place in new {
+            known.insert(place, value(place)?);
+        }
+    }
+}
+
+pub(super) fn best(known: &BTreeMap<Place, f64>) -> Option<Place> {
+    let least = known.iter().min_by(|a, b| a.1.total_cmp(b.1));
+    least.map(|(place, _)| *place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_walk_finds_the_bottom_of_a_bowl_anywhere() -> Result<()> {
+        for bottom in [(0, 0), (8, 6), (3, 4), (7, 0), (0, 6)] {
+            let bowl = |(a, c): Place| {
+                Ok((a as f64 - bottom.0 as f64).powi(2) + (c as f64 - bottom.1 as f64).powi(2))
+            };
+            for from in [vec![], vec![(0, 0)], vec![(8, 6), (1, 1)]] {
+                assert_eq!(best(&walk(&from, bowl)?), Some(bottom), "from {from:?}");
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn places_are_decades() {
+        assert_eq!(smooth_at((0, 0)), Smooth::NONE);
+        let found = smooth_at((1, 6));
+        // Powers of ten, rounded.
+        assert!((found.along * 1e10 - 1.0).abs() < 1e-12);
+        assert!((found.across * 1e5 - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,107 @@
+//! Outliers: readings that do not belong to the recording. One wrong reading would bend the whole
+//! model.
+
+use crate::error::Result;
+use crate::identify::options::{FitOptions, LoadLaw};
+use crate::identify::weights::problem::Problem;
+use crate::model::{Outlier, Smooth};
+use crate::prepare::isolated;
+use crate::progress::Progress;
+use crate::recording::Recording;
+use crate::series::range;
+use std::borrow::Cow;
+
+/// Levels and smoothness of the model that outliers are judged by: enough to follow a loop, and
+/// too smooth to follow a single reading.
+const LEVELS: usize = 20;
+const SMOOTH: Smooth = Smooth {
+    along: 1e-8,
+    across: 1e-8,
+};
+
+/// An outlier is this many deviations away from its neighbours. Of a million readings with Gaussian
+/// noise, none is.
+const DEVIATIONS: f64 = 6.0;
+
+/// A smaller distance, as a share of the output's range, hardly moves a fit.
+const SMALLEST: f64 = 0.01;
+
+/// Each round uses a model that the outliers of the round before have not bent.
+const ROUNDS: usize = 3;
+
+/// The recordings with every outlier moved to where its neighbours say, and the outliers.
+///
+/// What a smooth model leaves of the output is compared from sample to sample. The misfit of a
+/// model changes slowly along a recording, so a reading that stands out from those on both sides is
+/// not the model's fault (Hampel 1974). It loses its influence altogether, unlike with weights that
+/// only fall with the distance (Huber 1964).
+///
+/// # Errors
+/// As [`crate::Fit::run`].
+pub(super) fn mended<'a>(
+    recordings: &'a [Recording],
+    options: &FitOptions,
+    progress: Progress<'_>,
+) -> Result<(Cow<'a, [Recording]>, Vec<Outlier>)> {
+    let options = FitOptions {
+        levels: LEVELS,
+        smooth: options.smooth.at_least(SMOOTH),
+        load_law: LoadLaw::Weights,
+        load_curves: None,
+        load_degree: Some(0),
+        bootstrap: 0,
+        ..options.clone()
+    };
+    let mut mended = Cow::Borrowed(recordings);
+    let mut outliers: Vec<Outlier> = Vec::new();
+    for _ in 0..ROUNDS {
+        progress.tell("outliers", f64::NAN)?;
+        let found = round(&mended, &options)?;
+        if found.is_empty() {
+            break;
+        }
+        for outlier in found {
+            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
+            let same = |other: &&mut Outlier| {
+                (other.recording, other.sample) == (outlier.recording, outlier.sample)
+            };
+            match outliers.iter_mut().find(same) {
+                Some(before) => before.by += outlier.by,
+                None => outliers.push(outlier),
+            }
+        }
+    }
+    outliers.sort_by_key(|outlier| (outlier.recording, outlier.sample));
+    Ok((mended, outliers))
+}
+
+fn round(recordings: &[Recording], options: &FitOptions) -> Result<Vec<Outlier>> {
+    let mut problem = Problem::new(recordings, options)?;
+    let fitted = problem.solve(None, Progress::NONE)?;
+    let mut found = Vec::new();
+    for (recording, range_of) in problem.experiment.recordings.iter().enumerate() {
+        let residual: Vec<f64> = fitted.solution.residual[range_of.clone()]
+            .iter()
+            .map(|r| fitted.sign.factor() * r)
+            .collect();
+        let (low, high) = range(&without_extremes(
+            &problem.experiment.output[range_of.clone()],
+        ));
+        let own = isolated(&residual, DEVIATIONS, SMALLEST * (high - low));
+        found.extend(own.into_iter().map(|(sample, by)| Outlier {
+            recording,
+            sample,
+            by,
+        }));
+    }
+    Ok(found)
+}
+
+/// The values without the hundredth that is largest and the hundredth that is smallest, so that an
+/// outlier does not make the range.
+fn without_extremes(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let cut = (values.len() / 100).max(1).min((values.len() - 1) / 2);
+    sorted[cut..values.len() - cut].to_vec()
+}
