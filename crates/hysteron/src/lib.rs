@@ -70,11 +70,12 @@ pub use model::{
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
-    Spikes, Step, noise, prepare, rate_dependence,
+    Spikes, Step, prepare, rate_dependence,
 };
 pub use progress::Progress;
 pub use recording::{Origin, Quantity, Recording, Source};
 pub use remedy::{Remedy, Setting, SettingValue};
+pub use series::noise::noise;
 pub use series::{
     Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,
     remembered, usual_tolerance,

@@ -5,10 +5,10 @@ use crate::error::Result;
 use crate::identify::options::{FitOptions, LoadLaw};
 use crate::identify::weights::problem::Problem;
 use crate::model::{Outlier, Smooth};
-use crate::prepare::isolated;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
+use crate::series::spikes::isolated;
 use std::borrow::Cow;
 
 /// Levels and smoothness of the model that outliers are judged by: enough to follow a loop, and
