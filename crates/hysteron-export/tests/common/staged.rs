@@ -115,6 +115,18 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
     }
 }
 
+impl Case {
+    /// This model at this sampling, for calls of one's own.
+    pub fn of(model: Model, sampling: CSampling) -> Self {
+        Self {
+            drives: model.drive_range(),
+            loads: (0.0, 1.0),
+            model,
+            sampling,
+        }
+    }
+}
+
 /// A command of the driver `staged.c`.
 #[derive(Debug, Clone)]
 pub enum Call {
