@@ -59,13 +59,13 @@ printf('vectors: %d files, %d samples, as whole signals and step by step\n', num
 end
 
 % Time and load of samples, where the run has them.
-function arguments = around(run, at, time)
-arguments = {};
+function named = around(run, at, time)
+named = {};
 if isfield(run, 'dt')
-    arguments = {'time', time(at)};
+    named = {'time', time(at)};
 end
 if isfield(run, 'load')
-    arguments = [arguments, {'load', run.load(at)}];
+    named = [named, {'load', run.load(at)}];
 end
 end
 
