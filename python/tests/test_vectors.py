@@ -43,7 +43,8 @@ def samples(run):
 
 
 def inverse_of(model, run):
-    return model.inverse(drive_range=run.get("drive_range"), horizon=run.get("horizon", 0.0))
+    limits = tuple(run["drive_range"]) if "drive_range" in run else None
+    return model.inverse(drive_range=limits, horizon=run.get("horizon", 0.0))
 
 
 def saved_and_restored(model, state):
