@@ -262,6 +262,16 @@ fn the_page_on_c() {
     for name in names {
         run(&mut shell(name));
     }
+    // The second program, of a model with stages.
+    let program = page.split("```c\n").nth(2).unwrap();
+    let program = program.split("```").next().unwrap();
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    run(&mut shell(commands));
+    let (model, _) = one_of(&vectors(folder.path()), "inverse-chain-mkp-5.0");
+    std::fs::rename(model, folder.path().join("wire.json")).unwrap();
+    for name in names {
+        run(&mut shell(name));
+    }
     assert!(commands.contains(&native_libraries()), "{commands}");
 }
 
