@@ -26,7 +26,14 @@ static int begin(const hys_actuator *actuator, hys_actuator_state *state, const 
 int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
                        size_t count)
 {
-    return hys_actuator_start_mixed(actuator, state, turns, count, NULL, NULL, 0u);
+    if (actuator == NULL || state == NULL) {
+        return HYS_NULL;
+    }
+    if (actuator->parts != NULL) {
+        return HYS_MEMORY_TOO_SMALL;
+    }
+    state->mixed = NULL;
+    return begin(actuator, state, actuator->operators, turns, count);
 }
 
 /* The values of the Bernstein polynomials at s in [0, 1], by de Casteljau's algorithm. */
@@ -67,6 +74,16 @@ static void mix(const hys_parts *parts, hys_mixed *mixed, hys_real load)
     mixed->load = load;
 }
 
+/* The same for a state, whose operators stay as they are. */
+static int mix_state(hys_mixed *mixed, const hys_parts *parts, hys_state *operators, hys_real load)
+{
+    if (!is_finite(load)) {
+        return HYS_LOAD;
+    }
+    mix(parts, mixed, load);
+    return hys_rebase(operators);
+}
+
 int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *state,
                              hys_turn *turns, size_t count, hys_mixed *mixed, hys_real *table,
                              size_t entries)
@@ -74,9 +91,8 @@ int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *s
     if (actuator == NULL || state == NULL) {
         return HYS_NULL;
     }
-    state->mixed = NULL;
     if (actuator->parts == NULL) {
-        return begin(actuator, state, actuator->operators, turns, count);
+        return hys_actuator_start(actuator, state, turns, count);
     }
     if (mixed == NULL || table == NULL
         || entries < table_index(actuator->operators->levels + 1u, 0u)) {
@@ -85,25 +101,10 @@ int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *s
     mixed->model = *actuator->operators;
     mixed->model.table = table;
     mixed->table = table;
+    mixed->place = mix_state;
     mix(actuator->parts, mixed, actuator->parts->min);
     state->mixed = mixed;
     return begin(actuator, state, &mixed->model, turns, count);
-}
-
-int hys_actuator_place(hys_actuator_state *state, hys_real load)
-{
-    hys_mixed *mixed = state->mixed;
-    if (mixed == NULL) {
-        return HYS_OK;
-    }
-    if (!is_finite(load)) {
-        return HYS_LOAD;
-    }
-    if (load == mixed->load) {
-        return HYS_OK;
-    }
-    mix(state->actuator->parts, mixed, load);
-    return hys_rebase(&state->operators);
 }
 
 /* The temperature after a sample time in which `drive` was held. It moves towards its value at rest
@@ -161,7 +162,7 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
     }
     code = curves_at(actuator, load, &at);
     if (code == HYS_OK) {
-        code = hys_actuator_place(state, load);
+        code = place(state, load);
     }
     if (code == HYS_OK) {
         code = hys_step(&state->operators, seen_at(actuator, &at, temperature), &sum);

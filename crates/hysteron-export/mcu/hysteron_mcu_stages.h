@@ -53,10 +53,13 @@ typedef struct {
 } hys_parts;
 
 /* The operators at one load. It is the caller's memory; only these functions may use its members.
+ * The function is called through a pointer, so that programs without such a model do not hold it.
  */
-typedef struct {
+typedef struct hys_mixed {
     hys_model model;
     hys_real *table;
+    int (*place)(struct hys_mixed *mixed, const hys_parts *parts, hys_state *operators,
+                 hys_real load);
     hys_real load, offset;
 } hys_mixed;
 

@@ -192,7 +192,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     }
     code = curves_at(actuator, load, &at);
     if (code == HYS_OK) {
-        code = hys_actuator_place(state, load);
+        code = place(state, load);
     }
     if (code != HYS_OK) {
         return code;
