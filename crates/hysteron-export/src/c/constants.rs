@@ -145,7 +145,9 @@ impl<T: Number> Constants<T> {
         // `hys_mixed` and its table.
         let len = table_len(self.core.plane().levels());
         let mixed = match &self.stages {
-            Some(staged) if staged.parts.is_some() => model + aligned(2 * WORD) + (2 + len) * T::BYTES,
+            Some(staged) if staged.parts.is_some() => {
+                model + aligned(2 * WORD) + (2 + len) * T::BYTES
+            }
             _ => 0,
         };
         let (stages, state) = match &self.stages {
