@@ -5,6 +5,10 @@
 #include "hysteron_mcu_internal.h"
 #include "hysteron_mcu_stages.h"
 
+/* The distance from one to the next larger number. */
+#define HYS_EPSILON \
+    (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON)
+
 /* The values of all curves at one load. */
 typedef struct {
     hys_real scale, shift, gain, offset;
@@ -16,6 +20,22 @@ static inline int usable_actuator(const hys_actuator_state *state)
         return HYS_NULL;
     }
     return state->actuator == NULL ? HYS_STATE_MISMATCH : usable_state(&state->operators);
+}
+
+/* Brings the operators to a load, where their weights depend on it. They stay as they are. */
+static inline int place(hys_actuator_state *state, hys_real load)
+{
+    hys_mixed *mixed = state->mixed;
+    if (mixed == NULL || load == mixed->load) {
+        return HYS_OK;
+    }
+    return mixed->place(mixed, state->actuator->parts, &state->operators, load);
+}
+
+/* The output where the operators' sum is zero. */
+static inline hys_real offset_of(const hys_actuator_state *state)
+{
+    return state->mixed == NULL ? state->actuator->offset : state->mixed->offset;
 }
 
 /* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */

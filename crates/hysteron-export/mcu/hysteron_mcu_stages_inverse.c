@@ -2,19 +2,17 @@
  * the last to the first. Applications that only run models forward do not need this file. */
 #include "hysteron_mcu_stages_internal.h"
 
-/* Eight times the distance from one to the next larger number. */
-static const hys_real EIGHT_EPSILON =
-    (hys_real)8
-    * (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON);
+static const hys_real EIGHT_EPSILON = (hys_real)8 * HYS_EPSILON;
 
 static hys_real magnitude(hys_real x)
 {
     return hys_max(x, -x);
 }
 
-static hys_real inward(const hys_actuator *actuator, hys_real output)
+static hys_real inward(const hys_actuator_state *state, hys_real output)
 {
-    return actuator->falls ? actuator->offset - output : output - actuator->offset;
+    hys_real offset = offset_of(state);
+    return state->actuator->falls ? offset - output : output - offset;
 }
 
 /* The operators' sum that gives an output in this sample, and the gain from that sum to the
@@ -36,7 +34,7 @@ static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, h
         rise = rise * rest;
     }
     *gain = rise * at->gain;
-    return (inward(actuator, output - at->offset) - base) / *gain;
+    return (inward(state, output - at->offset) - base) / *gain;
 }
 
 /* The operators' input for a sum. hys_inverse_step goes there, and everything goes back to where it
@@ -149,13 +147,14 @@ static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
 }
 
 /* Whether a target lies beyond the outputs at rest. */
-static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_real target,
+static int reach_of(const hys_actuator_state *state, const loaded_axis *at, hys_real target,
                     hys_real tolerance)
 {
-    const hys_model *model = actuator->operators;
+    const hys_actuator *actuator = state->actuator;
+    const hys_model *model = state->operators.model;
     hys_real gain = at->gain * actuator->creep_gain;
     hys_real reach = hys_max(tolerance, gain * model->rounding);
-    hys_real sum = inward(actuator, target - at->offset);
+    hys_real sum = inward(state, target - at->offset);
     if (sum > gain * own_sum(model, model->total) + reach) {
         return actuator->falls ? HYS_LOW : HYS_HIGH;
     }
@@ -184,7 +183,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         return HYS_VALUE;
     }
     actuator = state->actuator;
-    model = actuator->operators;
+    model = state->operators.model;
     if (!model->inverse) {
         return HYS_NEGATIVE_WEIGHTS;
     }
@@ -192,6 +191,9 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         return HYS_INPUT_NOT_FINITE;
     }
     code = curves_at(actuator, load, &at);
+    if (code == HYS_OK) {
+        code = place(state, load);
+    }
     if (code != HYS_OK) {
         return code;
     }
@@ -221,11 +223,11 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     gain = at.gain * actuator->creep_gain;
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
-    offsets = magnitude(actuator->offset) + magnitude(at.offset) + magnitude(target);
+    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target);
     if (error <= hys_max(tolerance, ZERO) + rounding + EIGHT_EPSILON * offsets) {
         found = HYS_REACHED;
     } else {
-        int beyond = reach_of(actuator, &at, target, tolerance);
+        int beyond = reach_of(state, &at, target, tolerance);
         found = beyond != HYS_REACHED ? beyond : found == HYS_PASSED ? HYS_PASSED : HYS_LIMITED;
     }
     *drive = to;

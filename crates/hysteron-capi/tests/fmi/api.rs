@@ -355,7 +355,7 @@ pub fn vectors() -> impl Iterator<Item = serde_json::Value> {
         .collect();
     paths.retain(|path| path.extension().is_some_and(|end| end == "json"));
     paths.sort();
-    assert!(paths.len() >= 15);
+    assert!(paths.len() >= 30);
     paths
         .into_iter()
         .map(|path| serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap())
