@@ -174,7 +174,12 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         } else if fit.solver == Solver::Nnls && against > AGAINST_INPUT {
             advice.push(Advice::AgainstInput { part: against });
         }
-        if fit.samples <= plane.operators() {
+        // Where whole branches were left out, the error on them tells.
+        let tested = fit
+            .validation
+            .as_ref()
+            .is_some_and(|found| found.whole_branches);
+        if fit.samples <= plane.operators() && !tested {
             advice.push(Advice::FewData {
                 samples: fit.samples,
                 operators: plane.operators(),

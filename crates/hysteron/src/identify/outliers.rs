@@ -56,37 +56,43 @@ pub(super) fn mended<'a>(
     let mut outliers: Vec<Outlier> = Vec::new();
     for _ in 0..ROUNDS {
         progress.tell("outliers", f64::NAN)?;
-        let found = round(&mended, &options)?;
-        if found.is_empty() {
+        let found = judged(recordings, &mended, &options)?;
+        let places = |of: &[Outlier]| -> Vec<(usize, usize)> {
+            of.iter()
+                .map(|outlier| (outlier.recording, outlier.sample))
+                .collect()
+        };
+        let same = places(&found) == places(&outliers);
+        outliers = found;
+        mended = Cow::Borrowed(recordings);
+        for outlier in &outliers {
+            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
+        }
+        if same {
             break;
         }
-        for outlier in found {
-            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
-            let same = |other: &&mut Outlier| {
-                (other.recording, other.sample) == (outlier.recording, outlier.sample)
-            };
-            match outliers.iter_mut().find(same) {
-                Some(before) => before.by += outlier.by,
-                None => outliers.push(outlier),
-            }
-        }
     }
-    outliers.sort_by_key(|outlier| (outlier.recording, outlier.sample));
     Ok((mended, outliers))
 }
 
-fn round(recordings: &[Recording], options: &FitOptions) -> Result<Vec<Outlier>> {
-    let mut problem = Problem::new(recordings, options)?;
+/// The outliers of the recordings, judged by a model of the mended ones.
+fn judged(
+    recordings: &[Recording],
+    mended: &[Recording],
+    options: &FitOptions,
+) -> Result<Vec<Outlier>> {
+    let mut problem = Problem::new(mended, options)?;
     let fitted = problem.solve(None, Progress::NONE)?;
     let mut found = Vec::new();
-    for (recording, range_of) in problem.experiment.recordings.iter().enumerate() {
-        let residual: Vec<f64> = fitted.solution.residual[range_of.clone()]
-            .iter()
-            .map(|r| fitted.sign.factor() * r)
+    for (recording, part) in problem.experiment.recordings.iter().enumerate() {
+        let left = fitted.solution.residual[part.clone()].iter();
+        let own = recordings[recording].output.iter();
+        let moved = own.zip(&mended[recording].output).map(|(y, m)| y - m);
+        let residual: Vec<f64> = left
+            .zip(moved)
+            .map(|(r, moved)| fitted.sign.factor() * r + moved)
             .collect();
-        let (low, high) = range(&without_extremes(
-            &problem.experiment.output[range_of.clone()],
-        ));
+        let (low, high) = range(&without_extremes(&recordings[recording].output));
         let own = isolated(&residual, DEVIATIONS, SMALLEST * (high - low));
         found.extend(own.into_iter().map(|(sample, by)| Outlier {
             recording,
