@@ -150,6 +150,27 @@ fn weights_memory_and_offset() {
 }
 
 #[test]
+fn no_more_memory_than_the_arrays_need() {
+    for levels in 2..20 {
+        let n = operator_count(levels);
+        // Parameters with the offset: now, off-line, good, candidate, regressor; states.
+        let common = 5 * (n + 1) + n;
+        let triangle = operator_count(n + 1);
+        assert_eq!(estimator_len(levels, GRADIENT), common);
+        assert_eq!(estimator_len(levels, INCREMENTS), common + n);
+        let matrices = 2 * triangle + 2 * (n + 1);
+        assert_eq!(estimator_len(levels, LEAST_SQUARES), common + matrices);
+        for count in 1..5 {
+            let common = 5 * (count + 1) + count * table_len(levels);
+            let matrices = 2 * operator_count(count + 1) + 2 * (count + 1);
+            let len = |method| estimator_len_of_basis(levels, method, count);
+            assert_eq!(len(GRADIENT), common);
+            assert_eq!(len(LEAST_SQUARES), common + matrices);
+        }
+    }
+}
+
+#[test]
 fn parts_and_shares() {
     let new = |method, basis: &[f64], coefficients: &[f64]| {
         let (mut model, _) = build(unit_plane(K), Operator::Mkp, &[1.0; N]);
