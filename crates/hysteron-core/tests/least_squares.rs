@@ -111,34 +111,36 @@ fn every_sample_is_learned_by_the_textbook() {
     );
 }
 
-/// Readings so exact that rounding makes the covariance indefinite.
+/// Rounding makes the covariance indefinite where noisy readings are taken as exact. A restart
+/// keeps the estimate from running away.
 #[test]
-fn readings_without_error_do_not_break_the_covariance() {
-    for seed in 0..30 {
+fn readings_taken_as_exact_do_not_break_the_covariance() {
+    for seed in 0..60 {
         let mut rng = rng(4200 + seed);
         let k = 2 + seed as usize % 4;
         let plane = unit_plane(k);
         let (plant, mut there) = build(plane, Operator::Mkp, &dense(&mut rng, k));
+        let spread = [1.0, 1e3, 1e6][rng.random_range(0..3)];
         let guards = Adaptation {
             trial: u32::MAX,
             gate: 0.0,
             ..options(Method::LeastSquares {
                 forgetting: 1.0,
-                noise: 1e-12,
-                spread: 1e6,
-                correlation: 0.0,
+                noise: [1e-3, 1e-6, 1e-12][rng.random_range(0..3)],
+                spread,
+                correlation: [0.0, 2.0][rng.random_range(0..2)],
             })
         };
         let mut learner = Learner::new(plane, Operator::Mkp, &vec![0.5; operator_count(k)], guards);
-        let mut worst = 0.0_f64;
-        for (n, input) in strokes(&mut rng, &plane, 4000, 20).into_iter().enumerate() {
-            let measured = plant.step(&mut there, input).unwrap().output;
-            let error = learner.step(input, measured).unwrap().error;
-            if n > 3000 {
-                worst = worst.max(error.abs());
-            }
+        for input in strokes(&mut rng, &plane, 4000, 20) {
+            let clean = plant.step(&mut there, input).unwrap().output;
+            let measured = clean + rng.random_range(-0.1..0.1);
+            let learning = learner.step(input, measured).unwrap();
+            // With variances of a thousand rounding errors the estimate is of no use. But it does not
+            // run away: without a restart it goes to 1e70.
+            let off = (learning.output - clean).abs();
+            assert!(off < 1e20, "{seed}: {off:e}, {:?}", guards.method);
         }
-        println!("{seed}: {worst:e}");
     }
 }
 
