@@ -22,8 +22,10 @@ fn drive(rng: &mut StdRng, owned: &Owned<f64>, plane: &Plane<f64>, load: Option<
 /// Everything far from zero: the numbers lose digits, and their rounding has to be known.
 fn far(rng: &mut StdRng, constants: &mut Constants, plane: &Plane<f64>) {
     let span = plane.max() - plane.bottom();
-    let mut away =
-        || span * 10f64.powf(rng.random_range(0.0..9.0)) * [1.0, -1.0][rng.random_range(0..2)];
+    let mut away = || {
+        let size = span * 10f64.powf(rng.random_range(0.0..9.0));
+        size * [1.0, -1.0, 0.0, 0.0][rng.random_range(0..4)]
+    };
     let (spacing, shift, ambient, offset) = (away(), away(), away(), away());
     constants
         .spacing
@@ -116,6 +118,10 @@ fn outputs_of_the_chain_are_met_by_its_inverse() {
                 Status::Ok,
                 "{seed}, {n}: {met} for {y} {constants:?}"
             );
+            // On from there: exactly at a level, too.
+            if rng.random() {
+                (there, past) = (state, memory);
+            }
             if !is_far {
                 worst = worst.max((met - y).abs() / range);
             }

@@ -681,6 +681,7 @@ fn constants_out_of_range_are_refused_by_name() {
         (&[0.0, 1.0, 2.0, 3.0], false),
         (&[0.0, 2.0, 1.0], false),
         (&[0.0, 1.0, 1.0], false),
+        (&[0.0, 0.0, 1.0], false),
         (&[0.0, 1.0, 1.0 + 2.0 * ulp], false),
         (&[0.0, 1.0, 1.0 + 8.0 * ulp], true),
         (&[-1.0 - 2.0 * ulp, -1.0, 0.0], false),
