@@ -192,9 +192,9 @@ fn parts_and_shares() {
     assert_eq!(new(GRADIENT, &[], &[]), bad("coefficients"));
     assert_eq!(new(INCREMENTS, &basis, &[1.0, 1.0]), bad("method"));
     assert_eq!(new(LEAST_SQUARES, &basis, &[1.0, 1.0]), bad("correlation"));
-    let (expected, found) = (N, 2 * N);
+    let (expected, found) = (3 * N, 2 * N);
     let count = Error::WeightCount { expected, found };
-    assert_eq!(new(GRADIENT, &basis, &[1.0]), Err(count));
+    assert_eq!(new(GRADIENT, &basis, &[1.0; 3]), Err(count));
     // Twice the sum of the weights has to be a number, as for every model.
     let all = |share: f64| [share * (f64::MAX / (2 * N) as f64); 2];
     assert_eq!(new(GRADIENT, &basis, &all(0.49)), Ok(()));
