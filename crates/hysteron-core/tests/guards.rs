@@ -5,8 +5,8 @@
 mod common;
 
 use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, dense, inputs,
-    options, rng, strokes, unit_plane, weights,
+    GRADIENT, INCREMENTS, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng, strokes,
+    unit_plane, weights,
 };
 use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
 use rand::RngExt;
