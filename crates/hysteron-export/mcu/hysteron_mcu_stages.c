@@ -107,23 +107,6 @@ int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *s
     return begin(actuator, state, &mixed->model, turns, count);
 }
 
-/* The temperature after a sample time in which `drive` was held. It moves towards its value at rest
- * and never beyond it, so one time constant holds for all of the sample time. */
-static hys_real heated(const hys_actuator_state *state, hys_real drive)
-{
-    const hys_actuator *actuator = state->actuator;
-    hys_real rest, factor;
-    if (!actuator->body) {
-        return drive;
-    }
-    rest = actuator->ambient + actuator->gain * drive;
-    if (!state->started) {
-        return rest;
-    }
-    factor = rest > state->temperature ? actuator->heating : actuator->cooling;
-    return rest + (state->temperature - rest) * factor;
-}
-
 /* Creep and lag of the operators' sum. */
 static hys_real settled(hys_actuator_state *state, hys_real h)
 {

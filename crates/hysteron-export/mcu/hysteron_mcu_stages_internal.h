@@ -103,6 +103,23 @@ static inline int curves_at(const hys_actuator *actuator, hys_real load, loaded_
     return HYS_OK;
 }
 
+/* The temperature after a sample time in which `drive` was held. It moves towards its value at rest
+ * and never beyond it, so one time constant holds for all of the sample time. */
+static inline hys_real heated(const hys_actuator_state *state, hys_real drive)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real rest, factor;
+    if (!actuator->body) {
+        return drive;
+    }
+    rest = actuator->ambient + actuator->gain * drive;
+    if (!state->started) {
+        return rest;
+    }
+    factor = rest > state->temperature ? actuator->heating : actuator->cooling;
+    return rest + (state->temperature - rest) * factor;
+}
+
 /* The operators' input at a temperature. */
 static inline hys_real seen_at(const hys_actuator *actuator, const loaded_axis *at,
                                hys_real temperature)

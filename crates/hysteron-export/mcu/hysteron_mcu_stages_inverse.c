@@ -97,23 +97,6 @@ static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hy
     return EIGHT_EPSILON * (effective * actuator->steepest + ends);
 }
 
-/* A relay switches at its level and not an ulp before it. */
-static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
-                       hys_real temperature)
-{
-    const hys_actuator *actuator = state->actuator;
-    int rising = input > state->operators.input, n;
-    for (n = 0; n < 4; n++) {
-        hys_real seen = seen_at(actuator, at, temperature), nudge;
-        if (seen == input || (seen > input) == rising) {
-            break;
-        }
-        nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, magnitude(temperature)));
-        temperature = rising ? temperature + nudge : temperature - nudge;
-    }
-    return temperature;
-}
-
 static hys_real within_range(const hys_actuator *actuator, hys_real drive)
 {
     return actuator->limited ? hys_clamp(drive, actuator->drive_min, actuator->drive_max) : drive;
@@ -146,6 +129,44 @@ static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
     return is_finite(drive) ? drive : holding(actuator, now);
 }
 
+/* The drive for an input of the operators, and the size of the numbers that it comes from. */
+static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
+                         hys_real *size)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real temperature = temperature_at(actuator, at, input);
+    hys_real drive = drive_for(state, temperature);
+    *size = magnitude(temperature);
+    if (actuator->body) {
+        *size = *size + (magnitude(actuator->ambient) + magnitude(actuator->gain * drive));
+    }
+    return drive;
+}
+
+/* The drive at which a relay switches: at its level and not an ulp before it. One that has just
+ * switched switches back where the input turns by an ulp: a branch that stays goes on. */
+static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
+                       hys_real drive, hys_real *size)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real aim = input, last = state->operators.input;
+    int rising = input > last, n;
+    if (input == last) {
+        rising = is_rising(&state->operators) && state->operators.x > ZERO;
+    }
+    for (n = 0; n < 4; n++) {
+        hys_real seen = seen_at(actuator, at, heated(state, drive)), nudge;
+        if (seen == input || (seen > input) == rising) {
+            break;
+        }
+        /* In the unit of the operators' input, which need not be that of the temperature. */
+        nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, *size));
+        aim = rising ? aim + nudge : aim - nudge;
+        drive = drive_to(state, at, aim, size);
+    }
+    return drive;
+}
+
 /* Whether a target lies beyond the outputs at rest. */
 static int reach_of(const hys_actuator_state *state, const loaded_axis *at, hys_real target,
                     hys_real tolerance)
@@ -170,7 +191,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_actuator *actuator;
     const hys_model *model;
     loaded_axis at;
-    hys_real aim, gain, input, temperature, to, size, slack, reached, error, rounding, offsets;
+    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
     if (code != HYS_OK) {
@@ -208,13 +229,10 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         /* A lag that cannot move in a sample: stay. */
         input = hys_clamp(state->operators.input, model->bottom, model->max);
     }
-    temperature = temperature_at(actuator, &at, input);
+    to = drive_to(state, &at, input, &size);
     if (model->kind == RELAY) {
-        temperature = nudged(state, &at, input, temperature);
+        to = nudged(state, &at, input, to, &size);
     }
-    to = drive_for(state, temperature);
-    size = magnitude(temperature)
-        + (actuator->body ? magnitude(actuator->ambient) + magnitude(actuator->gain * to) : ZERO);
     slack = slack_of(actuator, &at, size);
     code = hys_actuator_step(state, to, load, &reached);
     if (code != HYS_OK) {

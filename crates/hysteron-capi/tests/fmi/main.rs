@@ -77,6 +77,7 @@ fn feed(instance: Instance, kind: &str, run: &serde_json::Value, n: usize) {
 }
 
 #[test]
+#[cfg_attr(miri, ignore = "it is about digits, and takes Miri hours")]
 fn every_vector_through_both_standards() {
     let mut samples = 0;
     for vector in vectors() {
@@ -188,10 +189,16 @@ fn initialisation() {
 
 #[test]
 fn instances_in_threads_do_not_meet() {
-    let vector = vector("forward-mkp-20");
+    // Miri takes a thousand times as long.
+    let (name, threads, rounds, count) = match cfg!(miri) {
+        true => ("forward-mkp-2", 3, 2, 10),
+        false => ("forward-mkp-20", 8, 20, usize::MAX),
+    };
+    let vector = vector(name);
     let model = model(&vector);
     let run = &vector["runs"][1];
-    let (inputs, expected) = (numbers(run, "input"), expected(&model, "forward", run));
+    let (mut inputs, expected) = (numbers(run, "input"), expected(&model, "forward", run));
+    inputs.truncate(count);
     let fmus = [Fmi::V2, Fmi::V3].map(|fmi| Unpacked::new(&model, false, fmi));
     let follow = |instance: Instance| {
         for (input, expected) in inputs.iter().zip(&expected) {
@@ -200,10 +207,10 @@ fn instances_in_threads_do_not_meet() {
         }
     };
     std::thread::scope(|scope| {
-        for n in 0..8 {
+        for n in 0..threads {
             let (fmu, follow) = (&fmus[n % 2], &follow);
             scope.spawn(move || {
-                for _ in 0..20 {
+                for _ in 0..rounds {
                     let instance = fmu.started();
                     follow(instance);
                     instance.free();
@@ -224,6 +231,7 @@ fn instances_in_threads_do_not_meet() {
 
 /// Both blocks in series return the reference.
 #[test]
+#[cfg_attr(miri, ignore = "it is about digits, and takes Miri hours")]
 fn in_series_they_return_the_reference() {
     for name in ["inverse-mkp-20", "inverse-kp-5", "inverse-mkp-5-negative"] {
         let vector = vector(name);

@@ -303,11 +303,7 @@ impl<T: Real> Stages<'_, T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let temperature = match self.body {
-            None => input,
-            Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
-            Some(body) => body.rest(input),
-        };
+        let temperature = self.heated(memory, rates, input);
         if !(input.is_finite() && temperature.is_finite()) {
             return Err(Error::InputNotFinite { index: 0 });
         }
@@ -326,6 +322,15 @@ impl<T: Real> Stages<'_, T> {
             output: loaded.offset + self.outward(sum),
             clipped: step.clipped,
         })
+    }
+
+    /// The temperature after a step with this input.
+    pub(crate) fn heated(&self, memory: &StageState<T>, rates: &Rates<T>, input: T) -> T {
+        match self.body {
+            None => input,
+            Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
+            Some(body) => body.rest(input),
+        }
     }
 
     /// The factors for a time step; those of no time before the first sample.

@@ -127,29 +127,34 @@ impl<T: Real> Stages<'_, T> {
                 status: Status::Limited,
             },
         };
-        let mut temperature = self.axis.backward(plane, loaded, solution.input);
+        let place = |aim: T| {
+            let temperature = self.axis.backward(plane, loaded, aim);
+            let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
+            let input = self.drive(memory, rates, wanted, temperature);
+            (input, self.size(temperature, input))
+        };
+        let (mut input, mut size) = place(solution.input);
         if model.operator() == Operator::Relay {
-            // A relay switches at its level and not an ulp before it.
-            let rising = solution.input > state.input();
+            // A relay switches at its level and not an ulp before it. One that has just switched
+            // switches back where the input turns by an ulp: a branch that stays goes on.
+            let rising = match solution.input == state.input() {
+                true => state.is_rising() && state.position() > T::ZERO,
+                false => solution.input > state.input(),
+            };
+            let mut aim = solution.input;
             for _ in 0..4 {
+                let temperature = self.heated(memory, rates, input);
                 let seen = self.axis.forward(plane, loaded, temperature);
                 if seen == solution.input || (seen > solution.input) == rising {
                     break;
                 }
-                let size = temperature.max(-temperature);
+                // In the unit of the operators' input, which need not be that of the temperature.
                 let nudge = plane.nudge().max(self.axis.rounding(plane, loaded, size));
-                temperature = if rising {
-                    temperature + nudge
-                } else {
-                    temperature - nudge
-                };
+                aim = if rising { aim + nudge } else { aim - nudge };
+                (input, size) = place(aim);
             }
         }
-        let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
-        let input = self.drive(memory, rates, wanted, temperature);
-        let slack = self
-            .axis
-            .rounding(plane, loaded, self.size(temperature, input));
+        let slack = self.axis.rounding(plane, loaded, size);
         let reached = self
             .step_at(model, state, memory, rates, input, load)?
             .output;
