@@ -152,8 +152,10 @@ fn one_bad_reading_is_named_and_has_no_weight() {
         let named = &found.fit.as_ref().unwrap().outliers;
         assert_eq!(named.len(), 1, "round {round}: {named:?}");
         assert_eq!(named[0].sample, place, "round {round}");
-        // It is put back to within the noise around it, of which a sample has 2 in 1000.
-        assert!((named[0].by - size).abs() < 0.02 * span(&clean));
+        // It is put back to where the model and its neighbours say: the misfit of a smooth model is
+        // part of that.
+        let off = (named[0].by - size).abs() / span(&clean);
+        assert!(off < 0.02, "round {round}, sample {place}: {off}");
         let (before, after) = (rmse(&good, &test), rmse(&found, &test));
         assert!(after < 1.05 * before, "round {round}: {after} of {before}");
     }

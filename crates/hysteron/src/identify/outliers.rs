@@ -27,7 +27,10 @@ const DEVIATIONS: f64 = 6.0;
 const SMALLEST: f64 = 0.01;
 
 /// Each round uses a model that the outliers of the round before have not bent.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 10;
+
+/// Rounds end when outliers move by less than this share of the output's range.
+const SETTLED: f64 = 1e-3;
 
 /// The recordings with every outlier moved to where its neighbours say, and the outliers.
 ///
@@ -52,23 +55,25 @@ pub(super) fn mended<'a>(
         bootstrap: 0,
         ..options.clone()
     };
+    let all = recordings.iter().flat_map(|recording| &recording.output);
+    let (low, high) = range(&without_extremes(&all.copied().collect::<Vec<_>>()));
+    let span = high - low;
     let mut mended = Cow::Borrowed(recordings);
     let mut outliers: Vec<Outlier> = Vec::new();
     for _ in 0..ROUNDS {
         progress.tell("outliers", f64::NAN)?;
         let found = judged(recordings, &mended, &options)?;
-        let places = |of: &[Outlier]| -> Vec<(usize, usize)> {
-            of.iter()
-                .map(|outlier| (outlier.recording, outlier.sample))
-                .collect()
-        };
-        let same = places(&found) == places(&outliers);
+        let settled = found.len() == outliers.len()
+            && found.iter().zip(&outliers).all(|(a, b)| {
+                let moved = (a.by - b.by).abs();
+                (a.recording, a.sample) == (b.recording, b.sample) && moved <= SETTLED * span
+            });
         outliers = found;
         mended = Cow::Borrowed(recordings);
         for outlier in &outliers {
             mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
         }
-        if same {
+        if settled {
             break;
         }
     }
