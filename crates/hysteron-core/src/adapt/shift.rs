@@ -149,10 +149,8 @@ impl<T: Real> ShiftEstimator<T> {
         let output = self.move_to(stages, model, state, memory, &rates, sample)?;
         let error = measured - output.output;
         let sensitivity = self.sensitivity(stages, model, state, memory, sample.load)?;
-        let slope = match stages.falling {
-            true => sensitivity.offset - gain * sensitivity.sum,
-            false => sensitivity.offset + gain * sensitivity.sum,
-        };
+        let gain = if stages.falling { -gain } else { gain };
+        let slope = sensitivity.slope(gain, error);
         let here = sensitivity.loaded.scale * memory.temperature();
         let at = (here, here - sensitivity.loaded.shift);
         Ok(Learning {
@@ -304,16 +302,24 @@ impl<T: Real> ShiftEstimator<T> {
     {
         let load = &stages.axis.load;
         let loaded = self.loaded(load, told)?;
+        // Beyond the loads known, the curves stay as they are. What they would say further inside
+        // still tells the way back.
+        let beyond = loaded.shift - load.within(loaded.shift);
+        let inside = at_shift(load, told, self.shift - beyond)?;
         // The curves are straight between their knots, so any small step gives their slopes.
         let small = self.level / T::from_index(64);
-        let next = at_shift(load, told, self.shift + small)?;
+        let small = if beyond > T::ZERO { -small } else { small };
+        let next = at_shift(load, told, self.shift - beyond + small)?;
         let over = |a: T, b: T| (b - a) / small;
-        let moves = over(loaded.scale, next.scale) * memory.temperature() - T::ONE;
+        let moves = over(inside.scale, next.scale) * memory.temperature() - T::ONE;
         let along = model.slope(state) * stages.axis.slope(model.plane(), state.input());
+        let along = loaded.gain * along;
         Ok(Sensitivity {
             loaded,
-            offset: over(loaded.offset, next.offset),
-            sum: over(loaded.gain, next.gain) * model.output(state) + loaded.gain * along * moves,
+            beyond,
+            offset: over(inside.offset, next.offset),
+            sum: over(inside.gain, next.gain) * model.output(state) + along * moves,
+            alone: -along,
         })
     }
 
@@ -425,9 +431,23 @@ impl<T: Real> ShiftEstimator<T> {
 /// How the output depends on the shift.
 struct Sensitivity<T> {
     loaded: Loaded<T>,
+    /// How far the shift is beyond those of the loads known.
+    beyond: T,
+    /// The slope of the offset over the shift.
     offset: T,
-    /// Of `g(σ) · h`.
+    /// The slope of `g(σ) · h`.
     sum: T,
+    /// The same for a shift that changes nothing else.
+    alone: T,
+}
+
+impl<T: Real> Sensitivity<T> {
+    /// The slope of the output for a correction of this `error`, with the gain after the operators.
+    fn slope(&self, gain: T, error: T) -> T {
+        let slope = self.offset + gain * self.sum;
+        let outward = error * slope * self.beyond > T::ZERO;
+        if outward { gain * self.alone } else { slope }
+    }
 }
 
 /// The curves where the shift is that of the load `told` and `shift` more. If that tells a load, they

@@ -113,6 +113,14 @@ impl<T: Real> Load<'_, T> {
         Some((from + part * (to - from)).clamp(from, to))
     }
 
+    /// The nearest shift that one of the loads known has; any shift, where they tell no load.
+    pub(crate) fn within(&self, shift: T) -> T {
+        match (self.of_shift(shift), self.shifts) {
+            (Some(_), [first, .., last]) => shift.clamp(first.min(*last), first.max(*last)),
+            _ => shift,
+        }
+    }
+
     fn check(&self) -> Result<(), Error> {
         let fault = |stage| Err(Error::Stage { stage });
         let finite = |values: &[T]| values.iter().all(|v| v.is_finite());
