@@ -400,15 +400,15 @@ fn a_load_is_told_by_its_shift_and_brings_gain_and_offset() {
     for seed in 0..SEEDS {
         let mut rng = rng(seed);
         let k = levels(&mut rng, 20).max(3);
-        let plane = plane(&mut rng, k);
+        let plane = common::unit_plane(k);
         let (model, state) = &build(plane, Operator::Mkp, &dense(&mut rng, k));
         let width = model.plane().max() - model.plane().bottom();
         let load = Load {
             loads: &[0.0, 100.0, 250.0],
             shifts: &[0.0, 0.1 * width, 0.3 * width],
             scales: &[1.0, 1.05, 1.1],
-            gains: &[1.0, 1.05, 1.1],
-            offsets: &[0.0, 0.01 * model.total(), 0.02 * model.total()],
+            gains: &[1.0, 1.2, 1.3],
+            offsets: &[0.0, 0.02 * model.total(), 0.05 * model.total()],
         };
         let axis = Axis { load, spacing: &[] };
         let stages = Stages {
