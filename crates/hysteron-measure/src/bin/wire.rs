@@ -14,15 +14,13 @@ fn main() -> Result<()> {
     let mut last = None;
     for (rule, tuning) in TUNINGS {
         scenario.shared.tuning = tuning;
-        scenario.controllers = vec![
-            Kind::InverseAnticipate,
-            Kind::Pid,
-            Kind::InversePidAnticipate,
-            Kind::AdaptivePidAnticipate,
-        ];
         let comparison = track(&scenario, Progress::NONE)?;
         let named = [
             ("drive from the model".to_owned(), Kind::InverseAnticipate),
+            (
+                "drive from the adaptive model".to_owned(),
+                Kind::AdaptiveAnticipate,
+            ),
             (format!("PID, {rule}"), Kind::Pid),
             (format!("both, PID by {rule}"), Kind::InversePidAnticipate),
             (
@@ -31,7 +29,7 @@ fn main() -> Result<()> {
             ),
         ];
         // Without a PID there is nothing to tune.
-        let once = usize::from(last.is_some());
+        let once = if last.is_some() { 2 } else { 0 };
         for (name, kind) in named.into_iter().skip(once) {
             rows.push(row(&name, kind, &comparison));
         }

@@ -7,8 +7,9 @@ use hysteron::{DesignOptions, Rates, design};
 use hysteron::{Fit, FitOptions, Model, Plane, Recording, Result};
 
 /// How many triangles the experiment of a wire has, and its steps as shares of the drive's range.
+/// Both begin at the lowest drive, where the wire is at rest.
 const TRIANGLES: usize = 5;
-const STEPS: [f64; 8] = [1.0, 0.0, 0.65, 0.2, 0.8, 0.4, 0.55, 0.0];
+const STEPS: [f64; 9] = [0.0, 1.0, 0.0, 0.65, 0.2, 0.8, 0.4, 0.55, 0.0];
 
 /// A model of the scenario's plant: from its file, or fitted to an experiment with the noise of
 /// `seed`.
@@ -55,8 +56,8 @@ fn with_body(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
             triangles.push((time, to));
         }
     }
-    // Each step lasts as long as the first leg of the triangles takes for a quarter of its way.
-    let rest = 0.25 * (high - low) / up;
+    // Each step lasts as long as the first leg of the triangles takes for half of its way.
+    let rest = 0.5 * (high - low) / up;
     let steps = (0..STEPS.len()).map(|n| (n as f64 * rest, drive(STEPS[n])));
     let steps: Vec<(f64, f64)> = steps.collect();
     let ends = [time, STEPS.len() as f64 * rest];
