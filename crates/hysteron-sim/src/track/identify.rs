@@ -82,7 +82,7 @@ fn with_body(scenario: &Scenario, scheme: &Scheme, seed: u64) -> Result<Model> {
     let recordings = recordings.collect::<Result<Vec<_>>>()?;
     let mut model = Fit::from(&FitOptions {
         levels: options.levels,
-        smooth: options.smooth,
+        smooth: options.smooth.into(),
         ..FitOptions::default()
     })
     .thermal(true)
