@@ -2,7 +2,7 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, recording, text};
-use hysteron::{Adapted, Columns, Compared, Errors, Model, TableWriter};
+use hysteron::{Adapted, Columns, Compared, Errors, Model, ShiftFound, TableWriter};
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     }
     match args.json.json {
         true => print(&to_json(args, &adapted, refused).to_string())?,
-        false => print(&to_text(args, &adapted, refused))?,
+        false => print(&to_text(args, &adapted, &model, refused))?,
     }
     match adapted.late {
         Some(late) if refused => Err(worse(args, &adapted, &late).into()),
@@ -82,11 +82,40 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "again": adapted.again,
         "counts": adapted.counts,
         "drift": adapted.drift,
+        "shift": adapted.shift.as_ref().map(|found| json!({
+            "shift": found.shift,
+            "deviation": found.deviation,
+            "load": found.load,
+            "from": found.from,
+        })),
         "fit": adapted.model.fit,
     })
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
+/// The shift at the end, and the load that it tells.
+fn shift(found: &ShiftFound, model: &Model) -> String {
+    let mut line = format!(
+        "shift of the axis at the end {}, give or take {}",
+        text::with_unit(found.shift, &model.input),
+        text::number(found.deviation)
+    );
+    if let (Some(load), Some(from), Some(dependence)) = (found.load, found.from, &model.load) {
+        let (low, high) = dependence.range();
+        line += &format!(
+            " from that at {}; it tells {} {}",
+            text::with_unit(from, &dependence.quantity),
+            match load {
+                load if load <= low => "at most",
+                load if load >= high => "at least",
+                _ => "about",
+            },
+            text::with_unit(load, &dependence.quantity)
+        );
+    }
+    line
+}
+
+fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -127,7 +156,11 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
             counts.rolled_back
         ),
         text::table(&rows),
-        format!(
+    ];
+    if let Some(found) = &adapted.shift {
+        lines.push(shift(found, model));
+    } else {
+        lines.push(format!(
             "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
              their sum",
             text::number(drift.weights.0),
@@ -135,8 +168,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
             text::number(drift.offset.0),
             text::with_unit(drift.offset.1, output),
             100.0 * drift.moved
-        ),
-    ];
+        ));
+    }
     if adapted.probation > 0 {
         lines.push(format!(
             "the last {} samples are on probation, as none judge them: the model has nothing of \

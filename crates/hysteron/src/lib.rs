@@ -37,7 +37,8 @@ mod remedy;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, Learner, OutcomeCounts, adapt,
+    AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
+    Learner, OutcomeCounts, ShiftFound, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{
@@ -52,7 +53,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Region, Solution, Status, Target, operator_index, operators,
+    Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, LoadLaw, Spacing,

@@ -9,7 +9,6 @@
 //! taken as a jump of the plant and accepted. Refused readings that do not agree are taken as more
 //! noise, and the scale grows step by step.
 
-use super::Adaptation;
 use crate::model::Model;
 use crate::scalar::Real;
 
@@ -22,6 +21,17 @@ const AT_START: usize = 50;
 /// The smallest scale is the model's range divided by this. Without noise, the scale would vanish
 /// and rounding errors would be refused. Outliers within a gate of this scale do no harm.
 const LEAST: usize = 1000;
+
+/// What the gate says of a reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// No more surprising than those before.
+    Usual,
+    /// The last of a burst of surprising readings that agree: the plant has jumped.
+    Jump,
+    /// An outlier, so far.
+    Refused,
+}
 
 /// What the gate knows of the errors. All values are in the output's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,31 +74,32 @@ impl<T: Real> Gate<T> {
         *self = Self::new(self.range);
     }
 
-    /// Whether a reading whose prediction has this `error` is accepted.
-    pub(super) fn believes(&mut self, error: T, options: &Adaptation<T>) -> bool {
-        if options.gate == T::ZERO {
-            return true;
+    /// Judges a reading whose prediction has this `error`. `gate` and `burst` are the options of
+    /// the same name of [`Adaptation`](super::Adaptation).
+    pub(super) fn judge(&mut self, error: T, gate: T, burst: u32) -> Verdict {
+        if gate == T::ZERO {
+            return Verdict::Usual;
         }
         let surprise = error - self.left;
         let size = surprise.max(-surprise);
         // A model without range gives no scale. The first surprise does.
-        if size <= options.gate * self.scale || self.scale == T::ZERO {
+        if size <= gate * self.scale || self.scale == T::ZERO {
             self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
-            return true;
+            return Verdict::Usual;
         }
         let agrees = self.agreeing > 0 && agree(surprise, self.last);
         self.agreeing = if agrees { self.agreeing + 1 } else { 1 };
         self.refused += 1;
         self.last = surprise;
-        if self.agreeing >= options.burst {
+        if self.agreeing >= burst {
             self.believe(size);
-            return true;
+            return Verdict::Jump;
         }
-        if self.refused >= options.burst {
+        if self.refused >= burst {
             self.refused = 0;
             self.rescale(self.scale + self.scale);
         }
-        false
+        Verdict::Refused
     }
 
     /// Keeps the error that `left` after learning from an accepted reading.

@@ -107,7 +107,25 @@ impl<T: Real> Stages<'_, T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let Wanted { target, load, .. } = wanted;
+        let loaded = self.axis.load.at(wanted.load)?;
+        self.invert_loaded(inverse, state, memory, rates, wanted, loaded)
+    }
+
+    /// As [`Stages::invert_at`], with the values of the load's curves in place of the load.
+    pub(crate) fn invert_loaded<C, S>(
+        &self,
+        inverse: &Inverse<'_, T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        rates: &Rates<T>,
+        wanted: Wanted<T>,
+        loaded: Loaded<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let target = wanted.target;
         if !target.output.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
@@ -117,7 +135,6 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
-        let loaded = self.axis.load.at(load)?;
         let aim = self.aim(memory, rates, loaded, target);
         let solution = match aim.output.is_finite() {
             true => inverse.solve(state, aim)?,
@@ -156,7 +173,7 @@ impl<T: Real> Stages<'_, T> {
         }
         let slack = self.axis.rounding(plane, loaded, size);
         let reached = self
-            .step_at(model, state, memory, rates, input, load)?
+            .step_loaded(model, state, memory, rates, input, loaded)?
             .output;
         let gain = loaded.gain * self.creep.gain();
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));

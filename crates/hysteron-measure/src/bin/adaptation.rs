@@ -15,6 +15,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
+/// Estimators of weights.
 const LEARNERS: [(&str, Learner); 4] = [
     ("gradient", Learner::Gradient),
     ("increments", Learner::Increments),
@@ -55,8 +56,11 @@ fn main() -> Result<()> {
         pairs.push(loops);
     }
     print!("\n{}", include_str!("adaptation-load.md"));
-    println!("| from → to, MPa | middle | at its load | fitted | drift | drift, forgetting 1 |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
+    println!(
+        "| from → to, MPa | middle | at its load | fitted | drift | drift, forgetting 1 | load | load \
+         found |"
+    );
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -281,6 +285,14 @@ impl Loops {
         Ok(format!("{:.1}, {:.1}", after(1)?, after(PASSES)?))
     }
 
+    /// The load that the method `load` finds in one pass through a loop.
+    fn load_found(&self, model: &Model, to: usize) -> Result<f64> {
+        let options = adapting(Learner::Load);
+        let found = adapt(model, &self.loops[to], &options, Progress::NONE)?.shift;
+        let load = found.and_then(|found| found.load);
+        Ok(load.ok_or("the shift tells no load")?)
+    }
+
     fn row(&self, from: usize, to: usize) -> Result<()> {
         let model = |n: usize| Fit::from(&self.options).run(&self.loops[n]);
         let before = model(from)?;
@@ -313,7 +325,7 @@ impl Loops {
             Err(_) => "outside".into(),
         };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {:.0} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
@@ -322,6 +334,8 @@ impl Loops {
             self.judge(&Fit::from(&self.options).run(&self.loops[to])?, to)?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,
+            self.adapted(&model, to, &adapting(Learner::Load))?,
+            self.load_found(&model, to)?,
         );
         Ok(())
     }

@@ -2,25 +2,29 @@
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `options` are its settings. `adaptive` is the model that learns
-//! sample by sample. `parts` is a basis with few coefficients for drift, and `counts` counts what
-//! was done with the samples.
+//! sample by sample. `basis` is a basis with few coefficients for drift. `load` and `unknown_load` do
+//! the same for the shift of an unknown load. `counts` counts what was done with the samples.
 
 mod adaptive;
 mod basis;
 mod counts;
+mod load;
 mod options;
+mod unknown_load;
 
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
-pub use options::{AdaptOptions, Learner};
+pub use load::AdaptiveLoad;
+pub use options::{AdaptOptions, EstimatorOptions, Learner};
+pub use unknown_load::ShiftFound;
 
 use crate::error::{Error, Result};
-use crate::model::{FitSummary, Model, Start};
+use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::Errors;
-use hysteron_core::{Adaptation, Method, Outcome};
+use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
 
@@ -57,8 +61,10 @@ pub struct Adapted {
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
+    /// What [`Learner::Load`] found; `None` for the other learners.
+    pub shift: Option<ShiftFound>,
     /// The estimator's options.
-    pub options: Adaptation<f64>,
+    pub options: EstimatorOptions,
 }
 
 /// Errors of the adapting model, taken before it learned from each sample, beside those of the
@@ -130,6 +136,9 @@ pub fn adapt(
     progress: Progress<'_>,
 ) -> Result<Adapted> {
     recording.check()?;
+    if options.learner == Learner::Load {
+        return unknown_load::adapt(model, recording, options, progress);
+    }
     if !model.is_plain() && model.load.is_none() {
         return adapt_within(model, recording, options, progress);
     }
@@ -142,53 +151,92 @@ pub fn adapt(
         adaptive.saturate()?;
     }
     let count = recording.len();
-    let probation = on_probation(&adaptation, count);
+    let probation = on_probation(adaptation.gate, adaptation.burst, count);
     let (input, late_input) = recording.input.split_at(count - probation);
     let (output, late_output) = recording.output.split_at(count - probation);
     let mut learned = adaptive.run(input, output, progress)?;
-    let mut last = adaptive.model()?;
+    let last = adaptive.model()?;
     let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
     learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
-    let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
-    let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
-    let counts = OutcomeCounts::of(&learned);
-    let compare = |which: &dyn Fn(usize) -> bool| {
-        Some(Compared {
-            adapting: Errors::between(&recording.output, &output_model, which)?,
-            fixed: Errors::between(&recording.output, &fixed, which)?,
-        })
-    };
-    let whole = compare(&|_| true).ok_or_else(no_samples)?;
-    let third = |k: usize| k * count / 3..(k + 1) * count / 3;
-    let thirds = (0..3)
-        .map(|k| compare(&|n| third(k).contains(&n)))
-        .collect::<Option<_>>()
-        .unwrap_or_default();
-    let late = compare(&|n| third(2).contains(&n) && outcomes[n] != Outcome::Rejected);
-    let again = run_from(&last, from_on, recording)?;
-    let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
-    last.fit = Some(summary(
-        &last,
-        &offline,
-        recording,
-        options,
-        &adaptation,
-        (&again, counts),
-    ));
-    Ok(Adapted {
-        drift: Drift::between(&offline, &last),
-        model: last,
+    Learned {
+        offline,
+        last,
+        learned,
+        fixed,
+        from_on,
         probation,
-        output_model,
-        outcomes,
-        counts,
-        whole,
-        thirds,
-        late,
-        worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
-        again,
-        options: adaptation,
-    })
+        shift: None,
+        options: EstimatorOptions::Weights(adaptation),
+    }
+    .judged(recording, options)
+}
+
+/// What an estimator made of a recording.
+struct Learned {
+    offline: Model,
+    last: Model,
+    learned: Vec<Learning<f64>>,
+    /// The outputs of the model left alone.
+    fixed: Vec<f64>,
+    from_on: bool,
+    probation: usize,
+    shift: Option<ShiftFound>,
+    options: EstimatorOptions,
+}
+
+impl Learned {
+    /// Compares it with the model left alone.
+    fn judged(self, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+        let Self {
+            offline,
+            mut last,
+            learned,
+            fixed,
+            ..
+        } = self;
+        let count = recording.len();
+        let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
+        let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
+        let counts = OutcomeCounts::of(&learned);
+        let compare = |which: &dyn Fn(usize) -> bool| {
+            Some(Compared {
+                adapting: Errors::between(&recording.output, &output_model, which)?,
+                fixed: Errors::between(&recording.output, &fixed, which)?,
+            })
+        };
+        let whole = compare(&|_| true).ok_or_else(no_samples)?;
+        let third = |k: usize| k * count / 3..(k + 1) * count / 3;
+        let thirds = (0..3)
+            .map(|k| compare(&|n| third(k).contains(&n)))
+            .collect::<Option<_>>()
+            .unwrap_or_default();
+        let late = compare(&|n| third(2).contains(&n) && outcomes[n] != Outcome::Rejected);
+        let again = run_from(&last, self.from_on, recording)?;
+        let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
+        last.fit = Some(summary(
+            &last,
+            &offline,
+            recording,
+            options,
+            self.options.described(),
+            (&again, counts),
+        ));
+        Ok(Adapted {
+            drift: Drift::between(&offline, &last),
+            model: last,
+            probation: self.probation,
+            output_model,
+            outcomes,
+            counts,
+            whole,
+            thirds,
+            late,
+            worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
+            again,
+            shift: self.shift,
+            options: self.options,
+        })
+    }
 }
 
 /// Adapts the operators between the stages of a model. The errors are those of the operators: before
@@ -213,9 +261,9 @@ fn adapt_within(
 }
 
 /// How many of `count` samples are at the end and on probation.
-fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
-    match options.gate > 0.0 {
-        true => count.min(options.burst as usize),
+fn on_probation(gate: f64, burst: u32, count: usize) -> usize {
+    match gate > 0.0 {
+        true => count.min(burst as usize),
         false => 0,
     }
 }
@@ -265,7 +313,8 @@ fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> 
         false => model.off(),
     };
     let mut output = vec![0.0; recording.len()];
-    model.run(&mut state, &recording.input, &mut output)?;
+    let around = Surroundings::of(model, recording);
+    model.run_in(&mut state, &recording.input, around, &mut output)?;
     Ok(output)
 }
 
@@ -275,7 +324,7 @@ fn summary(
     offline: &Model,
     recording: &Recording,
     options: &AdaptOptions,
-    adaptation: &Adaptation<f64>,
+    described: serde_json::Value,
     (again, counts): (&Errors, OutcomeCounts),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
@@ -285,7 +334,7 @@ fn summary(
         "adapted".into(),
         json!({
             "method": options.learner,
-            "options": described(adaptation),
+            "options": described,
             "counts": counts,
             "from": offline.fit.as_ref().map(|fit| json!({
                 "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
@@ -308,6 +357,25 @@ fn summary(
         confidence: None,
         other,
         ..before
+    }
+}
+
+impl EstimatorOptions {
+    /// The options as a JSON object.
+    fn described(&self) -> serde_json::Value {
+        match self {
+            Self::Weights(adaptation) => described(adaptation),
+            Self::Shift(options) => json!({
+                "noise": options.noise,
+                "spread": options.spread,
+                "walk": options.walk,
+                "reach": options.reach,
+                "dead_zone": options.dead_zone,
+                "movement": options.movement,
+                "gate": options.gate,
+                "burst": options.burst,
+            }),
+        }
     }
 }
 

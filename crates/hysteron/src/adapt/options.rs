@@ -2,12 +2,13 @@
 
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
+use crate::adapt::load::AdaptiveLoad;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::noise::noise;
 use crate::series::range;
-use hysteron_core::{Adaptation, Method};
+use hysteron_core::{Adaptation, Method, ShiftOptions};
 use serde::Serialize;
 
 /// Gain of the gradient methods.
@@ -43,6 +44,17 @@ pub enum Learner {
     /// has the smallest errors on measured recordings.
     #[default]
     Drift,
+    /// The shift of the operators' axis alone, by a Kalman filter: a load that nobody measures.
+    Load,
+}
+
+/// The options that an estimator ran with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EstimatorOptions {
+    /// Those of an estimator of weights or coefficients.
+    Weights(Adaptation<f64>),
+    /// Those of the estimator of the shift.
+    Shift(ShiftOptions<f64>),
 }
 
 /// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
@@ -53,12 +65,12 @@ pub enum Learner {
 /// | --- | --- | --- | --- |
 /// | `learner` | drift | see [`Learner`] | parameters and method |
 /// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load of the first coefficients (drift) |
+/// | `load` | middle of its range | the model's range | load to start at (drift, load) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
-/// | `noise` | see the field | above 0 | error of a reading (least squares) |
-/// | `spread` | see the field | above 0 | deviation of a parameter (least squares) |
+/// | `noise` | see the field | above 0 | error of a reading (least squares, load) |
+/// | `spread` | see the field | above 0 | deviation of a parameter (least squares, load) |
 /// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
 /// | `dead_zone` | twice the output's [`noise`] | 0 or more | errors that are noise |
 /// | `leakage` | 0 | 0 to 1 | return to the off-line weights |
@@ -74,8 +86,8 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a
-    /// load.
+    /// Load that the coefficients or the shift start at, for [`Learner::Drift`] and
+    /// [`Learner::Load`] with a model that depends on a load.
     pub load: Option<f64>,
     /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
@@ -83,12 +95,13 @@ pub struct AdaptOptions {
     pub span: Option<f64>,
     /// Forgetting factor of least squares: weight of a sample relative to the next one.
     pub forgetting: Option<f64>,
-    /// Least squares: standard deviation of a reading's error, including the error of the model, in
-    /// the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for weights and
-    /// 5 % for coefficients.
+    /// Least squares and load: standard deviation of a reading's error, including the error of the
+    /// model, in the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for
+    /// weights and 5 % for coefficients and the shift.
     pub noise: Option<f64>,
     /// Least squares: standard deviation by which a parameter may differ from its off-line value.
-    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5.
+    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5. For the
+    /// shift it is in the input's unit, by default half of what the shift can reach.
     pub spread: Option<f64>,
     /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
@@ -154,6 +167,50 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
+    /// An estimator of the shift of `model`'s axis in a loop: of a load that nobody measures. The
+    /// learner has to be [`Learner::Load`].
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for another learner, for options that this one does not use, and as
+    /// [`AdaptiveLoad::new`].
+    pub fn adaptive_load(&self, model: &Model) -> Result<AdaptiveLoad> {
+        let options = self.shift(model, 0.0, 0.0)?;
+        let mut adaptive = AdaptiveLoad::new(model, self.load, options)?;
+        if self.start == Start::On {
+            adaptive.saturate();
+        }
+        Ok(adaptive)
+    }
+
+    /// The options of the estimator of the shift, for `model` on `recording`.
+    pub(super) fn shift_on(
+        &self,
+        model: &Model,
+        recording: &Recording,
+    ) -> Result<ShiftOptions<f64>> {
+        let output = &recording.output;
+        self.shift(model, noise(output), usual_range(output))
+    }
+
+    fn shift(&self, model: &Model, rough: f64, range: f64) -> Result<ShiftOptions<f64>> {
+        self.refuse_unused(model)?;
+        if self.learner != Learner::Load {
+            let what = "only the method `load` estimates the shift";
+            return Err(Error::Fit(what.into()));
+        }
+        let usual = AdaptiveLoad::usual_options(model);
+        let misfit = rough.max(usual.noise).max(MISFIT[1] * range);
+        Ok(ShiftOptions {
+            noise: self.noise.unwrap_or(misfit),
+            spread: self.spread.unwrap_or(usual.spread),
+            dead_zone: self.dead_zone.unwrap_or(2.0 * rough),
+            movement: self.movement.unwrap_or(usual.movement),
+            gate: self.gate.unwrap_or(usual.gate),
+            burst: self.burst.unwrap_or(usual.burst),
+            ..usual
+        })
+    }
+
     /// An estimator of the weights or of the coefficients, depending on the learner.
     pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
         match self.learner {
@@ -164,6 +221,10 @@ impl AdaptOptions {
 
     fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Adaptation<f64>> {
         self.refuse_unused(model)?;
+        if self.learner == Learner::Load {
+            let what = "the method `load` adapts no weights, but the shift of the axis";
+            return Err(Error::Fit(what.into()));
+        }
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
@@ -189,7 +250,7 @@ impl AdaptOptions {
                     DEVIATION * span / variance_of_sum(model.plane().levels(), correlation).sqrt();
                 least_squares(spread, correlation)
             }
-            Learner::Drift => least_squares(SHARE, 0.0),
+            Learner::Drift | Learner::Load => least_squares(SHARE, 0.0),
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
@@ -208,12 +269,16 @@ impl AdaptOptions {
     }
 
     fn refuse_unused(&self, model: &Model) -> Result<()> {
-        use Learner::{Drift, Gradient, Increments, LeastSquares};
+        use Learner::{Drift, Gradient, Increments, LeastSquares, Load};
         let steps = matches!(self.learner, Gradient | Increments);
+        let weights = self.learner != Load;
         let given = [
             ("gain", self.gain.is_some(), steps),
             ("span", self.span.is_some(), self.learner == Increments),
-            ("forgetting", self.forgetting.is_some(), !steps),
+            ("forgetting", self.forgetting.is_some(), !steps && weights),
+            ("leakage", self.leakage.is_some(), weights),
+            ("offset_share", self.offset_share.is_some(), weights),
+            ("trial", self.trial.is_some(), weights),
             ("noise", self.noise.is_some(), !steps),
             ("spread", self.spread.is_some(), !steps),
             (
@@ -224,7 +289,7 @@ impl AdaptOptions {
             (
                 "load",
                 self.load.is_some(),
-                self.learner == Drift && model.load.is_some(),
+                matches!(self.learner, Drift | Load) && model.load.is_some(),
             ),
         ];
         match given.iter().find(|(_, given, used)| *given && !used) {
