@@ -286,6 +286,7 @@ impl<'a> Fit<'a> {
             body: self.body,
             open: self.open,
             auto_bootstrap: self.auto_bootstrap,
+            outliers: &outliers,
         };
         let mut model = stages::fit(&seen, &options, asked, self.progress)?;
         if let Some(fit) = &mut model.fit {
