@@ -94,3 +94,12 @@ pub struct FitSummary {
     #[serde(flatten)]
     pub other: std::collections::BTreeMap<String, serde_json::Value>,
 }
+
+impl FitSummary {
+    /// Whether a file with this digest was fitted: SHA-256 of its bytes, in hexadecimal. Only the
+    /// first file is known by its digest.
+    #[must_use]
+    pub fn was_fitted_to(&self, sha256: &str) -> bool {
+        self.sha256.as_deref() == Some(sha256)
+    }
+}
