@@ -36,6 +36,13 @@ impl HeldOut {
         let model = self.model.rmse;
         self.rivals.iter().filter(move |r| r.errors.rmse < model)
     }
+
+    /// Writes the result into the record of the fit, as `hold_out`. The model file keeps it.
+    pub fn record_in(&self, model: &mut Model) {
+        if let (Some(fit), Ok(value)) = (&mut model.fit, serde_json::to_value(self)) {
+            fit.other.insert("hold_out".into(), value);
+        }
+    }
 }
 
 /// Fits a model to what is not held out, and tests it on the rest. What is held out takes no part in
@@ -107,7 +114,7 @@ pub fn fit_holding_out(
         held.extend(split.held_out);
     }
     let report = compare(&training, recordings, &measured, &modelled, |n| held[n])?;
-    note(&mut model, &report)?;
+    report.record_in(&mut model);
     Ok((model, report))
 }
 
@@ -178,13 +185,4 @@ fn compare(
     };
     let rivals = RIVALS.into_iter().map(rival).collect::<Result<_>>()?;
     Ok(HeldOut { model, rivals })
-}
-
-/// Keeps the result in the record of the fit.
-fn note(model: &mut Model, report: &HeldOut) -> Result<()> {
-    let report = serde_json::to_value(report).map_err(|e| Error::Fit(e.to_string()))?;
-    if let Some(fit) = &mut model.fit {
-        fit.other.insert("hold_out".into(), report);
-    }
-    Ok(())
 }

@@ -27,6 +27,7 @@ mod data;
 mod design;
 mod error;
 mod evaluate;
+mod forward;
 mod hold_out;
 mod identify;
 mod inspect;
@@ -53,6 +54,7 @@ pub use data::{
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
+pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{

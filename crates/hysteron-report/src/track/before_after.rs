@@ -2,7 +2,7 @@
 //! went.
 
 use super::figure::Figure;
-use super::stack::{HEADING, Heading, head};
+use crate::panels::{HEADING, Heading, head};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};

@@ -2,6 +2,7 @@
 
 use crate::model::confidence::Confidence;
 use crate::model::smooth::Smooth;
+use crate::recording::Recording;
 use serde::{Deserialize, Serialize};
 
 /// How the weights are found.
@@ -96,10 +97,11 @@ pub struct FitSummary {
 }
 
 impl FitSummary {
-    /// Whether a file with this digest was fitted: SHA-256 of its bytes, in hexadecimal. Only the
-    /// first file is known by its digest.
+    /// Whether the recording comes from the file that was fitted, by the digest of that file. If
+    /// several files were fitted, only the first one is known in this way.
     #[must_use]
-    pub fn was_fitted_to(&self, sha256: &str) -> bool {
-        self.sha256.as_deref() == Some(sha256)
+    pub fn was_fitted_to(&self, recording: &Recording) -> bool {
+        let digest = recording.source.as_ref().map(|source| &source.sha256);
+        digest.is_some() && self.sha256.as_ref() == digest
     }
 }
