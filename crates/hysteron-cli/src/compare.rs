@@ -56,7 +56,10 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
             runs,
         });
     }
-    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let names: Vec<String> = files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
     if let Some(folder) = folder {
         let page = report(folder, &compared, &names)?;
         say(format_args!("the report is {}", page.display()));
@@ -109,7 +112,13 @@ fn to_json(all: &[Compared<'_>], names: &[String]) -> serde_json::Value {
 fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
     let table = |compared: &Compared<'_>| {
         let data = compared.data.display().to_string();
-        let mut rows = vec![text::row([&data, "RMSE", "largest", "% of range", "samples"])];
+        let mut rows = vec![text::row([
+            &data,
+            "RMSE",
+            "largest",
+            "% of range",
+            "samples",
+        ])];
         let mut runs: Vec<(&String, &Forward)> = names.iter().zip(&compared.runs).collect();
         runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
         for (name, run) in runs {

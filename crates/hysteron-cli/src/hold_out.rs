@@ -16,10 +16,7 @@ pub(crate) enum What {
 
 impl What {
     /// From the options; `read` reads a file as the recordings fitted are read.
-    pub(crate) fn of(
-        args: &args::Fit,
-        read: impl Fn(&Path) -> Result<Recording>,
-    ) -> Result<Self> {
+    pub(crate) fn of(args: &args::Fit, read: impl Fn(&Path) -> Result<Recording>) -> Result<Self> {
         let mut files = Vec::new();
         for what in &args.hold_out {
             match what {
@@ -74,8 +71,17 @@ pub(crate) fn warn(held_out: &HeldOut) {
 
 /// A line for the model, and a table of the rivals.
 pub(crate) fn to_text(held_out: &HeldOut, model: &Model) -> String {
-    let mut rows = vec![text::row(["held out", "RMSE", "largest", "% of range", "samples"])];
-    let rivals = held_out.rivals.iter().map(|rival| (rival.name, &rival.errors));
+    let mut rows = vec![text::row([
+        "held out",
+        "RMSE",
+        "largest",
+        "% of range",
+        "samples",
+    ])];
+    let rivals = held_out
+        .rivals
+        .iter()
+        .map(|rival| (rival.name, &rival.errors));
     for (name, errors) in [("model", &held_out.model)].into_iter().chain(rivals) {
         rows.push(text::errors(name, errors, &model.output));
     }

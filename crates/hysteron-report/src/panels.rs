@@ -132,12 +132,7 @@ fn words_of(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, area: Rect) -
 }
 
 /// Lines at the events, over the data.
-pub(crate) fn event_lines(
-    sheet: &mut Sheet,
-    events: &[(f64, String)],
-    x: &Axis,
-    panel: &Panel,
-) {
+pub(crate) fn event_lines(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, panel: &Panel) {
     for (time, _) in events {
         if let Some(at) = place(x, panel.area, *time) {
             let (top, bottom) = (panel.area.y, panel.area.bottom());

@@ -105,7 +105,7 @@ pub fn fit_holding_out(
     }
     let (mut measured, mut modelled, mut held) = (Vec::new(), Vec::new(), Vec::new());
     for (recording, split) in recordings.iter().zip(splits) {
-        let mut state = begin(&model, begins_inside, &split)?;
+        let mut state = begin(&model, &split)?;
         let mut output = vec![0.0; recording.len()];
         let around = Surroundings::of(&model, recording);
         model.run_in(&mut state, &recording.input, around, &mut output)?;
@@ -141,17 +141,20 @@ pub fn held_out(
     compare(fitted.as_ref(), recordings, &measured, &modelled, |_| true)
 }
 
-/// Where the model starts on the whole recording.
-fn begin(model: &Model, begins_inside: bool, split: &Split) -> Result<State> {
-    match (begins_inside, split.training.len(), split.training.first()) {
-        // What the fit found is the state after the rows held out. The rows before them tell where
-        // the recording began.
-        (true, 2, Some(head)) => {
+/// Where the model starts on the whole recording. An unknown start is found from the outputs at the
+/// beginning that were fitted.
+fn begin(model: &Model, split: &Split) -> Result<State> {
+    let unknown = model
+        .fit
+        .as_ref()
+        .is_some_and(|fit| fit.start == Start::Unknown);
+    match split.training.first() {
+        _ if !unknown => Ok(as_fitted(model)),
+        Some(head) if !split.held_out[0] => {
             let (found, _) = find_start(model, head)?;
-            Ok(model.restore(&found.turning_points, found.input)?)
+            model.restore(&found.turning_points, found.input)
         }
-        (true, ..) => Ok(model.off()),
-        _ => Ok(as_fitted(model)),
+        _ => Ok(model.off()),
     }
 }
 

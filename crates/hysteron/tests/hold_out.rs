@@ -107,9 +107,14 @@ fn branches_are_spread_and_of_both_directions() {
                 let mut branches: Vec<usize> = held.map(branch).collect();
                 branches.dedup();
                 let wanted = (share * reversals as f64).round().max(1.0) as usize;
-                assert!(branches.len() <= wanted && 4 * branches.len() >= 3 * wanted.min(reversals / 3));
+                assert!(
+                    branches.len() <= wanted && 4 * branches.len() >= 3 * wanted.min(reversals / 3)
+                );
                 assert!(branches.iter().all(|b| *b > 0));
-                assert!(branches.windows(2).all(|pair| pair[1] > pair[0] + 1), "{branches:?}");
+                assert!(
+                    branches.windows(2).all(|pair| pair[1] > pair[0] + 1),
+                    "{branches:?}"
+                );
                 let even = branches.iter().filter(|b| **b % 2 == 0).count();
                 let odd = branches.len() - even;
                 // Of a handful of branches there may be no two that are apart and differ.
@@ -128,7 +133,10 @@ fn a_good_model_beats_the_rivals_and_a_line_beats_a_bad_one() {
         let (model, report) = fit_holding_out(&fit, &recording, what).unwrap();
         assert_eq!(report.better().count(), 0, "{what:?}: {report:?}");
         // The fit of a part of the same model finds nearly the whole of it.
-        assert!(report.model.nrmse_percent.unwrap() < 1.0, "{what:?}: {report:?}");
+        assert!(
+            report.model.nrmse_percent.unwrap() < 1.0,
+            "{what:?}: {report:?}"
+        );
         let fit = model.fit.unwrap();
         let kept = &fit.other["hold_out"];
         assert_eq!(kept["model"]["rmse"].as_f64(), Some(report.model.rmse));
@@ -137,7 +145,10 @@ fn a_good_model_beats_the_rivals_and_a_line_beats_a_bad_one() {
     // A line with noise, and an operator for each sample.
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let input: Vec<f64> = (0..90).map(|n| (f64::from(n) * 0.35).sin()).collect();
-    let output = input.iter().map(|x| x + rng.random_range(-0.2..0.2)).collect();
+    let output = input
+        .iter()
+        .map(|x| x + rng.random_range(-0.2..0.2))
+        .collect();
     let line = Recording::new(input, output).unwrap();
     let fit = Fit::new().levels(30).smooth(0.0).bootstrap(0);
     let (_, report) = fit_holding_out(&fit, &line, &HoldOut::Rows(61..=90)).unwrap();
@@ -156,7 +167,11 @@ fn other_recordings_can_be_held_out() {
     assert_eq!(report.model, evaluated.forward);
     assert!(held_out(&model, &recording, &[]).is_err());
     // After a fit from all operators on, the model starts there too.
-    let model = Fit::new().start(Start::On).bootstrap(0).run(&recording).unwrap();
+    let model = Fit::new()
+        .start(Start::On)
+        .bootstrap(0)
+        .run(&recording)
+        .unwrap();
     let report = held_out(&model, &recording, &other).unwrap();
     let from_on = hysteron::evaluate_from(&model, &other, Start::On).unwrap();
     assert_eq!(report.model, from_on.forward);

@@ -69,9 +69,8 @@ fn a_polynomial_for_each_direction_is_found_up_to_degree_five() {
     for seed in 0..SEEDS {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let degree = rng.random_range(0..=5);
-        let mut coefficients = || -> Vec<f64> {
-            (0..=degree).map(|_| rng.random_range(-1.0..1.0)).collect()
-        };
+        let mut coefficients =
+            || -> Vec<f64> { (0..=degree).map(|_| rng.random_range(-1.0..1.0)).collect() };
         let (up, down) = (coefficients(), coefficients());
         let input = zigzag(&mut rng, 9, 30);
         let value = |(x, (rises, _)): (&f64, (bool, f64))| {
@@ -148,7 +147,8 @@ fn interpolation_gives_back_what_it_was_fitted_to() {
         let mut reversals: Vec<(bool, f64)> = path.clone();
         reversals.dedup();
         let alone = |(rises, reversal): (bool, f64)| {
-            let near = |r: &&(bool, f64)| r.0 == rises && (r.1 - reversal).abs() <= 0.011 * (high - low);
+            let near =
+                |r: &&(bool, f64)| r.0 == rises && (r.1 - reversal).abs() <= 0.011 * (high - low);
             reversals.iter().filter(near).count() == 1
         };
         let rival = Rival::fit(RivalKind::Interpolation, &recording).unwrap();
@@ -197,7 +197,10 @@ fn only_input_and_load_are_used() {
     for kind in RivalKind::ALL {
         let triangle = |n: i32| f64::from(10 - (n % 20 - 10).abs());
         let input: Vec<f64> = (0..81).map(triangle).collect();
-        let output: Vec<f64> = input.iter().map(|x| x * x + rng.random_range(0.0..1.0)).collect();
+        let output: Vec<f64> = input
+            .iter()
+            .map(|x| x * x + rng.random_range(0.0..1.0))
+            .collect();
         let recording = Recording::new(input, output).unwrap();
         let rival = Rival::fit(kind, &recording).unwrap();
         assert_eq!(rival.kind(), kind);
@@ -215,7 +218,10 @@ fn between_two_loads_the_output_is_interpolated() {
     let at = |load: f64| {
         let triangle = |n: i32| f64::from(10 - (n % 20 - 10).abs());
         let input: Vec<f64> = (0..61).map(triangle).collect();
-        let output = input.iter().map(|x| (1.0 + load) * x + 2.0 * load).collect();
+        let output = input
+            .iter()
+            .map(|x| (1.0 + load) * x + 2.0 * load)
+            .collect();
         Recording {
             load: Some(vec![load; input.len()]),
             ..Recording::new(input, output).unwrap()
@@ -230,7 +236,12 @@ fn between_two_loads_the_output_is_interpolated() {
         }
         let mut without = at(2.0);
         without.load = None;
-        assert!(Rival::fit(kind, &training).unwrap().predict(&without).is_err());
+        assert!(
+            Rival::fit(kind, &training)
+                .unwrap()
+                .predict(&without)
+                .is_err()
+        );
     }
 }
 

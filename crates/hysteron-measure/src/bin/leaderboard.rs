@@ -12,10 +12,10 @@ mod leaderboard;
 mod scipy;
 
 use hysteron::range;
+use leaderboard::Result;
 use leaderboard::entry::{self, Entry};
 use leaderboard::methods::Method;
 use leaderboard::splits::{self, Set, Split};
-use leaderboard::Result;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -47,7 +47,9 @@ fn arguments() -> Result<Arguments> {
 
 fn main() -> Result<()> {
     let arguments = arguments()?;
-    let folder = arguments.folder.ok_or("name the folder of the recordings")?;
+    let folder = arguments
+        .folder
+        .ok_or("name the folder of the recordings")?;
     let mut sets = splits::all(&folder)?;
     if let Some(word) = &arguments.only {
         sets.retain(|set| set.name.contains(word.as_str()));
@@ -68,7 +70,9 @@ struct Score {
 
 fn table(sets: &[Set], entries: &[Entry]) -> Result<()> {
     let names = Method::ALL.iter().map(|method| method.name());
-    let names: Vec<String> = names.chain(entries.iter().map(|e| e.name.clone())).collect();
+    let names: Vec<String> = names
+        .chain(entries.iter().map(|e| e.name.clone()))
+        .collect();
     println!("| data | {} |", names.join(" | "));
     println!("| --- |{}", " ---: |".repeat(names.len()));
     let (mut marked, mut units) = (Vec::new(), Vec::new());
@@ -83,11 +87,20 @@ fn table(sets: &[Set], entries: &[Entry]) -> Result<()> {
         let own = Method::ALL.iter().map(of_method);
         let theirs = entries.iter().map(|e| score(set, |split| e.predict(split)));
         let scores: Vec<Option<Score>> = own.chain(theirs).collect();
-        let best = scores.iter().flatten().map(|s| s.percent).fold(f64::INFINITY, f64::min);
+        let best = scores
+            .iter()
+            .flatten()
+            .map(|s| s.percent)
+            .fold(f64::INFINITY, f64::min);
         let ours = scores[0].map_or(f64::INFINITY, |score| score.percent);
-        let simple = Method::ALL.iter().zip(&scores).filter(|(method, _)| method.is_simple());
+        let simple = Method::ALL
+            .iter()
+            .zip(&scores)
+            .filter(|(method, _)| method.is_simple());
         let simple = simple.filter_map(|(method, score)| Some((method.name(), (*score)?.percent)));
-        let winner = simple.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|w| w.1 < ours);
+        let winner = simple
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|w| w.1 < ours);
         let cell = |score: &Option<Score>| match score {
             None => "–".to_owned(),
             Some(score) if score.percent <= best => format!("**{}**", number(score.percent)),
@@ -106,9 +119,14 @@ fn table(sets: &[Set], entries: &[Entry]) -> Result<()> {
             ));
         }
         if let Some(unit) = set.unit {
-            let cell = |score: &Option<Score>| score.map_or("–".into(), |s| format!("{:.4}", s.rmse));
+            let cell =
+                |score: &Option<Score>| score.map_or("–".into(), |s| format!("{:.4}", s.rmse));
             let cells: Vec<String> = scores.iter().map(cell).collect();
-            units.push(format!("| {}, in {unit} | {} |", set.name, cells.join(" | ")));
+            units.push(format!(
+                "| {}, in {unit} | {} |",
+                set.name,
+                cells.join(" | ")
+            ));
         }
     }
     units.iter().for_each(|row| println!("{row}"));
@@ -150,6 +168,9 @@ fn number(percent: f64) -> String {
 /// The sentence behind `NAME:` in the file of reasons.
 fn reason(name: &str) -> &'static str {
     let lines = REASONS.lines().filter_map(|line| line.split_once(": "));
-    let found = lines.filter(|(row, _)| *row == name).map(|(_, why)| why).next();
+    let found = lines
+        .filter(|(row, _)| *row == name)
+        .map(|(_, why)| why)
+        .next();
     found.unwrap_or("Reason not found yet.")
 }

@@ -15,7 +15,10 @@ const MARKS: [&str; 1] = ["ascending_copied_from_major"];
 pub fn read(path: &Path, columns: Columns<'_>) -> Result<Recording, Box<dyn Error>> {
     let (recording, _) = Recording::read(path, columns, Repair::Refuse)?;
     let table = TableReader::open(path)?;
-    let Some(mark) = MARKS.iter().find(|m| table.header().iter().any(|h| h == *m)) else {
+    let Some(mark) = MARKS
+        .iter()
+        .find(|m| table.header().iter().any(|h| h == *m))
+    else {
         return Ok(recording);
     };
     let marks = column(path, columns.input, mark)?;

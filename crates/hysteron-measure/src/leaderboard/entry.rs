@@ -48,7 +48,10 @@ pub fn write(sets: &[Set], folder: &Path) -> Result<()> {
             std::fs::write(folder.join(name), table(training, Last::Output)?)?;
         }
         let name = format!("{}-test.csv", split.name);
-        std::fs::write(folder.join(name), table(&split.test, Last::Scored(&split.scored))?)?;
+        std::fs::write(
+            folder.join(name),
+            table(&split.test, Last::Scored(&split.scored))?,
+        )?;
     }
     Ok(())
 }
@@ -66,7 +69,11 @@ fn table(recording: &Recording, last: Last<'_>) -> Result<String> {
         ("input", Some(&recording.input)),
         ("load", recording.load.as_ref()),
     ];
-    let present = || series.iter().filter_map(|(name, values)| Some((name, (*values)?)));
+    let present = || {
+        series
+            .iter()
+            .filter_map(|(name, values)| Some((name, (*values)?)))
+    };
     let mut text = String::new();
     present().for_each(|(name, _)| text += &format!("{name},"));
     text += match last {

@@ -1,12 +1,10 @@
 //! The methods of the leaderboard. Each sees what was fitted, and the input and load of the test.
 
+use super::Result;
 use super::prandtl::{PrandtlIshlinskii, Shape};
 use super::splits::Split;
-use super::Result;
 use crate::scipy;
-use hysteron::{
-    Fit, FitOptions, Operator, Recording, Rival, RivalKind, Surroundings, plane_of,
-};
+use hysteron::{Fit, FitOptions, Operator, Recording, Rival, RivalKind, Surroundings, plane_of};
 
 /// Levels of the fits with a fixed number, and plays of the Prandtl-Ishlinskii models.
 const LEVELS: usize = 20;

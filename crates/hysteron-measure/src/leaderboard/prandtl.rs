@@ -122,7 +122,11 @@ impl Curve {
         let (low, high) = range(from);
         let step = ((high - low) / pieces as f64).max(f64::MIN_POSITIVE);
         let columns: Vec<Vec<f64>> = (0..pieces)
-            .map(|k| from.iter().map(|p| piece(*p, low, step, k, pieces)).collect())
+            .map(|k| {
+                from.iter()
+                    .map(|p| piece(*p, low, step, k, pieces))
+                    .collect()
+            })
             .collect();
         let (slopes, offset) = with_offset(&columns, to, &vec![1.0; to.len()]);
         Self {
@@ -157,7 +161,9 @@ fn piece(p: f64, begin: f64, step: f64, k: usize, pieces: usize) -> f64 {
 fn weighted(columns: &[Vec<f64>], weights: &[f64], length: usize) -> Vec<f64> {
     let mut sum = vec![0.0; length];
     for (column, weight) in columns.iter().zip(weights) {
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += weight * c);
+        sum.iter_mut()
+            .zip(column)
+            .for_each(|(s, c)| *s += weight * c);
     }
     sum
 }
@@ -193,10 +199,10 @@ fn with_offset(columns: &[Vec<f64>], target: &[f64], one: &[f64]) -> (Vec<f64>, 
 }
 
 /// Non-negative least squares from the normal equations, by one coordinate after the other. It ends
-/// when a sweep changes the weights by less than rounding matters.
+/// when a sweep hardly changes the weights any more.
 fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; right.len()];
-    for _ in 0..100_000 {
+    for _ in 0..20_000 {
         let (mut moved, mut size) = (0.0_f64, 0.0_f64);
         for k in 0..weights.len() {
             if gram[k][k] <= 0.0 {

@@ -108,7 +108,10 @@ fn reversal_curves(folder: &Path) -> Result<Set> {
     let copied = genuine::column(&path, input, "ascending_copied_from_major")?;
     let curve = genuine::column(&path, input, "reversal_curve")?;
     let whole = genuine::read(&path, Columns::new(input, output))?;
-    let genuine = copied.iter().zip(curve).filter(|(copied, _)| **copied == 0.0);
+    let genuine = copied
+        .iter()
+        .zip(curve)
+        .filter(|(copied, _)| **copied == 0.0);
     let group = |curve: f64| (curve > 0.0).then(|| curve as usize % FOLDS);
     let group: Vec<Option<usize>> = genuine.map(|(_, curve)| group(curve)).collect();
     Ok(Set::folds("basaeri by curves", &whole, &group))
@@ -140,7 +143,12 @@ fn loads(folder: &Path) -> Result<Vec<Set>> {
     let materials: [(&str, &str, &str, &[u32]); 3] = [
         ("flexinol", "flexinol", "strain", &[50, 150, 200]),
         ("NiTiCo", "nitico_walgren", "strain", &[7, 50, 200]),
-        ("NiTiHf", "nitihf_bigelow", "strain_percent", &[7, 50, 100, 200, 400]),
+        (
+            "NiTiHf",
+            "nitihf_bigelow",
+            "strain_percent",
+            &[7, 50, 100, 200, 400],
+        ),
     ];
     let mut sets = Vec::new();
     for (name, file, output, loads) in materials {
@@ -162,10 +170,8 @@ fn loads(folder: &Path) -> Result<Vec<Set>> {
 
 /// Each thermal cycle predicted from the one before.
 fn thermal_cycles(folder: &Path) -> Result<Vec<Set>> {
-    let columns = Columns {
-        time: Some("time_s"),
-        ..Columns::new("temperature_C", "extension_mm")
-    };
+    // Its times repeat, because they were rounded.
+    let columns = Columns::new("temperature_C", "extension_mm");
     let cycles = cycles(&read(folder, "sma_isobaric_cycles_1_to_4.csv", columns)?)?;
     let set = |(n, pair): (usize, &[Recording])| {
         let name = format!("isobaric cycle {} to {}", n + 1, n + 2);

@@ -38,7 +38,9 @@ pub(super) fn svg(view: &View<'_>) -> String {
             };
             sheet.canvas.rect(bar, REFERENCE.colour);
             // The edge of the bar keeps its place on a grey print.
-            sheet.canvas.line([left, top], [left + bar.width, top], &FOLLOWER);
+            sheet
+                .canvas
+                .line([left, top], [left + bar.width, top], &FOLLOWER);
         }
         let zero = panel.px(0.0);
         let (top, bottom) = (panel.area.y, panel.area.bottom());
@@ -72,7 +74,10 @@ mod tests {
         let found = shares(&residuals, span);
         // Rounding of 201 terms.
         assert!((found.iter().sum::<f64>() - 100.0).abs() < 1e-9);
-        assert!(found.iter().all(|share| (1.0..4.0).contains(share)), "{found:?}");
+        assert!(
+            found.iter().all(|share| (1.0..4.0).contains(share)),
+            "{found:?}"
+        );
         assert!(shares(&[-1.0], span)[0] > 99.0 && shares(&[1.0], span)[CLASSES - 1] > 99.0);
     }
 }

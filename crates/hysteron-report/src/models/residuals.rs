@@ -19,7 +19,11 @@ pub(super) fn over_input(view: &View<'_>) -> String {
 
 fn draw(figure: Figure, view: &View<'_>, x: &Axis) -> String {
     let mut sheet = view.sheet(figure, WIDTH);
-    let words = if view.simulated() { "simulated" } else { "measured" };
+    let words = if view.simulated() {
+        "simulated"
+    } else {
+        "measured"
+    };
     sheet.legend(&[Key::Line(FOLLOWER, format!("modelled − {words}"))]);
     let all = view.residuals.iter().flatten();
     let y = Axis::new(&view.residual(), Span::of(all).with(0.0).padded(0.06));

@@ -68,7 +68,10 @@ fn what_does_not_fit_together_is_refused() {
         };
         report.write(place.as_path()).unwrap_err()
     };
-    assert!(matches!(write(&one), ReportError::Length { found: 299, .. }));
+    assert!(matches!(
+        write(&one),
+        ReportError::Length { found: 299, .. }
+    ));
     assert!(matches!(write(&[]), ReportError::NoModel));
     assert!(!place.exists());
 }

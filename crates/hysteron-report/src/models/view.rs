@@ -3,9 +3,9 @@
 use super::report::ModelsReport;
 use super::{histogram, page, residuals};
 use crate::clock::clock;
+use crate::number::difference;
 use crate::panels::Heading;
 use crate::quantity::Labelled;
-use crate::number::difference;
 use crate::stack::Figures;
 use hysteron::Origin;
 use std::borrow::Cow;

@@ -2,7 +2,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
@@ -12,6 +11,7 @@ use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
 use crate::draw::text;
+use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use crate::stack::Figures;
 use hysteron::control::{LoopStatus, Trace};
 

@@ -3,13 +3,13 @@
 use super::figure::Figure;
 use super::report::TrackReport;
 use super::series::{beyond, named, robust};
-use crate::panels::{WIDTH, height, stack};
 use super::view::View;
 use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Key;
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
 use crate::number::difference;
+use crate::panels::{WIDTH, height, stack};
 use crate::stack::Figures;
 use hysteron_sim::track::{ReversalLag, reversal_lags};
 

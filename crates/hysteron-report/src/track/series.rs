@@ -2,7 +2,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::panel::Panel;
@@ -11,6 +10,7 @@ use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{BEYOND, FOLLOWER, REFERENCE, ZERO};
 use crate::number::difference;
+use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use crate::stack::Figures;
 
 /// The part of all values that must be seen; what lies far beyond is cut off.

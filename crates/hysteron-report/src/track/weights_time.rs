@@ -3,7 +3,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use crate::panels::{HEADING, Heading, WIDTH, event_lines, head};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Rect, Short, rect_data};
@@ -12,6 +11,7 @@ use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, MODELLED, ZERO};
+use crate::panels::{HEADING, Heading, WIDTH, event_lines, head};
 use crate::plane::MINUS;
 use crate::stack::Figures;
 use hysteron::Plane;

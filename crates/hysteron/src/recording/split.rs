@@ -164,7 +164,12 @@ fn spread(can_be: &[usize], share: f64, all: usize) -> Vec<usize> {
         let place = ((k as f64 + 0.5) * stride) as usize;
         let other = |b: &usize| found.last().is_none_or(|last| (b - last) % 2 == 1);
         let apart = |b: &usize| found.last().is_none_or(|last| *b > last + 1);
-        let from_here = || can_be[place.min(can_be.len() - 1)..].iter().take(2).copied();
+        let from_here = || {
+            can_be[place.min(can_be.len() - 1)..]
+                .iter()
+                .take(2)
+                .copied()
+        };
         let choice = from_here().find(|b| apart(b) && other(b));
         found.extend(choice.or_else(|| from_here().find(apart)));
     }

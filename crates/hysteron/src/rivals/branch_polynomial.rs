@@ -39,7 +39,8 @@ impl BranchPolynomial {
                 count[way] += 1;
             }
         }
-        let chosen = |samples: &[Sample]| (!samples.is_empty()).then(|| Polynomial::chosen(samples));
+        let chosen =
+            |samples: &[Sample]| (!samples.is_empty()).then(|| Polynomial::chosen(samples));
         let [falling, rising] = of.map(|samples| chosen(&samples));
         // A recording has at least one sample, so at least one direction.
         let either = rising.clone().or(falling.clone()).unwrap_or_default();
@@ -52,7 +53,11 @@ impl BranchPolynomial {
     pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
         let mut output = Vec::with_capacity(input.len());
         for leg in legs(input) {
-            let polynomial = if leg.rises { &self.rising } else { &self.falling };
+            let polynomial = if leg.rises {
+                &self.rising
+            } else {
+                &self.falling
+            };
             output.extend(input[leg.samples].iter().map(|x| polynomial.at(*x)));
         }
         output
@@ -79,13 +84,19 @@ impl Polynomial {
             for f in 0..FOLDS {
                 let (mut kept, mut left_out) = (Vec::new(), Vec::new());
                 for (n, sample) in samples.iter().enumerate() {
-                    let side = if fold(n, sample) == f { &mut left_out } else { &mut kept };
+                    let side = if fold(n, sample) == f {
+                        &mut left_out
+                    } else {
+                        &mut kept
+                    };
                     side.push(*sample);
                 }
                 if !kept.is_empty() {
                     let found = Self::of_degree(&kept, degree);
                     // Beyond the inputs kept, no degree is better than another.
-                    let inside = left_out.iter().filter(|s| (found.low..=found.high).contains(&s.x));
+                    let inside = left_out
+                        .iter()
+                        .filter(|s| (found.low..=found.high).contains(&s.x));
                     squares += inside.map(|s| (found.at(s.x) - s.y).powi(2)).sum::<f64>();
                 }
             }
@@ -104,7 +115,10 @@ impl Polynomial {
     /// Least squares, of the given degree or of the highest one that the samples determine.
     fn of_degree(samples: &[Sample], degree: usize) -> Self {
         let low = samples.iter().map(|s| s.x).fold(f64::INFINITY, f64::min);
-        let high = samples.iter().map(|s| s.x).fold(f64::NEG_INFINITY, f64::max);
+        let high = samples
+            .iter()
+            .map(|s| s.x)
+            .fold(f64::NEG_INFINITY, f64::max);
         let mut found = Self {
             low,
             high,
@@ -155,8 +169,14 @@ fn least_squares(pairs: &[(f64, f64)], count: usize) -> Vec<f64> {
         let whole = dot(&column, &column);
         for (other, other_made_of) in &columns {
             let share = dot(&column, other) / dot(other, other);
-            column.iter_mut().zip(other).for_each(|(a, b)| *a -= share * b);
-            made_of.iter_mut().zip(other_made_of).for_each(|(a, b)| *a -= share * b);
+            column
+                .iter_mut()
+                .zip(other)
+                .for_each(|(a, b)| *a -= share * b);
+            made_of
+                .iter_mut()
+                .zip(other_made_of)
+                .for_each(|(a, b)| *a -= share * b);
         }
         let norm = dot(&column, &column);
         // What is left of a dependent column is rounding.
@@ -164,8 +184,14 @@ fn least_squares(pairs: &[(f64, f64)], count: usize) -> Vec<f64> {
             continue;
         }
         let amount = dot(&residual, &column) / norm;
-        residual.iter_mut().zip(&column).for_each(|(r, c)| *r -= amount * c);
-        coefficients.iter_mut().zip(made_of).for_each(|(c, m)| *c += amount * m);
+        residual
+            .iter_mut()
+            .zip(&column)
+            .for_each(|(r, c)| *r -= amount * c);
+        coefficients
+            .iter_mut()
+            .zip(made_of)
+            .for_each(|(c, m)| *c += amount * m);
         columns.push((column, made_of));
     }
     coefficients

@@ -61,7 +61,11 @@ impl Interpolation {
     pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
         let mut output = Vec::with_capacity(input.len());
         for leg in legs(input) {
-            let bundles = if leg.rises { &self.rising } else { &self.falling };
+            let bundles = if leg.rises {
+                &self.rising
+            } else {
+                &self.falling
+            };
             let values = &input[leg.samples];
             output.extend(values.iter().map(|x| between(bundles, leg.reversal, *x)));
         }

@@ -33,7 +33,8 @@ impl AtLoads {
         by_load.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut loads, mut predictors) = (Vec::new(), Vec::new());
         for same in by_load.chunk_by(|a, b| b.0 - a.0 <= SAME * largest) {
-            let recordings: Vec<&Recording> = same.iter().map(|(_, recording)| *recording).collect();
+            let recordings: Vec<&Recording> =
+                same.iter().map(|(_, recording)| *recording).collect();
             loads.push(same.iter().map(|(load, _)| load).sum::<f64>() / same.len() as f64);
             predictors.push(fit(&recordings)?);
         }

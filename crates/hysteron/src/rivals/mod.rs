@@ -40,7 +40,8 @@ pub enum RivalKind {
     /// Linear interpolation over the input and over the last reversal, among the branches of the
     /// same direction; the nearest branch where there is no neighbour.
     Interpolation,
-    /// The last branch of the same direction, as it was measured.
+    /// The last branch of the same direction, as it was measured. Reversals up to a tenth of the
+    /// range are part of a branch here.
     Persistence,
 }
 
@@ -112,7 +113,8 @@ impl Rival {
             return Err(Error::Fit("there is no recording to fit".into()));
         }
         recordings.iter().try_for_each(Recording::check)?;
-        let at_loads = loads::AtLoads::fit(recordings, |same_load| Predictor::fit(kind, same_load))?;
+        let at_loads =
+            loads::AtLoads::fit(recordings, |same_load| Predictor::fit(kind, same_load))?;
         Ok(Self { kind, at_loads })
     }
 

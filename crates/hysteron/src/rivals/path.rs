@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use crate::recording::Recording;
-use crate::series::{branches, usual_tolerance};
+use crate::series::{NOISE, branches, range};
 use std::ops::Range;
 
 /// A part of the input between two reversals.
@@ -17,9 +17,15 @@ pub(super) struct Leg {
     pub(super) end: f64,
 }
 
-/// The legs of an input. Reversals up to [`usual_tolerance`] are noise.
+/// The legs of an input. Reversals up to [`NOISE`] of the range are noise.
 pub(super) fn legs(input: &[f64]) -> Vec<Leg> {
-    let branch = branches(input, usual_tolerance(input));
+    legs_beyond(input, NOISE)
+}
+
+/// The legs of an input, without reversals up to this share of the range.
+pub(super) fn legs_beyond(input: &[f64], share: f64) -> Vec<Leg> {
+    let (low, high) = range(input);
+    let branch = branches(input, share * (high - low));
     let mut from = 0;
     let by_branch = branch.chunk_by(|a, b| a == b);
     let leg = |same: &[usize]| {
@@ -46,10 +52,11 @@ pub(super) struct Branch {
     pub(super) curve: Curve,
 }
 
-/// The branches of one recording. The curve of each begins at its reversal. A branch of a single
-/// sample is a jump, and left out as long as there are others.
-pub(super) fn measured(recording: &Recording) -> Vec<Branch> {
-    let legs = legs(&recording.input);
+/// The branches of one recording, without reversals up to this share of the range. The curve of each
+/// begins at its reversal. A branch of a single sample is a jump, and left out as long as there are
+/// others.
+pub(super) fn measured(recording: &Recording, share: f64) -> Vec<Branch> {
+    let legs = legs_beyond(&recording.input, share);
     let is_jump = |leg: &Leg| leg.samples.len() < 2;
     let only_jumps = legs.iter().all(is_jump);
     let kept = legs.iter().filter(|leg| only_jumps || !is_jump(leg));
@@ -68,5 +75,5 @@ pub(super) fn measured(recording: &Recording) -> Vec<Branch> {
 
 /// The branches of all recordings.
 pub(super) fn all_measured(recordings: &[&Recording]) -> Vec<Branch> {
-    recordings.iter().flat_map(|r| measured(r)).collect()
+    recordings.iter().flat_map(|r| measured(r, NOISE)).collect()
 }

@@ -1,11 +1,12 @@
 //! What was measured one cycle before.
 
-use super::path::{Branch, Leg, legs, measured};
+use super::path::{Branch, Leg, legs_beyond, measured};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::series::range;
 
-/// Ends of cycles that differ by less than this share of the range are the same.
+/// Ends of cycles that differ by less than this share of the range are the same. Smaller reversals
+/// within a cycle are part of it.
 const SAME: f64 = 0.1;
 
 /// The last cycle of a recording.
@@ -25,7 +26,7 @@ impl Persistence {
         };
         let (low, high) = range(&last.input);
         let same = SAME * (high - low);
-        let mut branches = measured(last);
+        let mut branches = measured(last, SAME);
         // A cycle that was cut off at the end of the recording is no cycle.
         let is_whole = |b: &Branch| (b.end - b.reversal).abs() >= (high - low) - 2.0 * same;
         branches.retain(is_whole);
@@ -45,10 +46,14 @@ impl Persistence {
     /// # Errors
     /// [`Error::Fit`] if a branch does not repeat the cycle.
     pub(super) fn predict(&self, input: &[f64]) -> Result<Vec<f64>> {
-        let legs = legs(input);
+        let legs = legs_beyond(input, SAME);
         let mut output = Vec::with_capacity(input.len());
         for (n, leg) in legs.iter().enumerate() {
-            let branch = if leg.rises { &self.rising } else { &self.falling };
+            let branch = if leg.rises {
+                &self.rising
+            } else {
+                &self.falling
+            };
             // The recording may begin and end within a cycle.
             let begins = n == 0 || (leg.reversal - branch.reversal).abs() <= self.same;
             let ends = n + 1 == legs.len() || (leg.end - branch.end).abs() <= self.same;
