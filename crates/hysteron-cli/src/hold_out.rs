@@ -61,8 +61,9 @@ pub(crate) fn fit(
 pub(crate) fn warn(held_out: &HeldOut) {
     for rival in held_out.better() {
         say(format_args!(
-            "{} predicts what was held out better than the model, by a factor of {}: the data do not \
-             determine this model; record more branches, or take fewer levels and more smoothness",
+            "{} predicts what was held out better than the model, by a factor of {}: the data do \
+             not determine the model, or it cannot follow them; try --levels auto --smooth auto, \
+             or record more branches",
             rival.name,
             text::number(held_out.model.rmse / rival.errors.rmse),
         ));

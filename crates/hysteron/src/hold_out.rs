@@ -45,9 +45,9 @@ impl HeldOut {
     }
 }
 
-/// Fits a model to what is not held out, and tests it on the rest. What is held out takes no part in
-/// the fit, nor in what the fit chooses. The result is also written into the record of the fit, as
-/// `hold_out`.
+/// Fits a model to what is not held out, and tests it on the rest. What is held out takes no part
+/// in the fit, nor in what the fit chooses. The result is also written into the record of the fit,
+/// as `hold_out`.
 ///
 /// The model runs over the whole input, and is compared where the output was held out. A percentage
 /// is of the range of the whole output.

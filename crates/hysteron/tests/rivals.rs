@@ -205,7 +205,7 @@ fn only_input_and_load_are_used() {
         let rival = Rival::fit(kind, &recording).unwrap();
         assert_eq!(rival.kind(), kind);
         let mut other = recording.clone();
-        other.output.iter_mut().for_each(|y| *y = -1e3 * *y);
+        other.output.iter_mut().for_each(|y| *y *= -1e3);
         let predicted = rival.predict(&recording).unwrap();
         assert_eq!(predicted.len(), recording.len());
         assert!(predicted.iter().all(|y| y.is_finite()));

@@ -10,8 +10,8 @@ const MARKS: [&str; 1] = ["ascending_copied_from_major"];
 
 /// Reads a recording without its copies.
 ///
-/// A copy is a part of a branch that was measured before. Without it the input jumps from one end of
-/// that branch to the other, and the operators remember the same.
+/// A copy is a part of a branch that was measured before. Without it the input jumps from one end
+/// of that branch to the other, and the operators remember the same.
 pub fn read(path: &Path, columns: Columns<'_>) -> Result<Recording, Box<dyn Error>> {
     let (recording, _) = Recording::read(path, columns, Repair::Refuse)?;
     let table = TableReader::open(path)?;

@@ -1,11 +1,11 @@
 //! The Prandtl-Ishlinskii model, a rival: a sum of plays with weights of zero and above.
 //!
 //! A play of half-width `r` follows the input at a distance of at most `r`,
-//! `w ← max(x − r, min(x + r, w))`. It is the sum of MKP operators along a diagonal of the plane, so
-//! the model is an MKP model whose weights depend on the width alone. *Two-sided*: the sum of the
-//! plays goes through a monotone curve, made of dead zones on both sides (Kuhnen 2003, *Modeling,
-//! identification and compensation of complex hysteretic nonlinearities*). This allows loops that are
-//! not symmetric.
+//! `w ← max(x − r, min(x + r, w))`. It is the sum of MKP operators along a diagonal of the plane,
+//! so the model is an MKP model whose weights depend on the width alone. *Two-sided*: the sum of
+//! the plays goes through a monotone curve, made of dead zones on both sides (Kuhnen 2003,
+//! *Modeling, identification and compensation of complex hysteretic nonlinearities*). This allows
+//! loops that are not symmetric.
 
 use hysteron::{Recording, range};
 
@@ -176,8 +176,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Weights of zero and above, and the free factor of `one`. That factor is taken out before: what is
-/// left of each column and of the target is at right angles to `one`.
+/// Weights of zero and above, and the free factor of `one`. That factor is taken out before: what
+/// is left of each column and of the target is at right angles to `one`.
 fn with_offset(columns: &[Vec<f64>], target: &[f64], one: &[f64]) -> (Vec<f64>, f64) {
     let ones = dot(one, one).max(f64::MIN_POSITIVE);
     let rest = |series: &[f64]| -> Vec<f64> {

@@ -112,7 +112,7 @@ fn reversal_curves(folder: &Path) -> Result<Set> {
         .iter()
         .zip(curve)
         .filter(|(copied, _)| **copied == 0.0);
-    let group = |curve: f64| (curve > 0.0).then(|| curve as usize % FOLDS);
+    let group = |curve: f64| (curve > 0.0).then_some(curve as usize % FOLDS);
     let group: Vec<Option<usize>> = genuine.map(|(_, curve)| group(curve)).collect();
     Ok(Set::folds("basaeri by curves", &whole, &group))
 }
@@ -158,10 +158,11 @@ fn loads(folder: &Path) -> Result<Vec<Set>> {
         };
         let at = |load: &u32| read(folder, &format!("sma_{file}_{load}MPa.csv"), columns);
         let all: Vec<Recording> = loads.iter().map(at).collect::<Result<_>>()?;
-        for left in 1..all.len() - 1 {
+        let inner = loads.iter().enumerate().skip(1).take(all.len() - 2);
+        for (left, load) in inner {
             let mut others = all.clone();
             let unseen = others.remove(left);
-            let name = format!("{name} at {} MPa", loads[left]);
+            let name = format!("{name} at {load} MPa");
             sets.push(Set::one(&name, others, unseen));
         }
     }

@@ -52,8 +52,8 @@ pub struct ModelsReport<'a> {
 }
 
 impl ModelsReport<'_> {
-    /// Writes `index.html` and the figures `residuals-*.svg` and `residuals-*.png` into `dir`, which
-    /// is made if absent.
+    /// Writes `index.html` and the figures `residuals-*.svg` and `residuals-*.png` into `dir`,
+    /// which is made if absent.
     ///
     /// The report appears whole or not at all. Files of an earlier report are replaced or removed,
     /// those of others stay; a path alone as `dir` replaces these too where they are in the way.

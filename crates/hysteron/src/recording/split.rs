@@ -57,8 +57,8 @@ impl Recording {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Fit`] for a share or rows out of range, for rows that leave nothing, or if there are
-    /// fewer than three branches.
+    /// [`Error::Fit`] for a share or rows out of range, for rows that leave nothing, or if there
+    /// are fewer than three branches.
     pub fn split(&self, what: &HoldOut) -> Result<Split> {
         self.check()?;
         match what {
@@ -153,8 +153,8 @@ fn spans(branch: &[usize]) -> Vec<std::ops::Range<usize>> {
         .collect()
 }
 
-/// Branches spread over those that can be held out, no two of them neighbours. Neighbouring branches
-/// differ in direction, so numbers in turn even and odd are directions in turn.
+/// Branches spread over those that can be held out, no two of them neighbours. Neighbouring
+/// branches differ in direction, so numbers in turn even and odd are directions in turn.
 fn spread(can_be: &[usize], share: f64, all: usize) -> Vec<usize> {
     let most = can_be.len().div_ceil(3);
     let count = ((share * all as f64).round() as usize).clamp(1, most);

@@ -74,8 +74,8 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    /// Of the degree with the smallest error on what is left out: whole legs in turn where there are
-    /// three or more, otherwise every fifth sample.
+    /// Of the degree with the smallest error on what is left out: whole legs in turn where there
+    /// are three or more, otherwise every fifth sample.
     fn chosen(samples: &[Sample]) -> Self {
         let whole = samples.last().is_some_and(|last| last.leg >= 2);
         let fold = |n: usize, sample: &Sample| if whole { sample.leg } else { n } % FOLDS;

@@ -72,8 +72,8 @@ impl RivalKind {
 ///
 /// It uses the input alone: the value, the direction of travel and the last reversal. The first
 /// input of a recording counts as a reversal. Reversals smaller than 1 % of the range of the input
-/// are noise. Where all recordings have a load, there is one predictor for each load, and the output
-/// at another load is interpolated between the two nearest ones.
+/// are noise. Where all recordings have a load, there is one predictor for each load, and the
+/// output at another load is interpolated between the two nearest ones.
 ///
 /// ```
 /// use hysteron::{Recording, Rival, RivalKind};
@@ -129,8 +129,8 @@ impl Rival {
     ///
     /// # Errors
     /// - [`Error::Recording`] for an invalid recording.
-    /// - [`Error::Fit`] for [`RivalKind::Persistence`], if a branch does not repeat the cycle fitted;
-    ///   for a predictor with loads, if the recording has none.
+    /// - [`Error::Fit`] for [`RivalKind::Persistence`], if a branch does not repeat the cycle
+    ///   fitted; for a predictor with loads, if the recording has none.
     pub fn predict(&self, recording: &Recording) -> Result<Vec<f64>> {
         recording.check()?;
         self.at_loads.predict(recording)

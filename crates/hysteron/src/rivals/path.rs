@@ -52,9 +52,9 @@ pub(super) struct Branch {
     pub(super) curve: Curve,
 }
 
-/// The branches of one recording, without reversals up to this share of the range. The curve of each
-/// begins at its reversal. A branch of a single sample is a jump, and left out as long as there are
-/// others.
+/// The branches of one recording, without reversals up to this share of the range. The curve of
+/// each begins at its reversal. A branch of a single sample is a jump, and left out as long as
+/// there are others.
 pub(super) fn measured(recording: &Recording, share: f64) -> Vec<Branch> {
     let legs = legs_beyond(&recording.input, share);
     let is_jump = |leg: &Leg| leg.samples.len() < 2;
