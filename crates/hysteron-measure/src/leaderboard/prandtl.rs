@@ -221,3 +221,64 @@ fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     }
     weights
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use hysteron::{Model, Operator, Plane, Sign};
+
+    /// Loops of falling amplitude from the lowest input.
+    fn input() -> Vec<f64> {
+        let amplitude = |n: f64| 5.0 * (1.0 - n / 2000.0);
+        let samples = (0..1200).map(f64::from);
+        samples
+            .map(|n| 5.0 - amplitude(n) * (n * 0.05).cos())
+            .collect()
+    }
+
+    fn error(shape: Shape, recording: &Recording) -> f64 {
+        let model = PrandtlIshlinskii::fit(recording, shape, 20);
+        let (low, high) = range(&recording.output);
+        let squares = squares(&model.predict(&recording.input), &recording.output);
+        (squares / recording.len() as f64).sqrt() / (high - low)
+    }
+
+    /// An MKP model whose weights depend on the width alone is a Prandtl-Ishlinskii model, in both
+    /// directions of the output.
+    #[test]
+    fn it_is_the_model_with_weights_tied_along_the_diagonal() {
+        let levels = 20;
+        for sign in [Sign::Positive, Sign::Negative] {
+            let plane = Plane::new(0.5, 10.0, levels).unwrap();
+            let widths = |j: usize| (1..=j).map(move |i| 1.0 / (1 + j - i) as f64);
+            let weights = (1..=levels).flat_map(widths).collect();
+            let model = Model::new(Operator::Mkp, plane, weights, 2.0, sign).unwrap();
+            let input = input();
+            let output = model.simulate(&input).unwrap();
+            let recording = Recording::new(input, output).unwrap();
+            // The thresholds are the same, so only the end of the search is left.
+            let error = error(Shape::Plain, &recording);
+            assert!(error < 1e-4, "{error}");
+        }
+    }
+
+    #[test]
+    fn dead_zones_on_both_sides_follow_loops_that_are_not_symmetric() {
+        let mut w = 1.0_f64;
+        let input = input();
+        let play = |x: &f64| {
+            w = (x - 1.0).max(w.min(x + 1.0));
+            (0.5 * w).exp()
+        };
+        let output = input.iter().map(play).collect();
+        let recording = Recording::new(input, output).unwrap();
+        let (plain, bent) = (
+            error(Shape::Plain, &recording),
+            error(Shape::TwoSided, &recording),
+        );
+        // Twenty straight pieces of an exponential curve are off by less than this.
+        assert!(bent < 0.004 && bent < 0.1 * plain, "{bent} of {plain}");
+    }
+}
