@@ -62,8 +62,7 @@ pub(crate) fn warn(held_out: &HeldOut) {
     for rival in held_out.better() {
         say(format_args!(
             "{} predicts what was held out better than the model, by a factor of {}: the data do \
-             not determine the model, or it cannot follow them; try --levels auto --smooth auto, \
-             or record more branches",
+             not determine the model, or it cannot follow them; record more branches",
             rival.name,
             text::number(held_out.model.rmse / rival.errors.rmse),
         ));

@@ -60,7 +60,14 @@ impl Method {
     pub fn predict(self, split: &Split) -> Result<Option<Vec<f64>>> {
         match self {
             Self::Ours => fitted(&Fit::new(), split).map(Some),
-            Self::Fixed => fitted(&FitOptions::default().into(), split).map(Some),
+            Self::Fixed => {
+                let options = FitOptions {
+                    levels: LEVELS,
+                    ridge: 0.0,
+                    ..FitOptions::default()
+                };
+                fitted(&options.into(), split).map(Some)
+            }
             Self::Relay(levels) => {
                 let options = FitOptions {
                     operator: Operator::Relay,
