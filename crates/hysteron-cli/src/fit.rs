@@ -19,7 +19,11 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let inputs = args.data.iter().chain(&args.repeat);
+    let held_out = args.hold_out.iter().filter_map(|what| match what {
+        args::HoldOut::File(file) => Some(file),
+        args::HoldOut::Part(_) => None,
+    });
+    let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let mut prepared = Vec::new();
