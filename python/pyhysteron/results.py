@@ -48,16 +48,19 @@ __all__ = [
     "Median",
     "ModelSummary",
     "OutcomeCounts",
+    "Outlier",
     "Preparation",
     "RateDependence",
     "Ratio",
     "RecordingSummary",
     "Repairs",
+    "RivalScore",
     "Sampling",
     "SavedState",
     "ScoreTable",
     "SensorLag",
     "SeriesSummary",
+    "Smooth",
     "Smoothed",
     "Snapshot",
     "Spikes",
@@ -206,6 +209,22 @@ class Candidate(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class RivalScore(_Result):
+    """The error of a simple predictor on what was left out.
+
+    Attributes
+    ----------
+    name : str
+        Such as 'straight line'.
+    nrmse_percent : float
+        Root mean squared error in percent of the measured range.
+    """
+
+    name: str
+    nrmse_percent: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Outlier(_Result):
     """A reading that does not belong to its recording, and had no weight in the fit.
 
@@ -243,6 +262,8 @@ class Validation(_Result):
         The same in percent of the measured range.
     scores : tuple of Candidate
         All candidates.
+    rivals : tuple of RivalScore
+        Simple predictors on the same samples left out.
     """
 
     criterion: Literal["left_out", "evidence"]
@@ -251,6 +272,7 @@ class Validation(_Result):
     rmse: float
     nrmse_percent: float
     scores: tuple[Candidate, ...]
+    rivals: tuple[RivalScore, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)

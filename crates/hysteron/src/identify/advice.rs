@@ -11,9 +11,18 @@ use crate::series::{branches, usual_tolerance};
 use std::fmt;
 
 /// A warning about a fit. [`Advice::remedy`] suggests what may help.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Advice {
+    /// A simple predictor is better than the model on what was left out.
+    RivalWins {
+        /// Its name.
+        name: String,
+        /// Its error on what was left out, in percent of the measured range.
+        rival: f64,
+        /// The error of the model there.
+        model: f64,
+    },
     /// Inputs outside the plane's active range were clipped to its ends.
     Clipped {
         /// Number of inputs outside.
@@ -78,6 +87,11 @@ impl fmt::Display for Advice {
                  weights cannot follow",
                 100.0 * part
             ),
+            Self::RivalWins { name, rival, model } => write!(
+                f,
+                "on what was left out, {name} errs {rival:.2} % of the range and the model \
+                 {model:.2} %: the data do not determine the model, or it cannot follow them"
+            ),
             Self::FalseReversals { all, real, noise } => write!(
                 f,
                 "the input reverses {all} times, but only {real} reversals are larger than its \
@@ -127,7 +141,7 @@ impl Advice {
             Self::FalseReversals { .. } => {
                 Remedy::new("use {}, which removes them", [Setting::on("prepare")])
             }
-            Self::FewData { .. } => Remedy::new(
+            Self::RivalWins { .. } | Self::FewData { .. } => Remedy::new(
                 "record more branches, and test the model on another recording",
                 [],
             ),
@@ -173,6 +187,15 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
             advice.push(noisy);
         } else if fit.solver == Solver::Nnls && against > AGAINST_INPUT {
             advice.push(Advice::AgainstInput { part: against });
+        }
+        if let Some(found) = &fit.validation {
+            let better = found.rivals.iter();
+            let better = better.filter(|rival| rival.nrmse_percent < found.nrmse_percent);
+            advice.extend(better.map(|rival| Advice::RivalWins {
+                name: rival.name.clone(),
+                rival: rival.nrmse_percent,
+                model: found.nrmse_percent,
+            }));
         }
         // Where whole branches were left out, the error on them tells.
         let tested = fit

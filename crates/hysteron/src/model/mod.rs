@@ -48,7 +48,7 @@ pub use start::FittedStart;
 pub use state::{Sample, State};
 pub use summary::{FitSummary, Outlier, Solver, Start};
 pub use surroundings::Surroundings;
-pub use validation::{Criterion, Score, Validation};
+pub use validation::{Criterion, RivalScore, Score, Validation};
 pub(crate) use within::Found;
 
 use crate::error::{Error, Result};

@@ -51,6 +51,15 @@ pub struct Score {
     pub log_evidence: Option<f64>,
 }
 
+/// The error of a simple predictor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RivalScore {
+    /// Its name, see [`RivalKind::name`](crate::RivalKind::name).
+    pub name: String,
+    /// Root mean squared error on what was left out, in percent of the measured range.
+    pub nrmse_percent: f64,
+}
+
 /// How levels and smoothness were chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
@@ -68,6 +77,9 @@ pub struct Validation {
     pub nrmse_percent: f64,
     /// All candidates that were tried.
     pub scores: Vec<Score>,
+    /// Simple predictors on the same samples left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rivals: Vec<RivalScore>,
 }
 
 impl Validation {

@@ -3,10 +3,11 @@
 //! `criterion` says how good a candidate is: by the error on branches left out, or by the
 //! evidence where there are few branches. `search` walks through the candidates. `sums` are the
 //! products of groups of samples, from which a fit and its error follow without the samples.
-//! `validate` puts them together. `left_out` tests the whole fit, including these choices.
+//! `validate` puts them together. `rivals` are simple predictors on the same branches. `left_out` tests the whole fit, including these choices.
 
 mod criterion;
 pub(super) mod left_out;
+mod rivals;
 mod search;
 mod sums;
 pub(super) mod validate;

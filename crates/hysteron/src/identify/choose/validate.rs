@@ -6,6 +6,7 @@
 
 use crate::error::Result;
 use crate::identify::choose::criterion::Level;
+use crate::identify::choose::rivals;
 use crate::identify::choose::search::{Place, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
@@ -174,6 +175,7 @@ pub(crate) fn choose(
             (squares / level.samples()).sqrt()
         }
     };
+    let rivals = rivals::left_out(&problem.experiment, &folds, whole_branches)?;
     let validation = Validation {
         criterion,
         folds: count,
@@ -181,6 +183,7 @@ pub(crate) fn choose(
         rmse,
         nrmse_percent: 100.0 * rmse / (high - low),
         scores,
+        rivals,
     };
     Ok((options, validation))
 }
