@@ -39,8 +39,8 @@ pub(crate) struct Fit {
     /// no weight
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) robust: Robust,
-    /// State of the operators before the first sample; `auto` takes off if the first sample
-    /// determines nearly all operators, otherwise unknown
+    /// State of the operators before the first sample; `auto` takes off or on, unless an unknown
+    /// start predicts clearly better
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) start: FitStart,
     /// Column of the load or stress: the model depends on it

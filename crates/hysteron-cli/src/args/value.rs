@@ -24,7 +24,7 @@ pub(crate) enum Solver {
 /// The start of a fit.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum FitStart {
-    /// Off if the first sample determines nearly all operators, otherwise unknown
+    /// Off or on, unless an unknown start predicts clearly better
     Auto,
     /// All off, as after the lowest input
     Off,

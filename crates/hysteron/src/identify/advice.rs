@@ -1,7 +1,7 @@
 //! Warnings about a fit: signs in the data that the model may not be what the user expects.
 
 use crate::error::Result;
-use crate::identify::choose::MANY_OPEN;
+use crate::identify::choose::start::MANY_OPEN;
 use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;

@@ -1,7 +1,8 @@
 //! [`Fit`], the entry point of identification: options, choices left to the data, progress.
 
 use crate::error::Result;
-use crate::identify::choose::{self, Open};
+use crate::identify::choose::Open;
+use crate::identify::choose::start::usual_start;
 use crate::identify::doubt::sessions::widen;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
@@ -165,7 +166,7 @@ impl<'a> Fit<'a> {
     }
 
     /// State of the operators before the first sample of each recording. [`Auto`](crate::Auto)
-    /// takes off if the first samples determine nearly all operators, otherwise unknown.
+    /// takes off or on, unless an unknown start predicts clearly better.
     #[must_use]
     pub fn start(mut self, start: impl Into<Choice<Start>>) -> Self {
         match start.into() {
@@ -274,7 +275,7 @@ impl<'a> Fit<'a> {
             // recordings most begin at rest.
             let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
             options.start = match plain {
-                true => choose::usual_start(recordings, &options)?,
+                true => Start::Unknown,
                 false => Start::Off,
             };
         }
@@ -282,6 +283,9 @@ impl<'a> Fit<'a> {
             true => outliers::mended(recordings, &options, self.progress)?,
             false => (Cow::Borrowed(recordings), Vec::new()),
         };
+        if self.auto_start && options.start == Start::Unknown {
+            options.start = usual_start(&seen, &options)?;
+        }
         let asked = Asked {
             body: self.body,
             open: self.open,

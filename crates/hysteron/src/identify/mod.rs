@@ -18,7 +18,7 @@ mod weights;
 
 pub use advice::{Advice, advice};
 pub use choose::left_out::{LeftOut, left_out};
-pub use choose::usual_start;
+pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
 pub(crate) use doubt::excitation::Unresolved;
 pub use doubt::excitation::excitation;
