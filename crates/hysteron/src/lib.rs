@@ -37,7 +37,8 @@ mod remedy;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, Learner, OutcomeCounts, adapt,
+    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, Learned, Learner, OutcomeCounts,
+    Refit, Window, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{

@@ -9,7 +9,6 @@
 //! taken as a jump of the plant and accepted. Refused readings that do not agree are taken as more
 //! noise, and the scale grows step by step.
 
-use super::Adaptation;
 use crate::model::Model;
 use crate::scalar::Real;
 
@@ -23,9 +22,23 @@ const AT_START: usize = 50;
 /// and rounding errors would be refused. Outliers within a gate of this scale do no harm.
 const LEAST: usize = 1000;
 
-/// What the gate knows of the errors. All values are in the output's unit.
+/// Keeps a learner from outliers: it judges each reading by its surprise. All values are in the
+/// output's unit. [`crate::Adaptation`] explains the rule.
+///
+/// An [`crate::Estimator`] has its own. Any other learner may use one: it asks before it learns
+/// from a reading, and tells what error was left after a reading that was accepted.
+///
+/// ```
+/// let mut gate = hysteron_core::Gate::new(10.0);
+/// let (limit, burst) = (12.0, 8);
+/// for error in [0.1, -0.1, 0.2] {
+///     assert!(gate.believes(error, limit, burst));
+///     gate.settle(error);
+/// }
+/// assert!(!gate.believes(4095.0, limit, burst));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gate<T> {
+pub struct Gate<T> {
     /// Range of the model's output.
     range: T,
     /// Usual size of a surprise.
@@ -48,7 +61,8 @@ impl<T: Real> Gate<T> {
     }
 
     /// A gate for a model whose output has this range, before the first error.
-    pub(super) fn new(range: T) -> Self {
+    #[must_use]
+    pub fn new(range: T) -> Self {
         Self {
             range,
             scale: range / T::from_index(AT_START),
@@ -60,19 +74,20 @@ impl<T: Real> Gate<T> {
     }
 
     /// Forgets all errors, because they were those of other weights.
-    pub(super) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         *self = Self::new(self.range);
     }
 
-    /// Whether a reading whose prediction has this `error` is accepted.
-    pub(super) fn believes(&mut self, error: T, options: &Adaptation<T>) -> bool {
-        if options.gate == T::ZERO {
+    /// Whether a reading whose prediction has this `error` is accepted: its surprise is at most
+    /// `gate` times the usual one, or `burst` surprises in a row agree. A `gate` of 0 accepts all.
+    pub fn believes(&mut self, error: T, gate: T, burst: u32) -> bool {
+        if gate == T::ZERO {
             return true;
         }
         let surprise = error - self.left;
         let size = surprise.max(-surprise);
         // A model without range gives no scale. The first surprise does.
-        if size <= options.gate * self.scale || self.scale == T::ZERO {
+        if size <= gate * self.scale || self.scale == T::ZERO {
             self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
             return true;
         }
@@ -80,11 +95,11 @@ impl<T: Real> Gate<T> {
         self.agreeing = if agrees { self.agreeing + 1 } else { 1 };
         self.refused += 1;
         self.last = surprise;
-        if self.agreeing >= options.burst {
+        if self.agreeing >= burst {
             self.believe(size);
             return true;
         }
-        if self.refused >= options.burst {
+        if self.refused >= burst {
             self.refused = 0;
             self.rescale(self.scale + self.scale);
         }
@@ -92,7 +107,7 @@ impl<T: Real> Gate<T> {
     }
 
     /// Keeps the error that `left` after learning from an accepted reading.
-    pub(super) fn settle(&mut self, left: T) {
+    pub fn settle(&mut self, left: T) {
         self.left = if left.is_finite() { left } else { T::ZERO };
     }
 

@@ -96,7 +96,8 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         if !(moved || ends) {
             return Outcome::AtRest;
         }
-        if !self.gate.believes(error, &self.options) {
+        let (gate, burst) = (self.options.gate, self.options.burst);
+        if !self.gate.believes(error, gate, burst) {
             // An increment from before a jump to after it would take the jump for a slope.
             self.increment = None;
             return Outcome::Rejected;

@@ -15,7 +15,8 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
-const LEARNERS: [(&str, Learner); 4] = [
+const LEARNERS: [(&str, Learner); 5] = [
+    ("refit", Learner::Refit),
     ("gradient", Learner::Gradient),
     ("increments", Learner::Increments),
     ("least squares", Learner::LeastSquares),
@@ -43,10 +44,10 @@ fn main() -> Result<()> {
     print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least \
-         squares, forgetting 1 |"
+        "| from → to, MPa | fixed | fitted | refit | gradient | increments | least squares | drift \
+         | least squares, forgetting 1 |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
         let loops = Loops::read(folder, material, stresses, output)?;
         for to in 1..stresses.len() {
@@ -55,8 +56,8 @@ fn main() -> Result<()> {
         pairs.push(loops);
     }
     print!("\n{}", include_str!("adaptation-load.md"));
-    println!("| from → to, MPa | middle | at its load | fitted | drift | drift, forgetting 1 |");
-    println!("| --- | ---: | ---: | ---: | ---: | ---: |");
+    println!("| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -165,6 +166,7 @@ fn cycles(folder: &Path) -> Result<()> {
     let mut state = first.saturated();
     run(&first, &mut state, &cycles[0].input)?;
     let (mut fixed, mut corrected, mut refitted, mut last) = (vec![], vec![], vec![], 0.0);
+    let mut persisted = vec![];
     for pair in cycles.windows(2) {
         let (before, cycle) = (&pair[0], &pair[1]);
         let output = run(&first, &mut state, &cycle.input)?;
@@ -178,8 +180,10 @@ fn cycles(folder: &Path) -> Result<()> {
         let model = fitted(before)?;
         let output = run(&model, &mut model.saturated(), &cycle.input)?;
         refitted.push(percent(&cycle.output, &output, range));
+        persisted.push(percent(&cycle.output, &persistent(before, cycle), range));
     }
     line("a whole cycle ahead: model of cycle 1, fixed", &fixed);
+    line("the output of the cycle before", &persisted);
     line("model fitted to the cycle before", &refitted);
     let mut sample_by_sample = vec![(
         "sample by sample: model of cycle 1, and its error at the sample before".to_owned(),
@@ -189,6 +193,7 @@ fn cycles(folder: &Path) -> Result<()> {
         let mut adaptive = estimator(&first, &cycles[0], learner)?;
         let (mut ahead, mut next) = (vec![], vec![]);
         for cycle in &cycles[1..] {
+            adaptive.refit()?;
             let mut frozen = adaptive.clone();
             let whole = cycle.input.iter().map(|&t| frozen.simulate(t));
             let whole: Vec<f64> = whole.collect::<hysteron::Result<_>>()?;
@@ -207,14 +212,45 @@ fn cycles(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// An estimator as [`adapt`] makes it, at the end of the recording that its model was fitted to.
-fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
-    let options = adapting(learner).adaptation(model, seen)?;
-    let mut adaptive = match learner {
-        Learner::Drift => DriftBasis::of(model, None)?.adaptive(options)?,
-        _ => Adaptive::new(model, options)?,
+/// What a cycle would be if it were the one `before`: at each input, on the way down and on the way
+/// up, the output there.
+fn persistent(before: &Recording, cycle: &Recording) -> Vec<f64> {
+    let coldest = |recording: &Recording| {
+        let places = recording.input.iter().enumerate();
+        let coldest = places.min_by(|a, b| a.1.total_cmp(b.1));
+        coldest.map_or(0, |(n, _)| n)
     };
-    adaptive.saturate()?;
+    let turn = coldest(before);
+    let branch = |range: Range<usize>| {
+        let part = part(before, range);
+        let mut points: Vec<(f64, f64)> = part.input.into_iter().zip(part.output).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    let (down, up) = (branch(0..turn + 1), branch(turn..before.len()));
+    let here = coldest(cycle);
+    let inputs = cycle.input.iter().enumerate();
+    let each = inputs.map(|(n, &t)| between(if n <= here { &down } else { &up }, t));
+    each.collect()
+}
+
+/// The value at `t` on a polygon through points in order; beyond its ends that of the end.
+fn between(points: &[(f64, f64)], t: f64) -> f64 {
+    let n = points.partition_point(|point| point.0 < t);
+    let (low, high) = (points[n.saturating_sub(1)], points[n.min(points.len() - 1)]);
+    match high.0 > low.0 {
+        true => low.1 + (high.1 - low.1) * (t - low.0) / (high.0 - low.0),
+        false => high.1,
+    }
+}
+
+/// A learner as [`adapt`] makes it, at the end of the recording that its model was fitted to.
+fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
+    let options = AdaptOptions {
+        start: Start::On,
+        ..adapting(learner)
+    };
+    let mut adaptive = options.adaptive_after(model, seen)?;
     for &input in &seen.input {
         adaptive.simulate(input)?;
     }
@@ -313,13 +349,14 @@ impl Loops {
             Err(_) => "outside".into(),
         };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
             self.stresses[to],
             self.judge(&middle, to)?,
             self.judge(&Fit::from(&self.options).run(&self.loops[to])?, to)?,
+            self.adapted(&model, to, &adapting(Learner::Refit))?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,
         );

@@ -2,25 +2,31 @@
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `options` are its settings. `adaptive` is the model that learns
-//! sample by sample. `parts` is a basis with few coefficients for drift, and `counts` counts what
-//! was done with the samples.
+//! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
+//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `counts` counts what was
+//! done with the samples.
 
 mod adaptive;
 mod basis;
 mod counts;
 mod options;
+mod refit;
+mod sums;
+mod window;
 
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
-pub use options::{AdaptOptions, Learner};
+pub use options::{AdaptOptions, Learned, Learner};
+pub use refit::Refit;
+pub use window::Window;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::Errors;
-use hysteron_core::{Adaptation, Method, Outcome};
+use hysteron_core::{Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
 
@@ -33,7 +39,7 @@ pub struct Adapted {
     /// they were obtained.
     pub model: Model,
     /// Number of samples at the end that did not change the model, because no later samples can
-    /// confirm them: [`Adaptation::burst`], or 0 without a [`Adaptation::gate`].
+    /// confirm them: [`AdaptOptions::burst`], or 0 without a [`AdaptOptions::gate`].
     pub probation: usize,
     /// Output expected at each sample before the estimator learned from it.
     pub output_model: Vec<f64>,
@@ -57,8 +63,8 @@ pub struct Adapted {
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
-    /// The estimator's options.
-    pub options: Adaptation<f64>,
+    /// The options of what learned.
+    pub options: Learned,
 }
 
 /// Errors of the adapting model, taken before it learned from each sample, beside those of the
@@ -134,18 +140,19 @@ pub fn adapt(
         return adapt_within(model, recording, options, progress);
     }
     refuse_unusable(model)?;
-    let adaptation = options.adaptation(model, recording)?;
-    let mut adaptive = options.estimator(model, adaptation)?;
+    let learned_by = options.learned(model, recording)?;
+    let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
     let (from_on, fixed) = fixed(&offline, recording, options.start)?;
     if from_on {
         adaptive.saturate()?;
     }
     let count = recording.len();
-    let probation = on_probation(&adaptation, count);
+    let probation = on_probation(learned_by, count);
     let (input, late_input) = recording.input.split_at(count - probation);
     let (output, late_output) = recording.output.split_at(count - probation);
     let mut learned = adaptive.run(input, output, progress)?;
+    adaptive.refit()?;
     let mut last = adaptive.model()?;
     let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
     learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
@@ -172,7 +179,7 @@ pub fn adapt(
         &offline,
         recording,
         options,
-        &adaptation,
+        learned_by,
         (&again, counts),
     ));
     Ok(Adapted {
@@ -187,7 +194,7 @@ pub fn adapt(
         late,
         worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
         again,
-        options: adaptation,
+        options: learned_by,
     })
 }
 
@@ -213,10 +220,10 @@ fn adapt_within(
 }
 
 /// How many of `count` samples are at the end and on probation.
-fn on_probation(options: &Adaptation<f64>, count: usize) -> usize {
-    match options.gate > 0.0 {
-        true => count.min(options.burst as usize),
-        false => 0,
+fn on_probation(options: Learned, count: usize) -> usize {
+    match options.gate() {
+        (gate, burst) if gate > 0.0 => count.min(burst as usize),
+        _ => 0,
     }
 }
 
@@ -275,7 +282,7 @@ fn summary(
     offline: &Model,
     recording: &Recording,
     options: &AdaptOptions,
-    adaptation: &Adaptation<f64>,
+    learned_by: Learned,
     (again, counts): (&Errors, OutcomeCounts),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
@@ -285,7 +292,7 @@ fn summary(
         "adapted".into(),
         json!({
             "method": options.learner,
-            "options": described(adaptation),
+            "options": described(learned_by),
             "counts": counts,
             "from": offline.fit.as_ref().map(|fit| json!({
                 "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
@@ -312,7 +319,11 @@ fn summary(
 }
 
 /// The options as a JSON object: those of the method, and those that guard against bad readings.
-fn described(options: &Adaptation<f64>) -> serde_json::Value {
+fn described(options: Learned) -> serde_json::Value {
+    let options = match options {
+        Learned::Estimator(adaptation) => adaptation,
+        Learned::Refit(refit) => return json!(refit),
+    };
     let mut object = match options.method {
         Method::Gradient { gain } => json!({ "gain": gain }),
         Method::Increments { gain, span } => json!({"gain": gain, "span": span}),

@@ -2,6 +2,8 @@
 
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
+use crate::adapt::refit::Refit;
+use crate::adapt::window::Window;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::prepare::noise;
@@ -28,6 +30,8 @@ const CORRELATION: f64 = 1.0;
 const DEVIATION: f64 = 0.3;
 /// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
+/// Ridge of a refit.
+const RIDGE: f64 = 1e-3;
 
 /// Which parameters are adapted, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -39,10 +43,21 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The coefficients of [`crate::DriftBasis`] by recursive least squares. With the defaults it
-    /// has the smallest errors on measured recordings.
-    #[default]
+    /// The coefficients of [`crate::DriftBasis`] by recursive least squares.
     Drift,
+    /// All weights by least squares over the last cycle of the input, again and again. With the
+    /// defaults it has the smallest errors on measured recordings.
+    #[default]
+    Refit,
+}
+
+/// The options of what learns, all of them known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Learned {
+    /// Those of an estimator, which learns from sample to sample.
+    Estimator(Adaptation<f64>),
+    /// Those of a windowed refit.
+    Refit(Refit),
 }
 
 /// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
@@ -51,9 +66,12 @@ pub enum Learner {
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `learner` | drift | see [`Learner`] | parameters and method |
+/// | `learner` | refit | see [`Learner`] | parameters and method |
 /// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load of the first coefficients (drift) |
+/// | `load` | middle of its range | the model's range | load to start at (refit, drift) |
+/// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
+/// | `every` | see the field | 1 or more | samples between two refits |
+/// | `ridge` | 1e-3 | above 0, up to 1 | holds weights where they are (refit) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
@@ -74,9 +92,17 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the coefficients start at, for [`Learner::Drift`] with a model that depends on a
-    /// load.
+    /// Load to start at, for [`Learner::Refit`] and [`Learner::Drift`] with a model that depends on
+    /// a load.
     pub load: Option<f64>,
+    /// The samples that a refit uses.
+    pub window: Option<Window>,
+    /// Samples between two refits. Default: at each turning point of the input, and where an eighth
+    /// of the window is new.
+    pub every: Option<u32>,
+    /// Strength of the ridge that holds the weights of a refit where they are, relative to the mean
+    /// diagonal element of the window's matrix.
+    pub ridge: Option<f64>,
     /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
     /// Levels between two updates from increments.
@@ -112,26 +138,34 @@ pub struct AdaptOptions {
 }
 
 impl AdaptOptions {
-    /// The estimator's options for `model` on `recording`.
+    /// The options of the learner for `model` on `recording`.
     ///
     /// # Errors
     /// [`Error::Fit`] for a field that is set but that the learner does not use. Values out of
-    /// range are refused when an estimator is made.
-    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
+    /// range are refused when a learner is made.
+    pub fn learned(&self, model: &Model, recording: &Recording) -> Result<Learned> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The estimator's options for `model` before any measurement. `Y` is the model's range, and
-    /// the output is assumed to have no noise.
+    /// The options of an estimator for `model` on `recording`.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::learned`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator.
+    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
+        self.learned(model, recording)?.estimator()
+    }
+
+    /// The options of an estimator for `model` before any measurement. `Y` is the model's range,
+    /// and the output is assumed to have no noise.
     ///
     /// # Errors
     /// As [`AdaptOptions::adaptation`].
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
-        self.resolved(model, 0.0, 0.0)
+        self.resolved(model, 0.0, 0.0)?.estimator()
     }
 
-    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
+    /// A learner for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
     /// start is taken as off.
     ///
     /// ```
@@ -145,25 +179,59 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_basis`].
+    /// As [`AdaptOptions::learned`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
-        let mut adaptive = self.estimator(model, self.before(model)?)?;
+        self.begun(model, self.resolved(model, 0.0, 0.0)?)
+    }
+
+    /// As [`AdaptOptions::adaptive`], with the options that follow from a recording of the plant.
+    /// It learns nothing from it.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::adaptive`].
+    pub fn adaptive_after(&self, model: &Model, recording: &Recording) -> Result<Adaptive> {
+        self.begun(model, self.learned(model, recording)?)
+    }
+
+    fn begun(&self, model: &Model, options: Learned) -> Result<Adaptive> {
+        let mut adaptive = self.learner(model, options)?;
         if self.start == Start::On {
             adaptive.saturate()?;
         }
         Ok(adaptive)
     }
 
-    /// An estimator of the weights or of the coefficients, depending on the learner.
-    pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
-        match self.learner {
-            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
-            _ => Adaptive::new(model, adaptation),
+    /// What learns the weights or the coefficients.
+    pub(super) fn learner(&self, model: &Model, options: Learned) -> Result<Adaptive> {
+        match (options, self.learner) {
+            (Learned::Refit(refit), _) => {
+                Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit)
+            }
+            (Learned::Estimator(adaptation), Learner::Drift) => {
+                DriftBasis::of(model, self.load)?.adaptive(adaptation)
+            }
+            (Learned::Estimator(adaptation), _) => Adaptive::new(model, adaptation),
         }
     }
 
-    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Adaptation<f64>> {
+    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Learned> {
         self.refuse_unused(model)?;
+        let adaptation = self.guarded(model, rough, range);
+        Ok(match self.learner {
+            Learner::Refit => Learned::Refit(Refit {
+                window: self.window.unwrap_or_default(),
+                every: self.every,
+                ridge: self.ridge.unwrap_or(RIDGE),
+                movement: adaptation.movement,
+                gate: adaptation.gate,
+                burst: adaptation.burst,
+            }),
+            _ => Learned::Estimator(adaptation),
+        })
+    }
+
+    /// The options of an estimator. Of those of a refit, the guards.
+    fn guarded(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
@@ -190,12 +258,13 @@ impl AdaptOptions {
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
+            Learner::Refit => usual.method,
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
             _ => OFFSET * (model.plane().operators() as f64).sqrt(),
         };
-        Ok(Adaptation {
+        Adaptation {
             method,
             offset_share: self.offset_share.unwrap_or(offset_share),
             dead_zone: self.dead_zone.unwrap_or(2.0 * rough),
@@ -204,34 +273,59 @@ impl AdaptOptions {
             trial: self.trial.unwrap_or(usual.trial),
             gate: self.gate.unwrap_or(usual.gate),
             burst: self.burst.unwrap_or(usual.burst),
-        })
+        }
     }
 
     fn refuse_unused(&self, model: &Model) -> Result<()> {
-        use Learner::{Drift, Gradient, Increments, LeastSquares};
-        let steps = matches!(self.learner, Gradient | Increments);
+        use Learner::{Drift, Gradient, Increments, LeastSquares, Refit};
+        let is = |learners: &[Learner]| learners.contains(&self.learner);
+        let (steps, squares) = ([Gradient, Increments], [LeastSquares, Drift]);
+        let starts = is(&[Drift, Refit]) && model.load.is_some();
+        let estimator = !is(&[Refit]);
         let given = [
-            ("gain", self.gain.is_some(), steps),
-            ("span", self.span.is_some(), self.learner == Increments),
-            ("forgetting", self.forgetting.is_some(), !steps),
-            ("noise", self.noise.is_some(), !steps),
-            ("spread", self.spread.is_some(), !steps),
+            ("load", self.load.is_some(), starts),
+            ("window", self.window.is_some(), !estimator),
+            ("every", self.every.is_some(), !estimator),
+            ("ridge", self.ridge.is_some(), !estimator),
+            ("gain", self.gain.is_some(), is(&steps)),
+            ("span", self.span.is_some(), is(&[Increments])),
+            ("forgetting", self.forgetting.is_some(), is(&squares)),
+            ("noise", self.noise.is_some(), is(&squares)),
+            ("spread", self.spread.is_some(), is(&squares)),
             (
                 "correlation",
                 self.correlation.is_some(),
-                self.learner == LeastSquares,
+                is(&[LeastSquares]),
             ),
-            (
-                "load",
-                self.load.is_some(),
-                self.learner == Drift && model.load.is_some(),
-            ),
+            ("dead_zone", self.dead_zone.is_some(), estimator),
+            ("leakage", self.leakage.is_some(), estimator),
+            ("offset_share", self.offset_share.is_some(), estimator),
+            ("trial", self.trial.is_some(), estimator),
         ];
         match given.iter().find(|(_, given, used)| *given && !used) {
             Some((name, ..)) => Err(Error::Fit(format!(
                 "`{name}` means nothing to this method of adaptation: leave it out"
             ))),
             None => Ok(()),
+        }
+    }
+}
+
+impl Learned {
+    fn estimator(self) -> Result<Adaptation<f64>> {
+        match self {
+            Self::Estimator(adaptation) => Ok(adaptation),
+            Self::Refit(_) => Err(Error::Fit(
+                "a refit is no estimator: take another method here".into(),
+            )),
+        }
+    }
+
+    /// The gate, and the readings in a row that pass it where they agree.
+    pub(super) fn gate(self) -> (f64, u32) {
+        match self {
+            Self::Estimator(Adaptation { gate, burst, .. }) => (gate, burst),
+            Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
         }
     }
 }

@@ -1,0 +1,294 @@
+//! Which of the past samples a refit uses: the last cycles of the input, or a number of samples.
+
+use super::sums::{Row, Sums};
+use crate::error::{Error, Result};
+use crate::identify::{SparseForm, Term};
+use crate::model::OperatorState;
+use crate::series::Turning;
+use hysteron_core::Direction;
+use serde::Serialize;
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// The input turns where it comes back by more than this share of the plane.
+const TURN: f64 = 0.1;
+
+/// Largest number of samples in a window. Beyond it the oldest leave, whatever the cycle.
+pub(super) const MOST: usize = 1 << 16;
+
+/// The sums are computed anew after so many times the window's samples have left it. So rounding
+/// errors do not add up, and it costs a sixteenth of a sample for each sample.
+const ANEW: usize = 16;
+
+/// The samples that a refit uses.
+///
+/// **Cycles.** The last cycle begins where the input last passed its present value in its present
+/// direction. So it has each input of the present branch once, on the way up and on the way down.
+/// The input turns where it comes back by more than a tenth of the plane. Smaller reversals belong
+/// to the branch they are on. Until the first cycle is complete, the window has all samples.
+///
+/// It is written `cycles:1` or `samples:500`, and so it is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Window {
+    /// So many of the last cycles of the input, from 1.
+    Cycles(usize),
+    /// So many of the last samples, from 2.
+    Samples(usize),
+}
+
+impl Default for Window {
+    fn default() -> Self {
+        Self::Cycles(1)
+    }
+}
+
+impl Serialize for Window {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl std::fmt::Display for Window {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Cycles(count) => write!(f, "cycles:{count}"),
+            Self::Samples(count) => write!(f, "samples:{count}"),
+        }
+    }
+}
+
+impl std::str::FromStr for Window {
+    type Err = Error;
+
+    /// `cycles:N` or `samples:N`.
+    fn from_str(text: &str) -> Result<Self> {
+        let window = text.split_once(':').and_then(|(what, count)| {
+            let count = count.parse().ok()?;
+            match what {
+                "cycles" => Some(Self::Cycles(count)),
+                "samples" => Some(Self::Samples(count)),
+                _ => None,
+            }
+        });
+        let window = window.filter(|window| window.is_usable());
+        window.ok_or_else(|| {
+            Error::Fit(format!(
+                "the window `{text}` is none: take cycles:N from cycles:1 to cycles:{}, or \
+                 samples:N from samples:2 to samples:{MOST}",
+                Self::MOST_CYCLES
+            ))
+        })
+    }
+}
+
+impl Window {
+    /// Largest number of cycles.
+    const MOST_CYCLES: usize = 1000;
+
+    pub(super) fn is_usable(self) -> bool {
+        match self {
+            Self::Cycles(count) => (1..=Self::MOST_CYCLES).contains(&count),
+            Self::Samples(count) => (2..=MOST).contains(&count),
+        }
+    }
+}
+
+/// Samples on the same branch, from `first` to the next run.
+#[derive(Debug, Clone)]
+struct Run {
+    first: usize,
+    memory: Vec<Term>,
+}
+
+/// The samples of the window and their sums. Samples are counted from the beginning of time.
+#[derive(Debug, Clone)]
+pub(super) struct Samples {
+    window: Window,
+    /// The samples from `oldest` on, each with its position.
+    kept: VecDeque<(Row, f64)>,
+    oldest: usize,
+    runs: VecDeque<Run>,
+    /// Where the window begins.
+    begin: usize,
+    /// The samples that are in the sums.
+    summed: Range<usize>,
+    sums: Sums,
+    /// Number of samples taken away since the sums were computed anew.
+    taken: usize,
+    tolerance: f64,
+    turning: Turning,
+    /// The turning points of the input, the last of which begins the present branch.
+    turns: VecDeque<usize>,
+    /// The sample that `turning` counts as the first.
+    turning_from: usize,
+    heading: Direction,
+    /// [`OperatorState::held`] of the last sample, while the last run goes on.
+    held: Option<usize>,
+}
+
+impl Samples {
+    pub(super) fn new(window: Window, levels: usize, operators: usize) -> Self {
+        let tolerance = TURN * levels as f64;
+        Self {
+            window,
+            kept: VecDeque::new(),
+            oldest: 0,
+            runs: VecDeque::new(),
+            begin: 0,
+            summed: 0..0,
+            sums: Sums::new(operators),
+            taken: 0,
+            tolerance,
+            turning: Turning::new(tolerance),
+            turns: VecDeque::new(),
+            turning_from: 0,
+            heading: Direction::Rising,
+            held: None,
+        }
+    }
+
+    /// Number of samples in the window.
+    pub(super) fn len(&self) -> usize {
+        self.end() - self.begin
+    }
+
+    fn end(&self) -> usize {
+        self.oldest + self.kept.len()
+    }
+
+    /// Forgets all samples.
+    pub(super) fn clear(&mut self) {
+        let end = self.end();
+        self.kept.clear();
+        self.runs.clear();
+        self.sums.clear();
+        (self.oldest, self.begin, self.summed) = (end, end, end..end);
+        self.taken = 0;
+        self.break_off();
+    }
+
+    /// Tells that others moved the state: the next sample continues no branch.
+    pub(super) fn break_off(&mut self) {
+        self.turning = Turning::new(self.tolerance);
+        self.turning_from = self.end();
+        self.turns.clear();
+        self.held = None;
+    }
+
+    /// Follows the state where no sample enters the window. What was remembered of the branch holds
+    /// until a turning point comes or goes.
+    pub(super) fn follow(&mut self, state: &OperatorState) {
+        if self.held != Some(state.held()) {
+            self.held = None;
+        }
+    }
+
+    /// Takes a sample in. Returns whether the input turned.
+    pub(super) fn push(&mut self, form: &SparseForm, state: &OperatorState, output: f64) -> bool {
+        let (now, position) = (self.end(), state.position());
+        self.follow(state);
+        let terms = match self.held {
+            Some(_) => form.row(state, None),
+            None => {
+                let mut memory = Vec::new();
+                let terms = form.row(state, Some(&mut memory));
+                self.runs.push_back(Run { first: now, memory });
+                self.held = Some(state.held());
+                terms
+            }
+        };
+        self.kept.push_back((Row { terms, output }, position));
+        let turned = self.turn(position);
+        self.advance(position);
+        self.forget();
+        turned
+    }
+
+    /// Whether the input turned, at a sample that may be some way back.
+    fn turn(&mut self, position: f64) -> bool {
+        let Some((index, heading)) = self.turning.push(position) else {
+            return false;
+        };
+        self.heading = heading;
+        self.turns.push_back(self.turning_from + index);
+        let needed = match self.window {
+            Window::Cycles(count) => 2 * count + 1,
+            Window::Samples(_) => 1,
+        };
+        while self.turns.len() > needed {
+            self.turns.pop_front();
+        }
+        // The start of the series is no turn.
+        self.turns.len() > 1 || matches!(self.window, Window::Samples(_)) && index > 0
+    }
+
+    /// Moves the beginning of the window on.
+    fn advance(&mut self, position: f64) {
+        let end = self.end();
+        match self.window {
+            Window::Samples(count) => self.begin = self.begin.max(end.saturating_sub(count)),
+            Window::Cycles(count) => {
+                self.begin = self.begin.max(end.saturating_sub(MOST));
+                if self.turns.len() > 2 * count {
+                    // The branch of the same direction, so many cycles before.
+                    self.begin = self.begin.max(self.turns[0]);
+                    let passed = |at: f64| match self.heading {
+                        Direction::Rising => at < position,
+                        Direction::Falling => at > position,
+                    };
+                    while self.begin < self.turns[1]
+                        && passed(self.kept[self.begin - self.oldest].1)
+                    {
+                        self.begin += 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Drops the samples that are neither in the window nor in the sums.
+    fn forget(&mut self) {
+        if self.begin >= self.summed.end {
+            if !self.summed.is_empty() {
+                self.sums.clear();
+                self.taken = 0;
+            }
+            self.summed = self.begin..self.begin;
+        }
+        while self.oldest < self.summed.start.min(self.begin) {
+            self.kept.pop_front();
+            self.oldest += 1;
+        }
+        while self.runs.get(1).is_some_and(|run| run.first <= self.oldest) {
+            self.runs.pop_front();
+        }
+    }
+
+    /// The sums over the samples of the window.
+    pub(super) fn sums(&mut self) -> &Sums {
+        let Range { start, end } = self.summed;
+        self.taken += self.begin - start;
+        if self.taken > ANEW * self.len() {
+            self.sums.clear();
+            self.taken = 0;
+            self.add(1.0, self.begin..self.end());
+        } else {
+            self.add(-1.0, start..self.begin);
+            self.add(1.0, end..self.end());
+        }
+        self.summed = self.begin..self.end();
+        self.forget();
+        &self.sums
+    }
+
+    fn add(&mut self, sign: f64, range: Range<usize>) {
+        let ends = self.runs.iter().skip(1).map(|run| run.first);
+        for (run, end) in self.runs.iter().zip(ends.chain([usize::MAX])) {
+            let (from, to) = (run.first.max(range.start), end.min(range.end));
+            if from < to {
+                let rows = self.kept.range(from - self.oldest..to - self.oldest);
+                self.sums.add(sign, &run.memory, rows.map(|(row, _)| row));
+            }
+        }
+    }
+}
