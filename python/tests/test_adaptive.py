@@ -10,7 +10,7 @@ from common import together
 import pyhysteron
 
 LEVELS = 8
-METHODS = ["gradient", "increments", "least-squares", "drift"]
+METHODS = ["refit", "gradient", "increments", "least-squares", "drift"]
 TEMPERATURE = 50 - 40 * np.cos(0.05 * np.arange(2000)) * np.cos(0.003 * np.arange(2000))
 
 

@@ -9,7 +9,8 @@ use hysteron::{
     Operator, Plane, Progress, Recording, Repair, Sign, Start, adapt,
 };
 
-const LEARNERS: [Learner; 4] = [
+const LEARNERS: [Learner; 5] = [
+    Learner::Refit,
     Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,

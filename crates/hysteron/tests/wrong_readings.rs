@@ -10,7 +10,8 @@ use hysteron::{
 
 /// What a converter of twelve bits says when its wire is off.
 const FULL_SCALE: f64 = 4095.0;
-const LEARNERS: [Learner; 4] = [
+const LEARNERS: [Learner; 5] = [
+    Learner::Refit,
     Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,

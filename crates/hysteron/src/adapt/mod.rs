@@ -55,8 +55,9 @@ pub struct Adapted {
     /// Errors over the last third without the rejected readings; [`Adapted::worse`] is based on
     /// them. `None` if there are no such samples.
     pub late: Option<Compared>,
-    /// Whether adaptation made the model worse: on the last third its errors, taken before it
-    /// learned from each sample, are larger than those of the fixed model by more than rounding.
+    /// Whether the model that learned is no better than the model left alone: on the last third
+    /// its errors, taken before it learned from each sample, are larger than those of the fixed
+    /// model, or as large although it changed. Differences of the size of rounding do not count.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
@@ -78,10 +79,9 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Whether the adapting model has larger errors, by more than a part in 10⁹ of the model's
-    /// range. Smaller differences are rounding, because the two sum in different orders.
-    fn is_worse(&self, (off, on): (f64, f64)) -> bool {
-        self.adapting.rmse > self.fixed.rmse + 1e-9 * (on - off).abs()
+    /// By how much the adapting model has larger errors, as a share of the model's range.
+    fn loss(&self, (off, on): (f64, f64)) -> f64 {
+        (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
 }
 
@@ -126,7 +126,7 @@ impl Adapted {
 /// # Errors
 /// - [`Error::Recording`] for an invalid recording.
 /// - [`Error::Fit`] for a model with a thermal body, for a model that depends on a load with a
-///   learner other than [`Learner::Drift`], and for options that the learner does not use.
+///   learner other than [`Learner::Refit`] and [`Learner::Drift`], and for options that the learner does not use.
 /// - [`Error::Core`] for options out of range and negative weights.
 /// - The error that `progress` returns.
 pub fn adapt(
@@ -182,8 +182,10 @@ pub fn adapt(
         learned_by,
         (&again, counts),
     ));
+    let drift = Drift::between(&offline, &last);
     Ok(Adapted {
-        drift: Drift::between(&offline, &last),
+        worse: is_worse(late.as_ref(), &drift, offline.output_range()),
+        drift,
         model: last,
         probation,
         output_model,
@@ -192,7 +194,6 @@ pub fn adapt(
         whole,
         thirds,
         late,
-        worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
         again,
         options: learned_by,
     })
@@ -349,6 +350,20 @@ fn described(options: Learned) -> serde_json::Value {
     object["gate"] = json!(options.gate);
     object["burst"] = json!(options.burst);
     object
+}
+
+/// Differences below this share are rounding, because two ways to sum have different orders.
+const ROUNDING: f64 = 1e-9;
+
+/// [`Adapted::worse`].
+fn is_worse(late: Option<&Compared>, drift: &Drift, range: (f64, f64)) -> bool {
+    let moved = (drift.offset.1 - drift.offset.0).abs() / (range.1 - range.0).abs();
+    let changed = drift.moved > ROUNDING || moved > ROUNDING;
+    match late.map(|late| late.loss(range)) {
+        Some(loss) => loss > ROUNDING || changed && loss >= -ROUNDING,
+        // Nothing says that it is better.
+        None => changed,
+    }
 }
 
 impl Drift {

@@ -31,7 +31,7 @@ const DEVIATION: f64 = 0.3;
 /// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
 /// Ridge of a refit.
-const RIDGE: f64 = 1e-3;
+const RIDGE: f64 = 0.01;
 
 /// Which parameters are adapted, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -71,7 +71,7 @@ pub enum Learned {
 /// | `load` | middle of its range | the model's range | load to start at (refit, drift) |
 /// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
 /// | `every` | see the field | 1 or more | samples between two refits |
-/// | `ridge` | 1e-3 | above 0, up to 1 | holds weights where they are (refit) |
+/// | `ridge` | 0.01 | above 0, up to 1 | holds weights where they are (refit) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |

@@ -13,9 +13,6 @@ use serde::Serialize;
 /// A model whose weights are written anew.
 type Core = hysteron_core::Model<f64, Vec<f64>>;
 
-/// Rounding left after centring, relative to the diagonal before it.
-const ROUNDING: f64 = 1e-13;
-
 /// By default a refit follows where so large a share of the window is new.
 const NEW: usize = 8;
 
@@ -185,7 +182,7 @@ impl Refitter {
         let Some(centred) = self.samples.sums().centred(&self.form) else {
             return Ok(false);
         };
-        let Some(weights) = solve(&centred, &self.weights, self.options.ridge) else {
+        let Some(weights) = solve(&centred, (&self.weights, &self.weights), self.options.ridge) else {
             return Ok(false);
         };
         let offset = self.level + centred.offset(&weights);
@@ -231,25 +228,97 @@ impl Refitter {
     }
 }
 
-/// The weights `x ≥ 0` that minimise the squared error over the window plus a ridge towards
-/// `before`. `None` where rounding leaves no answer.
-fn solve(centred: &Centred, before: &[f64], ridge: f64) -> Option<Vec<f64>> {
-    let count = before.len();
-    let mut matrix = centred.gram.clone();
-    let trace: f64 = (0..count).map(|n| matrix[n * (count + 1)]).sum();
-    let strength = ridge * trace / count as f64 + ROUNDING * centred.largest;
-    // Without a sample that moved an operator, only the offset is learned.
-    if trace.is_nan() || trace <= ROUNDING * centred.largest {
-        return Some(before.to_vec());
+/// The weights `x ≥ 0` that minimise the squared error over the window plus a ridge towards `prior`,
+/// searched from `start`. `None` where rounding leaves no answer.
+fn solve(centred: &Centred, (prior, start): (&[f64], &[f64]), ridge: f64) -> Option<Vec<f64>> {
+    let strength = centred.strength(ridge)?;
+    if strength == 0.0 {
+        return Some(prior.to_vec());
     }
-    let mut right = centred.right.clone();
+    let count = prior.len();
+    let (mut matrix, mut right) = (centred.gram.clone(), centred.right.clone());
     for n in 0..count {
         matrix[n * (count + 1)] += strength;
-        right[n] += strength * before[n];
+        right[n] += strength * prior[n];
     }
-    let (mut x, exact) = pivoting::minimum(&matrix, &right, before);
+    let (mut x, exact) = pivoting::minimum(&matrix, &right, start);
     if !exact {
         nnls::solve(&matrix, &right, &mut x, Progress::NONE).ok()?;
     }
     Some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::model::{Plane, Sign};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// A window over random strokes, the states of its samples and their outputs.
+    fn window(rng: &mut ChaCha8Rng, operator: Operator) -> (Centred, Vec<Vec<f64>>, Vec<f64>) {
+        let levels = rng.random_range(2..9);
+        let plane = Plane::new(0.0, 1.0, levels).unwrap();
+        let weights = vec![1.0; plane.operators()];
+        let model = Model::new(operator, plane, weights, 0.0, Sign::Positive).unwrap();
+        let form = SparseForm::new(plane, operator).unwrap();
+        let mut samples = Samples::new(Window::Samples(200), levels, plane.operators());
+        let (mut states, mut outputs) = (Vec::new(), Vec::new());
+        let (core, mut state) = (model.plain().unwrap(), model.plain().unwrap().start());
+        for _ in 0..rng.random_range(1..150) {
+            core.step(&mut state, rng.random_range(-0.3..1.3)).unwrap();
+            let y = rng.random_range(-1.0..3.0);
+            samples.push(&form, &state, y);
+            let of = |(i, j)| state.gamma(i, j).unwrap();
+            states.push(hysteron_core::operators(levels).map(of).collect());
+            outputs.push(y);
+        }
+        (samples.sums().centred(&form).unwrap(), states, outputs)
+    }
+
+    #[test]
+    fn a_refit_is_the_minimum_from_any_start() {
+        let mut rng = ChaCha8Rng::seed_from_u64(16);
+        for round in 0..120 {
+            let operator = [Operator::Mkp, Operator::Kp, Operator::Relay][round % 3];
+            let (centred, states, outputs) = window(&mut rng, operator);
+            let count = states[0].len();
+            let mut random = |zeros: f64| -> Vec<f64> {
+                let mut one = || match rng.random_bool(zeros) {
+                    true => 0.0,
+                    false => rng.random_range(0.0..2.0),
+                };
+                (0..count).map(|_| one()).collect()
+            };
+            let (prior, other) = (random(0.5), random(0.2));
+            let ridge = [1.0, 1e-2, 1e-5][round / 3 % 3];
+            let warm = solve(&centred, (&prior, &prior), ridge).unwrap();
+            for start in [vec![0.0; count], other] {
+                let cold = solve(&centred, (&prior, &start), ridge).unwrap();
+                for (a, b) in warm.iter().zip(&cold) {
+                    // The condition number is at most N over the ridge, 4e6; rounding of 1e-16 of
+                    // sums of 150 products.
+                    assert!((a - b).abs() < 1e-7, "round {round}: {a} {b}");
+                }
+            }
+            // The conditions of Karush, Kuhn and Tucker, from the states themselves.
+            let n = outputs.len() as f64;
+            let strength = centred.strength(ridge).unwrap();
+            let offset = centred.offset(&warm);
+            let error = |(row, y): (&Vec<f64>, &f64)| {
+                y - offset - row.iter().zip(&warm).map(|(g, x)| g * x).sum::<f64>()
+            };
+            let errors: Vec<f64> = states.iter().zip(&outputs).map(error).collect();
+            // Each tolerance: 150 products of size ten, rounded.
+            assert!(errors.iter().sum::<f64>().abs() < 1e-9 * n, "round {round}");
+            for k in 0..count {
+                let fall: f64 = states.iter().zip(&errors).map(|(row, e)| row[k] * e).sum();
+                let fall = fall - strength * (warm[k] - prior[k]);
+                let breach = if warm[k] > 0.0 { fall.abs() } else { fall.max(0.0) };
+                assert!(warm[k] >= 0.0 && breach < 1e-7, "round {round}: {breach}");
+            }
+        }
+    }
 }

@@ -6,6 +6,9 @@
 
 use crate::identify::{BranchSums, SparseForm, Term};
 
+/// Rounding left after centring, relative to the diagonal before it.
+const ROUNDING: f64 = 1e-13;
+
 /// A sample in the window: the factors of its branch, and the output.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
@@ -38,7 +41,7 @@ pub(super) struct Centred {
     /// The mean output.
     mean: f64,
     /// The largest diagonal element before centring: the size of its rounding errors.
-    pub(super) largest: f64,
+    largest: f64,
 }
 
 impl Sums {
@@ -96,8 +99,8 @@ impl Sums {
         let operators = self.rows.len();
         let mut gram = self.gram.clone();
         form.gram_of(&mut gram);
-        let diagonal = |gram: &[f64]| (0..operators).map(|n| gram[n * (operators + 1)]).collect();
-        let largest = Vec::into_iter(diagonal(&gram)).fold(0.0, f64::max);
+        let diagonal = (0..operators).map(|n| gram[n * (operators + 1)]);
+        let largest = diagonal.fold(0.0, f64::max);
         let mut means = self.rows.clone();
         form.operators_of(&mut means);
         means.iter_mut().for_each(|sum| *sum /= self.count);
@@ -120,6 +123,19 @@ impl Sums {
 }
 
 impl Centred {
+    /// The strength of a ridge relative to the mean diagonal element. It is zero where no sample
+    /// moved an operator, and there is none where numbers overflow.
+    pub(super) fn strength(&self, ridge: f64) -> Option<f64> {
+        let count = self.right.len();
+        let trace: f64 = (0..count).map(|n| self.gram[n * (count + 1)]).sum();
+        let finite = trace.is_finite() && self.right.iter().all(|b| b.is_finite());
+        let rounding = ROUNDING * self.largest;
+        finite.then_some(match trace > rounding * count as f64 {
+            true => ridge * trace / count as f64 + rounding,
+            false => 0.0,
+        })
+    }
+
     /// The best offset for these weights.
     pub(super) fn offset(&self, weights: &[f64]) -> f64 {
         let products = self.means.iter().zip(weights).map(|(m, w)| m * w);

@@ -292,3 +292,162 @@ impl Samples {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::model::{Model, Plane, Sign};
+    use hysteron_core::{Operator, operators};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// A window, and all that ever came into it: states, outputs and positions.
+    struct Trial {
+        samples: Samples,
+        form: SparseForm,
+        model: Model,
+        state: OperatorState,
+        seen: Vec<(Vec<f64>, f64, f64)>,
+    }
+
+    impl Trial {
+        fn new(window: Window, levels: usize, operator: Operator) -> Self {
+            let plane = Plane::new(0.0, 1.0, levels).unwrap();
+            let weights = vec![1.0; plane.operators()];
+            let model = Model::new(operator, plane, weights, 0.0, Sign::Positive).unwrap();
+            Self {
+                samples: Samples::new(window, levels, plane.operators()),
+                form: SparseForm::new(plane, operator).unwrap(),
+                state: model.plain().unwrap().start(),
+                model,
+                seen: Vec::new(),
+            }
+        }
+
+        fn go(&mut self, input: f64) {
+            let core = self.model.plain().unwrap();
+            core.step(&mut self.state, input).unwrap();
+            self.samples.follow(&self.state);
+        }
+
+        fn push(&mut self, input: f64, output: f64) {
+            self.go(input);
+            self.samples.push(&self.form, &self.state, output);
+            let levels = self.model.plane().levels();
+            let of = |(i, j)| self.state.gamma(i, j).unwrap();
+            let states = operators(levels).map(of).collect();
+            self.seen.push((states, output, self.state.position()));
+        }
+
+        /// The sums over the window against those from the states themselves.
+        fn check(&mut self) {
+            let begin = self.samples.begin;
+            let found = self.samples.sums().centred(&self.form);
+            let rows = &self.seen[begin..];
+            let Some(found) = found else {
+                assert!(rows.is_empty());
+                return;
+            };
+            let (count, n) = (rows[0].0.len(), rows.len() as f64);
+            let mean = |k: usize| rows.iter().map(|row| row.0[k]).sum::<f64>() / n;
+            let means: Vec<f64> = (0..count).map(mean).collect();
+            let output = rows.iter().map(|row| row.1).sum::<f64>() / n;
+            // At most 18 windows of 90 samples have been added or taken away, each with products
+            // of size three in some of N² corners, and N² corners make an element: 18 · 90 · 3 ·
+            // 28² roundings of 1e-16.
+            let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}");
+            for a in 0..count {
+                let products = rows.iter().map(|row| (row.0[a] - means[a]) * (row.1 - output));
+                close(found.right[a], products.sum());
+                for b in 0..count {
+                    let products = rows.iter().map(|row| (row.0[a] - means[a]) * (row.0[b] - means[b]));
+                    close(found.gram[a * count + b], products.sum());
+                }
+            }
+            let weights: Vec<f64> = (0..count).map(|k| k as f64 / count as f64).collect();
+            let at_means: f64 = means.iter().zip(&weights).map(|(m, w)| m * w).sum();
+            close(found.offset(&weights), output - at_means);
+        }
+    }
+
+    #[test]
+    fn sums_added_and_taken_away_are_those_computed_anew() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for round in 0..60 {
+            let window = match round % 2 {
+                0 => Window::Samples(rng.random_range(2..90)),
+                _ => Window::Cycles(rng.random_range(1..4)),
+            };
+            let operator = [Operator::Mkp, Operator::Kp, Operator::Relay][round % 3];
+            let mut trial = Trial::new(window, rng.random_range(2..8), operator);
+            let often = [0.5, 0.05, 0.005][round / 6 % 3];
+            let (mut x, mut heading) = (0.0_f64, 0.2);
+            for _ in 0..rng.random_range(20..1500) {
+                if !(0.0..1.0).contains(&x) || rng.random_bool(0.05) {
+                    heading = if x > 0.5 { -heading } else { 0.2 };
+                }
+                x += heading * rng.random_range(-0.2..1.0);
+                let jump = rng.random_bool(0.01);
+                let input = if jump { rng.random_range(-0.5..1.5) } else { x };
+                match rng.random_range(0..1000) {
+                    0 => {
+                        trial.samples.clear();
+                        trial.check();
+                    }
+                    1 => {
+                        trial.model.plain().unwrap();
+                        trial.state = trial.model.plain().unwrap().start();
+                        trial.samples.break_off();
+                    }
+                    2..100 => trial.go(input),
+                    _ => trial.push(input, rng.random_range(-1.0..2.0)),
+                }
+                if rng.random_bool(often) {
+                    trial.check();
+                }
+            }
+            trial.check();
+            let kept = trial.samples.kept.len();
+            assert!(kept <= 2 * trial.samples.len() + 2 || matches!(window, Window::Cycles(_)));
+        }
+    }
+
+    /// Between 0.1 and 0.9, with a ripple below a tenth of the plane.
+    #[test]
+    fn a_cycle_begins_where_the_input_last_was_here_in_this_direction() {
+        for cycles in 1..4 {
+            let mut trial = Trial::new(Window::Cycles(cycles), 20, Operator::Mkp);
+            let period = 200;
+            for n in 0..1500 {
+                let turn = std::f64::consts::TAU * n as f64 / period as f64;
+                let ripple = if n % 40 == 0 { 0.04 } else { 0.0 };
+                trial.push(0.5 - 0.4 * turn.cos() + ripple * turn.sin(), 0.0);
+                let length = trial.samples.len();
+                let whole = cycles * period;
+                match n < whole {
+                    // No cycle is complete: all samples.
+                    true => assert_eq!(length, n + 1),
+                    // It takes a tenth of the plane to see a turn, 41 samples; a ripple leaves the
+                    // window some samples early.
+                    false if n >= whole + 50 => {
+                        assert!(length.abs_diff(whole) < 50, "{n}: {length} for {whole}");
+                    }
+                    false => {}
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_window_is_read_as_it_is_written() {
+        for window in [Window::Cycles(3), Window::Samples(500), Window::default()] {
+            assert_eq!(window.to_string().parse::<Window>().unwrap(), window);
+        }
+        for wrong in ["", "cycles", "cycles:0", "samples:1", "samples:1e3", "days:3", "cycles:-1"] {
+            let said = wrong.parse::<Window>().unwrap_err().to_string();
+            assert!(said.contains("cycles:N"), "{wrong}: {said}");
+        }
+    }
+}
