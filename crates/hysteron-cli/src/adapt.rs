@@ -2,7 +2,7 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, recording, text};
-use hysteron::{Adapted, Columns, Compared, Errors, Learned, Model, TableWriter};
+use hysteron::{Adapted, Columns, Compared, Errors, EstimatorOptions, Model, TableWriter};
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -119,7 +119,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     let counts = &adapted.counts;
     let drift = &adapted.drift;
     let told = match adapted.options {
-        Learned::Refit(refit) => format!(
+        EstimatorOptions::Refit(refit) => format!(
             "{} refits on the way and one at the end, over {}; {} samples taken, {} at rest, {} \
              readings rejected",
             counts.learned,
@@ -128,7 +128,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
             counts.at_rest,
             counts.rejected
         ),
-        Learned::Estimator(_) => format!(
+        EstimatorOptions::Weights(_) => format!(
             "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
              readings rejected, {} times rolled back",
             counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back

@@ -41,7 +41,8 @@ mod state;
 mod target;
 
 pub use adapt::{
-    Adaptation, Estimator, Gate, Learning, Method, Outcome, estimator_len, estimator_len_of_basis,
+    Adaptation, Estimator, Gate, Learning, Method, Outcome, Verdict, estimator_len,
+    estimator_len_of_basis,
 };
 pub use branch::Turn;
 pub use definition::Definition;

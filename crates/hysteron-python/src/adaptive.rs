@@ -394,6 +394,23 @@ impl Adaptive {
         self.inner.with(py, reset).raise()
     }
 
+    /// Refit now, with what has come since the last refit. Other methods have learned all of it.
+    ///
+    /// Call it before what was learned is used for long: at the end of a cycle, or before `model`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), every=100)
+    /// >>> _ = adaptive.step(0.5, 4.5)
+    /// >>> adaptive.output
+    /// 4.0
+    /// >>> adaptive.refit()
+    /// >>> adaptive.output
+    /// 4.5
+    fn refit(&self, py: Python<'_>) -> PyResult<()> {
+        self.inner.with(py, |adaptive| adaptive.refit()).raise()
+    }
+
     /// While frozen, `step` moves and nothing is learned.
     ///
     /// Parameters

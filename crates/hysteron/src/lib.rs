@@ -37,8 +37,8 @@ mod remedy;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, Learned, Learner, OutcomeCounts,
-    Refit, Window, adapt,
+    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, EstimatorOptions, Learner,
+    OutcomeCounts, Refit, Window, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{

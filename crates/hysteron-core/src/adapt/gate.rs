@@ -22,20 +22,32 @@ const AT_START: usize = 50;
 /// and rounding errors would be refused. Outliers within a gate of this scale do no harm.
 const LEAST: usize = 1000;
 
-/// Keeps a learner from outliers: it judges each reading by its surprise. All values are in the
+/// What the gate says of a reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// No more surprising than those before.
+    Usual,
+    /// The last of a burst of surprising readings that agree: the plant has jumped.
+    Jump,
+    /// An outlier, so far.
+    Refused,
+}
+
+/// Keeps what learns from outliers: it judges each reading by its surprise. All values are in the
 /// output's unit. [`crate::Adaptation`] explains the rule.
 ///
-/// An [`crate::Estimator`] has its own. Any other learner may use one: it asks before it learns
-/// from a reading, and tells what error was left after a reading that was accepted.
+/// An [`crate::Estimator`] has its own. Anything else that learns may use one: it asks before it
+/// learns from a reading, and tells what error was left after a reading that was not refused.
 ///
 /// ```
-/// let mut gate = hysteron_core::Gate::new(10.0);
+/// use hysteron_core::{Gate, Verdict};
+/// let mut gate = Gate::new(10.0);
 /// let (limit, burst) = (12.0, 8);
 /// for error in [0.1, -0.1, 0.2] {
-///     assert!(gate.believes(error, limit, burst));
+///     assert_eq!(gate.judge(error, limit, burst), Verdict::Usual);
 ///     gate.settle(error);
 /// }
-/// assert!(!gate.believes(4095.0, limit, burst));
+/// assert_eq!(gate.judge(4095.0, limit, burst), Verdict::Refused);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gate<T> {
@@ -78,18 +90,18 @@ impl<T: Real> Gate<T> {
         *self = Self::new(self.range);
     }
 
-    /// Whether a reading whose prediction has this `error` is accepted: its surprise is at most
-    /// `gate` times the usual one, or `burst` surprises in a row agree. A `gate` of 0 accepts all.
-    pub fn believes(&mut self, error: T, gate: T, burst: u32) -> bool {
+    /// Judges a reading whose prediction has this `error`. `gate` and `burst` are the options of
+    /// the same name of [`Adaptation`](super::Adaptation).
+    pub fn judge(&mut self, error: T, gate: T, burst: u32) -> Verdict {
         if gate == T::ZERO {
-            return true;
+            return Verdict::Usual;
         }
         let surprise = error - self.left;
         let size = surprise.max(-surprise);
         // A model without range gives no scale. The first surprise does.
         if size <= gate * self.scale || self.scale == T::ZERO {
             self.believe(self.scale + (size - self.scale) / T::from_index(MEMORY));
-            return true;
+            return Verdict::Usual;
         }
         let agrees = self.agreeing > 0 && agree(surprise, self.last);
         self.agreeing = if agrees { self.agreeing + 1 } else { 1 };
@@ -97,13 +109,13 @@ impl<T: Real> Gate<T> {
         self.last = surprise;
         if self.agreeing >= burst {
             self.believe(size);
-            return true;
+            return Verdict::Jump;
         }
         if self.refused >= burst {
             self.refused = 0;
             self.rescale(self.scale + self.scale);
         }
-        false
+        Verdict::Refused
     }
 
     /// Keeps the error that `left` after learning from an accepted reading.

@@ -1,11 +1,12 @@
 //! How an estimator learns from a sample, and the outcome.
 
 use super::estimator::Estimator;
+use super::gate::Verdict;
 use super::increments::Increment;
 use super::least_squares::{self, Law};
 use super::trial::{Errors, Trial};
 use super::vector::dot;
-use super::{Method, gradient, parameters};
+use super::{Adaptation, Method, gradient, parameters};
 use crate::branch::Turn;
 use crate::memory::Memory;
 use crate::plane::Clipped;
@@ -96,8 +97,8 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         if !(moved || ends) {
             return Outcome::AtRest;
         }
-        let (gate, burst) = (self.options.gate, self.options.burst);
-        if !self.gate.believes(error, gate, burst) {
+        let Adaptation { gate, burst, .. } = self.options;
+        if self.gate.judge(error, gate, burst) == Verdict::Refused {
             // An increment from before a jump to after it would take the jump for a slope.
             self.increment = None;
             return Outcome::Rejected;

@@ -56,7 +56,9 @@ fn main() -> Result<()> {
         pairs.push(loops);
     }
     print!("\n{}", include_str!("adaptation-load.md"));
-    println!("| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 |");
+    println!(
+        "| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 |"
+    );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {

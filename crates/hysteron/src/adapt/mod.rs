@@ -17,7 +17,7 @@ mod window;
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
-pub use options::{AdaptOptions, Learned, Learner};
+pub use options::{AdaptOptions, EstimatorOptions, Learner};
 pub use refit::Refit;
 pub use window::Window;
 
@@ -52,8 +52,8 @@ pub struct Adapted {
     /// Errors over the first, second and last third of the samples; empty for fewer than three
     /// samples.
     pub thirds: Vec<Compared>,
-    /// Errors over the last third without the rejected readings; [`Adapted::worse`] is based on
-    /// them. `None` if there are no such samples.
+    /// Errors over the last third without the rejected readings and those on probation;
+    /// [`Adapted::worse`] is based on them. `None` if there are no such samples.
     pub late: Option<Compared>,
     /// Whether the model that learned is no better than the model left alone: on the last third
     /// its errors, taken before it learned from each sample, are larger than those of the fixed
@@ -65,7 +65,7 @@ pub struct Adapted {
     /// How the model has changed.
     pub drift: Drift,
     /// The options of what learned.
-    pub options: Learned,
+    pub options: EstimatorOptions,
 }
 
 /// Errors of the adapting model, taken before it learned from each sample, beside those of the
@@ -140,7 +140,7 @@ pub fn adapt(
         return adapt_within(model, recording, options, progress);
     }
     refuse_unusable(model)?;
-    let learned_by = options.learned(model, recording)?;
+    let learned_by = options.resolve(model, recording)?;
     let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
     let (from_on, fixed) = fixed(&offline, recording, options.start)?;
@@ -171,7 +171,8 @@ pub fn adapt(
         .map(|k| compare(&|n| third(k).contains(&n)))
         .collect::<Option<_>>()
         .unwrap_or_default();
-    let late = compare(&|n| third(2).contains(&n) && outcomes[n] != Outcome::Rejected);
+    let judges = |n: usize| n + probation < count && outcomes[n] != Outcome::Rejected;
+    let late = compare(&|n| third(2).contains(&n) && judges(n));
     let again = run_from(&last, from_on, recording)?;
     let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
     last.fit = Some(summary(
@@ -221,7 +222,7 @@ fn adapt_within(
 }
 
 /// How many of `count` samples are at the end and on probation.
-fn on_probation(options: Learned, count: usize) -> usize {
+fn on_probation(options: EstimatorOptions, count: usize) -> usize {
     match options.gate() {
         (gate, burst) if gate > 0.0 => count.min(burst as usize),
         _ => 0,
@@ -283,7 +284,7 @@ fn summary(
     offline: &Model,
     recording: &Recording,
     options: &AdaptOptions,
-    learned_by: Learned,
+    learned_by: EstimatorOptions,
     (again, counts): (&Errors, OutcomeCounts),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
@@ -320,10 +321,10 @@ fn summary(
 }
 
 /// The options as a JSON object: those of the method, and those that guard against bad readings.
-fn described(options: Learned) -> serde_json::Value {
+fn described(options: EstimatorOptions) -> serde_json::Value {
     let options = match options {
-        Learned::Estimator(adaptation) => adaptation,
-        Learned::Refit(refit) => return json!(refit),
+        EstimatorOptions::Weights(adaptation) => adaptation,
+        EstimatorOptions::Refit(refit) => return json!(refit),
     };
     let mut object = match options.method {
         Method::Gradient { gain } => json!({ "gain": gain }),

@@ -51,11 +51,11 @@ pub enum Learner {
     Refit,
 }
 
-/// The options of what learns, all of them known.
+/// The options that a learner runs with, all of them known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Learned {
-    /// Those of an estimator, which learns from sample to sample.
-    Estimator(Adaptation<f64>),
+pub enum EstimatorOptions {
+    /// Those of an estimator of weights or coefficients, from sample to sample.
+    Weights(Adaptation<f64>),
     /// Those of a windowed refit.
     Refit(Refit),
 }
@@ -143,7 +143,7 @@ impl AdaptOptions {
     /// # Errors
     /// [`Error::Fit`] for a field that is set but that the learner does not use. Values out of
     /// range are refused when a learner is made.
-    pub fn learned(&self, model: &Model, recording: &Recording) -> Result<Learned> {
+    pub fn resolve(&self, model: &Model, recording: &Recording) -> Result<EstimatorOptions> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
@@ -151,9 +151,9 @@ impl AdaptOptions {
     /// The options of an estimator for `model` on `recording`.
     ///
     /// # Errors
-    /// As [`AdaptOptions::learned`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator.
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
-        self.learned(model, recording)?.estimator()
+        self.resolve(model, recording)?.estimator()
     }
 
     /// The options of an estimator for `model` before any measurement. `Y` is the model's range,
@@ -179,7 +179,7 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::learned`], [`Adaptive::new`] and [`Adaptive::of_basis`].
+    /// As [`AdaptOptions::resolve`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
         self.begun(model, self.resolved(model, 0.0, 0.0)?)
     }
@@ -190,10 +190,10 @@ impl AdaptOptions {
     /// # Errors
     /// As [`AdaptOptions::adaptive`].
     pub fn adaptive_after(&self, model: &Model, recording: &Recording) -> Result<Adaptive> {
-        self.begun(model, self.learned(model, recording)?)
+        self.begun(model, self.resolve(model, recording)?)
     }
 
-    fn begun(&self, model: &Model, options: Learned) -> Result<Adaptive> {
+    fn begun(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
         let mut adaptive = self.learner(model, options)?;
         if self.start == Start::On {
             adaptive.saturate()?;
@@ -202,23 +202,23 @@ impl AdaptOptions {
     }
 
     /// What learns the weights or the coefficients.
-    pub(super) fn learner(&self, model: &Model, options: Learned) -> Result<Adaptive> {
+    pub(super) fn learner(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
         match (options, self.learner) {
-            (Learned::Refit(refit), _) => {
+            (EstimatorOptions::Refit(refit), _) => {
                 Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit)
             }
-            (Learned::Estimator(adaptation), Learner::Drift) => {
+            (EstimatorOptions::Weights(adaptation), Learner::Drift) => {
                 DriftBasis::of(model, self.load)?.adaptive(adaptation)
             }
-            (Learned::Estimator(adaptation), _) => Adaptive::new(model, adaptation),
+            (EstimatorOptions::Weights(adaptation), _) => Adaptive::new(model, adaptation),
         }
     }
 
-    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Learned> {
+    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<EstimatorOptions> {
         self.refuse_unused(model)?;
         let adaptation = self.guarded(model, rough, range);
         Ok(match self.learner {
-            Learner::Refit => Learned::Refit(Refit {
+            Learner::Refit => EstimatorOptions::Refit(Refit {
                 window: self.window.unwrap_or_default(),
                 every: self.every,
                 ridge: self.ridge.unwrap_or(RIDGE),
@@ -226,7 +226,7 @@ impl AdaptOptions {
                 gate: adaptation.gate,
                 burst: adaptation.burst,
             }),
-            _ => Learned::Estimator(adaptation),
+            _ => EstimatorOptions::Weights(adaptation),
         })
     }
 
@@ -311,10 +311,10 @@ impl AdaptOptions {
     }
 }
 
-impl Learned {
+impl EstimatorOptions {
     fn estimator(self) -> Result<Adaptation<f64>> {
         match self {
-            Self::Estimator(adaptation) => Ok(adaptation),
+            Self::Weights(adaptation) => Ok(adaptation),
             Self::Refit(_) => Err(Error::Fit(
                 "a refit is no estimator: take another method here".into(),
             )),
@@ -324,7 +324,7 @@ impl Learned {
     /// The gate, and the readings in a row that pass it where they agree.
     pub(super) fn gate(self) -> (f64, u32) {
         match self {
-            Self::Estimator(Adaptation { gate, burst, .. }) => (gate, burst),
+            Self::Weights(Adaptation { gate, burst, .. }) => (gate, burst),
             Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
         }
     }

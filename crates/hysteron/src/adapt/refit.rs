@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::identify::{SparseForm, nnls, pivoting};
 use crate::model::{Model, OperatorState};
 use crate::progress::Progress;
-use hysteron_core::{Gate, Learning, Operator, Outcome};
+use hysteron_core::{Gate, Learning, Operator, Outcome, Verdict};
 use serde::Serialize;
 
 /// A model whose weights are written anew.
@@ -41,8 +41,14 @@ impl Refit {
             ("window", self.window.is_usable()),
             ("every", self.every != Some(0)),
             ("ridge", self.ridge > 0.0 && self.ridge <= 1.0),
-            ("movement", self.movement >= 0.0 && self.movement.is_finite()),
-            ("gate", self.gate == 0.0 || self.gate >= 2.0 && self.gate.is_finite()),
+            (
+                "movement",
+                self.movement >= 0.0 && self.movement.is_finite(),
+            ),
+            (
+                "gate",
+                self.gate == 0.0 || self.gate >= 2.0 && self.gate.is_finite(),
+            ),
             ("burst", self.burst > 0),
         ];
         match fits.into_iter().find(|(_, fits)| !fits) {
@@ -159,12 +165,10 @@ impl Refitter {
         }
         self.learned = position;
         let Refit { gate, burst, .. } = self.options;
-        if !self.gate.believes(error, gate, burst) {
+        if self.gate.judge(error, gate, burst) == Verdict::Refused {
             return (Outcome::Rejected, false);
         }
-        let turned = self
-            .samples
-            .push(&self.form, state, measured - self.level);
+        let turned = self.samples.push(&self.form, state, measured - self.level);
         self.new += 1;
         let due = match self.options.every {
             Some(every) => self.new >= every as usize,
@@ -182,7 +186,8 @@ impl Refitter {
         let Some(centred) = self.samples.sums().centred(&self.form) else {
             return Ok(false);
         };
-        let Some(weights) = solve(&centred, (&self.weights, &self.weights), self.options.ridge) else {
+        let Some(weights) = solve(&centred, (&self.weights, &self.weights), self.options.ridge)
+        else {
             return Ok(false);
         };
         let offset = self.level + centred.offset(&weights);
@@ -316,7 +321,11 @@ mod tests {
             for k in 0..count {
                 let fall: f64 = states.iter().zip(&errors).map(|(row, e)| row[k] * e).sum();
                 let fall = fall - strength * (warm[k] - prior[k]);
-                let breach = if warm[k] > 0.0 { fall.abs() } else { fall.max(0.0) };
+                let breach = if warm[k] > 0.0 {
+                    fall.abs()
+                } else {
+                    fall.max(0.0)
+                };
                 assert!(warm[k] >= 0.0 && breach < 1e-7, "round {round}: {breach}");
             }
         }

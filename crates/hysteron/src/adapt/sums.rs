@@ -108,10 +108,15 @@ impl Sums {
         form.operators_of(&mut right);
         for (a, row) in gram.chunks_exact_mut(operators).enumerate() {
             let share = self.count * means[a];
-            row.iter_mut().zip(&means).for_each(|(g, m)| *g -= share * m);
+            row.iter_mut()
+                .zip(&means)
+                .for_each(|(g, m)| *g -= share * m);
         }
         let mean = self.output / self.count;
-        right.iter_mut().zip(&means).for_each(|(b, m)| *b -= m * self.output);
+        right
+            .iter_mut()
+            .zip(&means)
+            .for_each(|(b, m)| *b -= m * self.output);
         Some(Centred {
             gram,
             right,

@@ -43,7 +43,10 @@ impl Default for Window {
 }
 
 impl Serialize for Window {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    fn serialize<S: serde::Serializer>(
+        &self,
+        serializer: S,
+    ) -> std::result::Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
@@ -359,10 +362,14 @@ mod tests {
             // 28² roundings of 1e-16.
             let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}");
             for a in 0..count {
-                let products = rows.iter().map(|row| (row.0[a] - means[a]) * (row.1 - output));
+                let products = rows
+                    .iter()
+                    .map(|row| (row.0[a] - means[a]) * (row.1 - output));
                 close(found.right[a], products.sum());
                 for b in 0..count {
-                    let products = rows.iter().map(|row| (row.0[a] - means[a]) * (row.0[b] - means[b]));
+                    let products = rows
+                        .iter()
+                        .map(|row| (row.0[a] - means[a]) * (row.0[b] - means[b]));
                     close(found.gram[a * count + b], products.sum());
                 }
             }
@@ -445,7 +452,15 @@ mod tests {
         for window in [Window::Cycles(3), Window::Samples(500), Window::default()] {
             assert_eq!(window.to_string().parse::<Window>().unwrap(), window);
         }
-        for wrong in ["", "cycles", "cycles:0", "samples:1", "samples:1e3", "days:3", "cycles:-1"] {
+        for wrong in [
+            "",
+            "cycles",
+            "cycles:0",
+            "samples:1",
+            "samples:1e3",
+            "days:3",
+            "cycles:-1",
+        ] {
             let said = wrong.parse::<Window>().unwrap_err().to_string();
             assert!(said.contains("cycles:N"), "{wrong}: {said}");
         }
