@@ -71,11 +71,30 @@ impl Adaptive {
     /// Fits all weights of `model` and its offset again and again to the last samples. It starts
     /// with all operators off.
     ///
+    /// A sample takes constant time, but the one with a refit takes `O(K⁶)`. docs/adaptation.md has
+    /// the times: a loop must have that time to spare.
+    ///
+    /// ```
+    /// use hysteron::{Adaptive, Model, Operator, Plane, Refit, Sign, Window};
+    /// let plane = Plane::new(20.0, 80.0, 5)?;
+    /// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+    /// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
+    /// let options = Refit { window: Window::Samples(200), ..Refit::default() };
+    /// let mut adaptive = Adaptive::refitting(&model(1.0)?, options)?;
+    /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());
+    /// for n in 0..1000 {
+    ///     let input = 50.0 - 40.0 * (0.05 * f64::from(n)).cos();
+    ///     adaptive.step(input, plant.step(&mut state, input)?.output)?;
+    /// }
+    /// assert!((adaptive.simulate(80.0)? - 15.0 * 1.5).abs() < 0.01);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Adaptive::new`].
     pub fn refitting(model: &Model, options: Refit) -> Result<Self> {
         let plane = *model.plain()?.plane();
-        reserved(plane.operators().pow(2))?;
+        check_memory(MATRICES * plane.operators().pow(2))?;
         let weights = model.weights();
         let table = vec![0.0; table_len(plane.levels())];
         let core = hysteron_core::Model::new(plane, model.operator(), weights, table)?;
@@ -377,8 +396,17 @@ fn invert(
 /// Largest memory of an estimator, in bytes.
 const MOST_BYTES: u128 = 4 << 30;
 
+/// Matrices that a refit has at one time: the sums, those of the operators, the one to solve and its
+/// factor.
+const MATRICES: usize = 4;
+
 /// The memory of an estimator.
 fn reserved(numbers: usize) -> Result<Vec<f64>> {
+    check_memory(numbers)?;
+    Ok(vec![0.0; numbers])
+}
+
+fn check_memory(numbers: usize) -> Result<()> {
     let bytes = 8 * numbers as u128;
     if bytes > MOST_BYTES {
         return Err(Error::Fit(format!(
@@ -388,7 +416,7 @@ fn reserved(numbers: usize) -> Result<Vec<f64>> {
             MOST_BYTES >> 30
         )));
     }
-    Ok(vec![0.0; numbers])
+    Ok(())
 }
 
 /// A core model with the memory that the method needs.

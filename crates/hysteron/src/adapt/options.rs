@@ -30,8 +30,6 @@ const CORRELATION: f64 = 1.0;
 const DEVIATION: f64 = 0.3;
 /// Standard deviation of each coefficient.
 const SHARE: f64 = 0.5;
-/// Ridge of a refit.
-const RIDGE: f64 = 0.01;
 
 /// Which parameters are adapted, and by which method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -216,22 +214,24 @@ impl AdaptOptions {
 
     fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<EstimatorOptions> {
         self.refuse_unused(model)?;
-        let adaptation = self.guarded(model, rough, range);
         Ok(match self.learner {
-            Learner::Refit => EstimatorOptions::Refit(Refit {
-                window: self.window.unwrap_or_default(),
-                every: self.every,
-                ridge: self.ridge.unwrap_or(RIDGE),
-                movement: adaptation.movement,
-                gate: adaptation.gate,
-                burst: adaptation.burst,
-            }),
-            _ => EstimatorOptions::Weights(adaptation),
+            Learner::Refit => {
+                let usual = Refit::default();
+                EstimatorOptions::Refit(Refit {
+                    window: self.window.unwrap_or(usual.window),
+                    every: self.every,
+                    ridge: self.ridge.unwrap_or(usual.ridge),
+                    movement: self.movement.unwrap_or(usual.movement),
+                    gate: self.gate.unwrap_or(usual.gate),
+                    burst: self.burst.unwrap_or(usual.burst),
+                })
+            }
+            _ => EstimatorOptions::Weights(self.weights(model, rough, range)),
         })
     }
 
-    /// The options of an estimator. Of those of a refit, the guards.
-    fn guarded(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
+    /// The options of an estimator of weights or coefficients.
+    fn weights(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();

@@ -3,11 +3,11 @@
 
 use super::sums::Centred;
 use super::window::{Samples, Window};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::identify::{SparseForm, nnls, pivoting};
 use crate::model::{Model, OperatorState};
 use crate::progress::Progress;
-use hysteron_core::{Gate, Learning, Operator, Outcome, Verdict};
+use hysteron_core::{Adaptation, Gate, Learning, Operator, Outcome, Verdict};
 use serde::Serialize;
 
 /// A model whose weights are written anew.
@@ -35,26 +35,42 @@ pub struct Refit {
     pub burst: u32,
 }
 
+/// What [`crate::AdaptOptions`] has as defaults.
+impl Default for Refit {
+    fn default() -> Self {
+        let guards = Adaptation::<f64>::default();
+        Self {
+            window: Window::default(),
+            every: None,
+            ridge: 0.01,
+            movement: guards.movement,
+            gate: guards.gate,
+            burst: guards.burst,
+        }
+    }
+}
+
 impl Refit {
     fn check(&self) -> Result<()> {
-        let fits = [
-            ("window", self.window.is_usable()),
-            ("every", self.every != Some(0)),
-            ("ridge", self.ridge > 0.0 && self.ridge <= 1.0),
+        let own = [
+            ("window", self.window.is_usable(), Window::RANGE),
+            ("every", self.every != Some(0), "1 or more"),
             (
-                "movement",
-                self.movement >= 0.0 && self.movement.is_finite(),
+                "ridge",
+                self.ridge > 0.0 && self.ridge <= 1.0,
+                "above 0 and up to 1",
             ),
-            (
-                "gate",
-                self.gate == 0.0 || self.gate >= 2.0 && self.gate.is_finite(),
-            ),
-            ("burst", self.burst > 0),
         ];
-        match fits.into_iter().find(|(_, fits)| !fits) {
-            Some((option, _)) => Err(hysteron_core::Error::Adaptation { option }.into()),
-            None => Ok(()),
+        if let Some((option, _, range)) = own.into_iter().find(|(_, fits, _)| !fits) {
+            return Err(Error::Fit(format!("`{option}` must be {range}")));
         }
+        let guards = Adaptation {
+            movement: self.movement,
+            gate: self.gate,
+            burst: self.burst,
+            ..Adaptation::default()
+        };
+        Ok(guards.check()?)
     }
 }
 

@@ -76,21 +76,20 @@ impl std::str::FromStr for Window {
         let window = window.filter(|window| window.is_usable());
         window.ok_or_else(|| {
             Error::Fit(format!(
-                "the window `{text}` is none: take cycles:N from cycles:1 to cycles:{}, or \
-                 samples:N from samples:2 to samples:{MOST}",
-                Self::MOST_CYCLES
+                "`window` is `{text}`: it must be {}",
+                Self::RANGE
             ))
         })
     }
 }
 
 impl Window {
-    /// Largest number of cycles.
-    const MOST_CYCLES: usize = 1000;
+    /// What there is, in words.
+    pub(super) const RANGE: &str = "cycles:1 to cycles:1000, or samples:2 to samples:65536";
 
     pub(super) fn is_usable(self) -> bool {
         match self {
-            Self::Cycles(count) => (1..=Self::MOST_CYCLES).contains(&count),
+            Self::Cycles(count) => (1..=1000).contains(&count),
             Self::Samples(count) => (2..=MOST).contains(&count),
         }
     }
@@ -462,7 +461,7 @@ mod tests {
             "cycles:-1",
         ] {
             let said = wrong.parse::<Window>().unwrap_err().to_string();
-            assert!(said.contains("cycles:N"), "{wrong}: {said}");
+            assert!(said.contains("must be cycles:1 to"), "{wrong}: {said}");
         }
     }
 }
