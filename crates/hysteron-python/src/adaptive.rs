@@ -40,7 +40,7 @@ use pyo3::types::PyDict;
 ///     point of the input, and where an eighth of the window is new.
 /// ridge : float, optional
 ///     'refit': strength of the ridge that holds the weights where they are, relative to the
-///     window's matrix, above 0 and up to 1. By default 0.01.
+///     window's matrix, above 0 and up to 1. By default 0.1.
 /// gain : float, optional
 ///     Gradient methods: the share of a sample's error to remove, above 0 and below 2. By default
 ///     0.3.

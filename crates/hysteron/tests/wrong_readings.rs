@@ -136,8 +136,8 @@ fn five_wrong_readings_in_a_loop_do_not_move_the_next_prediction() {
                 .step(input, if wrong { FULL_SCALE } else { output })
                 .unwrap();
             // The plant is the model: there is no error but rounding. A refit takes gradients below
-            // 1e-12 of the largest for zero. With a ridge of a hundredth the condition number is
-            // some thousands, and the stroke is ten.
+            // 1e-12 of the largest for zero. With a ridge of a tenth the condition number is
+            // some hundreds, and the stroke is ten.
             let off = (learning.output - output).abs();
             assert!(off < 1e-7, "{learner:?}, {n}: {off}");
         }

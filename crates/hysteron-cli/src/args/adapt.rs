@@ -61,7 +61,7 @@ pub(crate) struct Tuning {
     #[arg(long, value_name = "N")]
     every: Option<u32>,
     /// refit: how firmly weights stay where they are, relative to the window's matrix, above 0 and
-    /// up to 1 [default: 0.01]
+    /// up to 1 [default: 0.1]
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = parse_finite)]
     ridge: Option<f64>,
     /// gradient, increments: share of a sample's error to remove, above 0 and below 2 [default:

@@ -69,7 +69,7 @@ pub enum EstimatorOptions {
 /// | `load` | middle of its range | the model's range | load to start at (refit, drift) |
 /// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
 /// | `every` | see the field | 1 or more | samples between two refits |
-/// | `ridge` | 0.01 | above 0, up to 1 | holds weights where they are (refit) |
+/// | `ridge` | 0.1 | above 0, up to 1 | holds weights where they are (refit) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |

@@ -42,7 +42,7 @@ impl Default for Refit {
         Self {
             window: Window::default(),
             every: None,
-            ridge: 0.01,
+            ridge: 0.1,
             movement: guards.movement,
             gate: guards.gate,
             burst: guards.burst,

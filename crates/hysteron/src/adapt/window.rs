@@ -13,6 +13,11 @@ use std::ops::Range;
 /// The input turns where it comes back by more than this share of the plane.
 const TURN: f64 = 0.1;
 
+/// A window of cycles covers at least this share of the range of the input over so many times as
+/// many cycles. So a small loop does not make a refit forget the large one before it.
+const COVERED: f64 = 0.9;
+const REACH: usize = 8;
+
 /// Largest number of samples in a window. Beyond it the oldest leave, whatever the cycle.
 pub(super) const MOST: usize = 1 << 16;
 
@@ -25,7 +30,9 @@ const ANEW: usize = 16;
 /// **Cycles.** The last cycle begins where the input last passed its present value in its present
 /// direction. So it has each input of the present branch once, on the way up and on the way down.
 /// The input turns where it comes back by more than a tenth of the plane. Smaller reversals belong
-/// to the branch they are on. Until the first cycle is complete, the window has all samples.
+/// to the branch they are on. Where the last cycle is small, the window takes in the cycles before
+/// it, until it covers nine tenths of the range of the last eight cycles. Until the first cycle is
+/// complete, the window has all samples.
 ///
 /// It is written `cycles:1` or `samples:500`, and so it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,12 +81,8 @@ impl std::str::FromStr for Window {
             }
         });
         let window = window.filter(|window| window.is_usable());
-        window.ok_or_else(|| {
-            Error::Fit(format!(
-                "`window` is `{text}`: it must be {}",
-                Self::RANGE
-            ))
-        })
+        window
+            .ok_or_else(|| Error::Fit(format!("`window` is `{text}`: it must be {}", Self::RANGE)))
     }
 }
 
@@ -119,8 +122,8 @@ pub(super) struct Samples {
     taken: usize,
     tolerance: f64,
     turning: Turning,
-    /// The turning points of the input, the last of which begins the present branch.
-    turns: VecDeque<usize>,
+    /// The turning points of the input and their positions. The last one begins the present branch.
+    turns: VecDeque<(usize, f64)>,
     /// The sample that `turning` counts as the first.
     turning_from: usize,
     heading: Direction,
@@ -212,9 +215,12 @@ impl Samples {
             return false;
         };
         self.heading = heading;
-        self.turns.push_back(self.turning_from + index);
+        let turn = self.turning_from + index;
+        let place = turn.checked_sub(self.oldest);
+        let at = place.and_then(|place| self.kept.get(place));
+        self.turns.push_back((turn, at.map_or(position, |at| at.1)));
         let needed = match self.window {
-            Window::Cycles(count) => 2 * count + 1,
+            Window::Cycles(count) => 2 * REACH * count + 1,
             Window::Samples(_) => 1,
         };
         while self.turns.len() > needed {
@@ -231,21 +237,39 @@ impl Samples {
             Window::Samples(count) => self.begin = self.begin.max(end.saturating_sub(count)),
             Window::Cycles(count) => {
                 self.begin = self.begin.max(end.saturating_sub(MOST));
-                if self.turns.len() > 2 * count {
-                    // The branch of the same direction, so many cycles before.
-                    self.begin = self.begin.max(self.turns[0]);
-                    let passed = |at: f64| match self.heading {
-                        Direction::Rising => at < position,
-                        Direction::Falling => at > position,
-                    };
-                    while self.begin < self.turns[1]
-                        && passed(self.kept[self.begin - self.oldest].1)
-                    {
-                        self.begin += 1;
-                    }
+                let Some(old) = self.first_branch(count, position) else {
+                    return;
+                };
+                self.begin = self.begin.max(self.turns[old].0);
+                let passed = |at: f64| match self.heading {
+                    Direction::Rising => at < position,
+                    Direction::Falling => at > position,
+                };
+                while self.begin < self.turns[old + 1].0
+                    && passed(self.kept[self.begin - self.oldest].1)
+                {
+                    self.begin += 1;
                 }
             }
         }
+    }
+
+    /// The turning point that begins the branch on which a window of `count` cycles begins.
+    fn first_branch(&self, count: usize, position: f64) -> Option<usize> {
+        let present = self.turns.len().checked_sub(1)?;
+        let range = |from: usize| {
+            let turns = self.turns.range(from..).map(|turn| turn.1);
+            let (low, high) = turns.fold((position, position), |(low, high), at| {
+                (low.min(at), high.max(at))
+            });
+            high - low
+        };
+        let covered = COVERED * range(0);
+        let most = REACH * count;
+        (count..=most)
+            .map_while(|cycles| Some((cycles, present.checked_sub(2 * cycles)?)))
+            .find(|(cycles, branch)| *cycles == most || range(branch + 1) >= covered)
+            .map(|(_, branch)| branch)
     }
 
     /// Drops the samples that are neither in the window nor in the sums.
@@ -442,6 +466,27 @@ mod tests {
                     }
                     false => {}
                 }
+            }
+        }
+    }
+
+    /// One cycle over the plane, then small ones.
+    #[test]
+    fn a_small_cycle_does_not_drop_the_large_one_at_once() {
+        let mut trial = Trial::new(Window::Cycles(1), 20, Operator::Mkp);
+        let wave = |n: usize| 0.5 - 0.5 * (std::f64::consts::TAU * n as f64 / 100.0).cos();
+        for n in 0..300 {
+            trial.push(wave(n), 0.0);
+        }
+        assert!(trial.samples.len().abs_diff(100) < 30);
+        // The large cycle is among the last eight, or the ninth before it is known to have turned.
+        for n in 0..2000 {
+            trial.push(0.3 * wave(n), 0.0);
+            let length = trial.samples.len();
+            match n {
+                ..=700 => assert!(length >= n + 50, "{n}: {length}"),
+                1000.. => assert!(length.abs_diff(100) < 30, "{n}: {length}"),
+                _ => {}
             }
         }
     }
