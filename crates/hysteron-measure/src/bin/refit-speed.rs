@@ -1,4 +1,4 @@
-//! Time of a sample of an adaptation, in a loop of 200 samples a cycle:
+//! Time of a sample of an adaptation, in a loop of 200 samples a cycle; medians:
 //! `cargo run --release -p hysteron-measure --bin refit-speed`
 
 use hysteron::{AdaptOptions, Learner, Model, Operator, Outcome, Plane, Sign};
@@ -18,10 +18,10 @@ fn main() -> hysteron::Result<()> {
             [Learner::Refit, Learner::LeastSquares].map(|learner| times(levels, learner));
         let (refit, squares) = (refit?, squares?);
         println!(
-            "| {levels} | {:.0} µs | {:.2} µs | {:.1} ms | {:.2} MB | {:.0} µs |",
+            "| {levels} | {:.0} µs | {:.2} µs | {:.2} ms | {:.2} MB | {:.0} µs |",
             refit.mean,
             refit.between,
-            refit.longest / 1e3,
+            refit.refit / 1e3,
             8e-6 * (levels * (levels + 1) / 2).pow(2) as f64,
             squares.mean,
         );
@@ -33,7 +33,7 @@ fn main() -> hysteron::Result<()> {
 struct Times {
     mean: f64,
     between: f64,
-    longest: f64,
+    refit: f64,
 }
 
 fn times(levels: usize, learner: Learner) -> hysteron::Result<Times> {
@@ -59,7 +59,7 @@ fn times(levels: usize, learner: Learner) -> hysteron::Result<Times> {
         ..AdaptOptions::default()
     };
     let mut adaptive = options.adaptive(&model)?;
-    let (mut all, mut between, mut longest, mut refits) = (0.0, 0.0, 0.0_f64, 0);
+    let (mut cycles, mut between, mut refits) = (vec![0.0; CYCLES + 2], vec![], vec![]);
     for n in 0..(CYCLES + 2) * CYCLE {
         let turn = std::f64::consts::TAU * n as f64 / CYCLE as f64;
         // No cycle is like the one before.
@@ -69,23 +69,21 @@ fn times(levels: usize, learner: Learner) -> hysteron::Result<Times> {
         let begin = Instant::now();
         let learning = adaptive.step(input, output)?;
         let time = begin.elapsed().as_secs_f64() * 1e6;
-        // The first cycles are not those of a loop that has run.
-        if n < 2 * CYCLE {
-            continue;
-        }
-        all += time;
+        cycles[n / CYCLE] += time;
         match learning.outcome {
-            Outcome::Learned => {
-                refits += 1;
-                longest = longest.max(time);
-            }
-            _ => between += time,
+            Outcome::Learned => refits.push(time),
+            _ => between.push(time),
         }
     }
-    let count = CYCLES * CYCLE;
+    // The first cycles are not those of a loop that has run.
     Ok(Times {
-        mean: all / count as f64,
-        between: between / (count - refits).max(1) as f64,
-        longest,
+        mean: median(&mut cycles[2..]) / CYCLE as f64,
+        between: median(&mut between),
+        refit: median(&mut refits),
     })
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
