@@ -13,8 +13,8 @@ use std::ops::Range;
 /// The input turns where it comes back by more than this share of the plane.
 const TURN: f64 = 0.1;
 
-/// A window of cycles covers at least this share of the range of the input over so many times as
-/// many cycles. So a small loop does not make a refit forget the large one before it.
+/// A window of cycles is at least this share as wide as the widest of so many times as many cycles.
+/// So a small loop does not make a refit forget the large one before it.
 const COVERED: f64 = 0.9;
 const REACH: usize = 8;
 
@@ -31,8 +31,9 @@ const ANEW: usize = 16;
 /// direction. So it has each input of the present branch once, on the way up and on the way down.
 /// The input turns where it comes back by more than a tenth of the plane. Smaller reversals belong
 /// to the branch they are on. Where the last cycle is small, the window takes in the cycles before
-/// it, until it covers nine tenths of the range of the last eight cycles. Until the first cycle is
-/// complete, the window has all samples.
+/// it, until it is nine tenths as wide as the widest of the last eight. The width of a cycle is the
+/// lesser of its way there and its way back. Until the first cycle is complete, the window has all
+/// samples.
 ///
 /// It is written `cycles:1` or `samples:500`, and so it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -264,7 +265,10 @@ impl Samples {
             });
             high - low
         };
-        let covered = COVERED * range(0);
+        let places = || self.turns.iter().map(|turn| turn.1).chain([position]);
+        let ways = || places().zip(places().skip(1)).map(|(a, b)| (a - b).abs());
+        let widths = ways().zip(ways().skip(1)).map(|(a, b)| a.min(b));
+        let covered = COVERED * widths.fold(0.0, f64::max);
         let most = REACH * count;
         (count..=most)
             .map_while(|cycles| Some((cycles, present.checked_sub(2 * cycles)?)))
@@ -487,6 +491,20 @@ mod tests {
                 ..=700 => assert!(length >= n + 50, "{n}: {length}"),
                 1000.. => assert!(length.abs_diff(100) < 30, "{n}: {length}"),
                 _ => {}
+            }
+        }
+    }
+
+    /// The same cycle, on another part of the plane: the way there is no cycle.
+    #[test]
+    fn a_cycle_that_moved_is_the_last_cycle() {
+        let mut trial = Trial::new(Window::Cycles(1), 20, Operator::Mkp);
+        let wave = |n: usize| 0.2 - 0.2 * (std::f64::consts::TAU * n as f64 / 100.0).cos();
+        for n in 0..1000 {
+            let moved = if n < 500 { 0.0 } else { 0.5 };
+            trial.push(moved + wave(n), 0.0);
+            if n >= 650 {
+                assert!(trial.samples.len() < 130, "{n}: {}", trial.samples.len());
             }
         }
     }
