@@ -10,7 +10,7 @@ const CYCLES: usize = 20;
 
 fn main() -> hysteron::Result<()> {
     println!(
-        "| K | a sample | of these, without a refit | a refit, longest | sums | least squares |"
+        "| K | a sample, averaged | without a refit | with a refit | matrix | least squares |"
     );
     println!("| ---: | ---: | ---: | ---: | ---: | ---: |");
     for levels in [10, 20, 40] {
