@@ -44,7 +44,7 @@ pub struct Adaptive {
 enum Learns {
     /// From sample to sample.
     Estimator {
-        estimator: Estimator<f64, Vec<f64>>,
+        estimator: Box<Estimator<f64, Vec<f64>>>,
         /// The basis that the parameters are coefficients of; empty if the parameters are the
         /// weights.
         basis: Vec<Vec<f64>>,
@@ -64,6 +64,7 @@ impl Adaptive {
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
         let offset = model.sign().factor() * model.offset();
         let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
+        let estimator = Box::new(estimator);
         let basis = Vec::new();
         Self::over(model, core, Learns::Estimator { estimator, basis })
     }
@@ -127,6 +128,7 @@ impl Adaptive {
         let all = basis.concat();
         let estimator =
             Estimator::of_basis(options, &mut core, &all, coefficients, offset, memory)?;
+        let estimator = Box::new(estimator);
         Self::over(model, core, Learns::Estimator { estimator, basis })
     }
 
