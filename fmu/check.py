@@ -56,6 +56,26 @@ def core(folder, model, run_, inverse):
         )
 
 
+def staged_run(fmu, vector, run_):
+    """A run of a model with stages, step by step; the number of its samples."""
+    if "drive_range" in run_:
+        return 0  # a block has the model's own limits
+    wanted, signal = ("input", "target") if fmu.inverse else ("output", "input")
+    steps = run_.get("dt", [0.0] + [1.0] * (len(run_[signal]) - 1))
+    if 0.0 in steps[1:]:
+        return 0  # FMI has no step without length
+    references = {variable.name: variable.valueReference for variable in fmu.description.modelVariables}
+    columns = {references[fmu.signal]: run_[signal]}
+    if "load" in run_:
+        columns[references[vector["model"]["load"]["name"]]] = run_["load"]
+    if any(run_.get("heading", [])):
+        return 0  # `held` sets real numbers only
+    found = fmu.held(np.cumsum(steps), list(columns), list(zip(*columns.values())))
+    error = np.max(np.abs(np.array(found) - run_[wanted]))
+    check(error <= vector["tolerance"][wanted], f"{fmu.path.name}, {run_['name']}: off by {error}")
+    return len(found)
+
+
 def every_vector(folder, fmus):
     samples = exact = 0
     for name, vector in vectors().items():
@@ -68,6 +88,9 @@ def every_vector(folder, fmus):
             problems = validate_fmu(str(fmu.path))
             check(not problems, f"{fmu.path.name}: {problems}")
             for run_ in vector["runs"]:
+                if vector["version"] == 2:
+                    samples += staged_run(fmu, vector, run_)
+                    continue
                 found, flags = fmu.simulate(run_)
                 error = np.max(np.abs(found - run_[wanted]))
                 check(

@@ -104,9 +104,12 @@ def fault(case, done, before, folder):
     if changed:
         return f"{changed[0]} changed"
     new = [name for name in after if name not in before]
-    if done.returncode == 0:
+    # Where standard output is full, the last words fail. What was made before them stays, whole.
+    if done.returncode == 0 or case.stdout:
         if case.out and case.out not in new:
             return "success, and no result"
+        if done.returncode != 0 and not done.stderr.strip():
+            return "a failure without words"
         broken = [
             not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None
         ]

@@ -108,6 +108,24 @@ typedef struct {
     size_t which;
 } tally;
 
+static void add(tally *t, uint32_t taken, size_t n) {
+    t->steps++;
+    t->sum += taken;
+    if (taken > t->most) {
+        t->most = taken;
+        t->which = n;
+    }
+}
+
+static void note_all(const tally *tallies, const char *name) {
+    size_t n;
+    for (n = 0; n < 2; n++)
+        if (tallies[n].steps > 0)
+            NOTE("steps\t%s\t%s\t%s\t%lu\t%llu\t%lu\t%lu\n", TYPE, name, n == 0 ? "forward" : "inverse",
+                 tallies[n].steps, tallies[n].sum, tallies[n].most, (unsigned long)tallies[n].which);
+    (void)name;
+}
+
 static void one(const run *r) {
     state_type state;
     tally tallies[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
@@ -117,26 +135,15 @@ static void one(const run *r) {
     for (n = 0; n < r->count; n++) {
         hys_real result, other;
         int status, other_status;
-        uint32_t taken;
-        tally *t = &tallies[r->kinds[n] != FORWARD];
         step_restored(r, &state, n, &other, &other_status);
-        taken = step(r, &state, n, &result, &status);
-        t->steps++;
-        t->sum += taken;
-        if (taken > t->most) {
-            t->most = taken;
-            t->which = n;
-        }
+        add(&tallies[r->kinds[n] != FORWARD], step(r, &state, n, &result, &status), n);
         say("", result, status);
 #ifndef PLAIN
         if (memcmp(&result, &other, sizeof result) != 0 || status != other_status)
             say("restored: ", other, other_status);
 #endif
     }
-    for (n = 0; n < 2; n++)
-        if (tallies[n].steps > 0)
-            NOTE("steps\t%s\t%s\t%s\t%lu\t%llu\t%lu\t%lu\n", TYPE, r->name, n == 0 ? "forward" : "inverse",
-                 tallies[n].steps, tallies[n].sum, tallies[n].most, (unsigned long)tallies[n].which);
+    note_all(tallies, r->name);
 }
 
 /* Again without printing, for the stack. */
@@ -154,6 +161,10 @@ static __attribute__((noinline)) void stack(const run *r) {
     NOTE("ram\t%s\t%s\t0\t%lu\n", TYPE, r->name, (unsigned long)state_size(r->levels));
 }
 
+#ifndef PLAIN
+#include "bench_stages.h"
+#endif
+
 int main(void) {
     const run *r;
     board_start();
@@ -161,5 +172,8 @@ int main(void) {
         one(r);
         stack(r);
     }
+#ifndef PLAIN
+    all_staged();
+#endif
     return 0;
 }

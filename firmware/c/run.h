@@ -27,4 +27,22 @@ typedef struct {
 
 extern const run runs[];
 extern const size_t run_count;
+
+#ifndef PLAIN
+#include "hysteron_mcu_stages.h"
+
+/* A run of a model with stages. */
+typedef struct {
+    const char *name;
+    const hys_actuator *actuator;
+    int levels;
+    hys_real tolerance;
+    size_t count;
+    const signed char *kinds;
+    const hys_real *values, *loads;
+} staged_run;
+
+extern const staged_run staged_runs[];
+extern const size_t staged_run_count;
+#endif
 #endif

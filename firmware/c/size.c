@@ -7,6 +7,10 @@
 #include "plain.h"
 #include "weights.h"
 #define COUNT (LEVELS * (LEVELS + 1) / 2)
+#elif defined(STAGE)
+#define TEXT_(x) #x
+#define TEXT(x) TEXT_(x)
+#include TEXT(STAGE.h)
 #elif LEVELS == 10
 #include "bench_10.h"
 #elif LEVELS == 20
@@ -14,7 +18,9 @@
 #else
 #include "bench_40.h"
 #endif
-#ifndef PLAIN
+#ifdef STAGE
+volatile hys_real load;
+#elif !defined(PLAIN)
 #include "hysteron_mcu.h"
 #define MODEL JOIN(bench_, LEVELS)
 #endif
@@ -30,6 +36,10 @@ int main(void) {
     static plain_state state;
     static hys_real gamma[COUNT];
     plain_start(&model, &state, gamma);
+#elif defined(STAGE)
+    static hys_actuator_state state;
+    static hys_turn turns[4 * LEVELS + 8];
+    hys_actuator_start(&STAGE, &state, turns, 4 * LEVELS + 8);
 #else
     static hys_state state;
     static hys_turn turns[4 * LEVELS + 8];
@@ -40,6 +50,8 @@ int main(void) {
 #if WHAT > 0
 #ifdef PLAIN
         plain_step(&state, input, &y);
+#elif defined(STAGE)
+        hys_actuator_step(&state, input, load, &y);
 #else
         hys_step(&state, input, &y);
 #endif
@@ -49,6 +61,8 @@ int main(void) {
         int s = 0;
 #ifdef PLAIN
         plain_inverse_step(&state, target, &y, &s);
+#elif defined(STAGE)
+        hys_actuator_inverse_step(&state, target, heading, tolerance, load, &y, &s);
 #else
         hys_inverse_step(&state, target, heading, tolerance, &y, &s);
 #endif

@@ -3,6 +3,9 @@
 #[path = "src/data.rs"]
 #[allow(dead_code)]
 mod data;
+#[path = "src/staged.rs"]
+#[allow(dead_code)]
+mod staged;
 
 use std::env::var;
 use std::fmt::Write;
@@ -12,27 +15,39 @@ fn main() {
     let vectors = Path::new("../../vectors");
     println!("cargo:rerun-if-changed=../../vectors");
     println!("cargo:rerun-if-changed=src/data.rs");
+    println!("cargo:rerun-if-changed=src/staged.rs");
     println!("cargo:rerun-if-changed=memory.x");
     let (models, runs) = data::all(vectors);
     let mut text = String::from("pub static MODELS: &[Model] = &[\n");
     for m in &models {
-        let operator = match m.operator.as_str() {
-            "mkp" => "Mkp",
-            "kp" => "Kp",
-            _ => "Relay",
-        };
-        writeln!(
-            text,
-            "Model {{ operator: Operator::{operator}, min: {:?}, max: {:?}, levels: {}, offset: {:?}, sign: {:?}, weights: &{:?} }},",
-            m.min, m.max, m.levels, m.offset, m.sign, m.weights
-        )
-        .expect("text");
+        writeln!(text, "{},", literal(m)).expect("text");
     }
     text.push_str("];\npub static RUNS: &[Run] = &[\n");
     for r in &runs {
         writeln!(
             text,
             "Run {{ name: {:?}, model: {}, tolerance: {:?}, steps: &{:?} }},",
+            r.name, r.model, r.tolerance, r.steps
+        )
+        .expect("text");
+    }
+    text.push_str("];\n");
+    let (staged_models, staged_runs) = staged::all(vectors);
+    text.push_str("pub static STAGED: &[Staged] = &[\n");
+    for m in &staged_models {
+        let [loads, shifts, scales, gains, offsets] = &m.curves;
+        writeln!(
+            text,
+            "Staged {{ model: {}, body: {:?}, curves: [&{loads:?}, &{shifts:?}, &{scales:?}, &{gains:?}, &{offsets:?}], spacing: &{:?}, creep: [&{:?}, &{:?}], lag: {:?}, drive: {:?}, dt: {:?} }},",
+            literal(&m.model), m.body, m.spacing, m.creep[0], m.creep[1], m.lag, m.drive, m.dt
+        )
+        .expect("text");
+    }
+    text.push_str("];\npub static STAGED_RUNS: &[StagedRun] = &[\n");
+    for r in &staged_runs {
+        writeln!(
+            text,
+            "StagedRun {{ name: {:?}, model: {}, tolerance: {:?}, steps: &{:?} }},",
             r.name, r.model, r.tolerance, r.steps
         )
         .expect("text");
@@ -57,4 +72,16 @@ fn main() {
         println!("cargo:rustc-link-search={here}");
         println!("cargo:rustc-link-arg-bins=-Tlink.x");
     }
+}
+
+fn literal(m: &data::Model) -> String {
+    let operator = match m.operator.as_str() {
+        "mkp" => "Mkp",
+        "kp" => "Kp",
+        _ => "Relay",
+    };
+    format!(
+        "Model {{ operator: Operator::{operator}, min: {:?}, max: {:?}, levels: {}, offset: {:?}, sign: {:?}, weights: &{:?} }}",
+        m.min, m.max, m.levels, m.offset, m.sign, m.weights
+    )
 }

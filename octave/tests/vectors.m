@@ -17,19 +17,27 @@ for n = 1:numel(files)
     end
     for k = 1:numel(runs)
         run = runs{k};
+        time = [];
+        if isfield(run, 'dt')
+            time = cumsum(run.dt);
+        end
         if strcmp(vector.kind, 'forward')
             [given, wanted, tolerance] = deal(run.input, run.output, vector.tolerance.output);
-            call = @(block, at) sf_MKP(block, given(at));
+            call = @(block, at, time) sf_MKP(block, given(at), around(run, at, time){:});
             name = 'sf_MKP';
         else
             [given, wanted, tolerance] = deal(run.target, run.input, vector.tolerance.input);
-            call = @(block, at) sf_Inverse_MKP(block, given(at), ...
-                'heading', run.heading(at), 'tolerance', run.tolerance);
+            limits = {};
+            if isfield(run, 'drive_range')
+                limits = {'drive_range', run.drive_range', 'horizon', run.horizon};
+            end
+            call = @(block, at, time) sf_Inverse_MKP(block, given(at), 'heading', run.heading(at), ...
+                'tolerance', run.tolerance, limits{:}, around(run, at, time){:});
             name = 'sf_Inverse_MKP';
-            [~, status] = call(model, 1:numel(given));
+            [~, status] = call(model, 1:numel(given), time);
             assert(isequal(double(status), run.status));
         end
-        whole = call(model, 1:numel(given));
+        whole = call(model, 1:numel(given), time);
         assert(max(abs(whole - wanted)) <= tolerance, '%s, run %d', files(n).name, k);
         block = feval(name, 'open', model);
         other = feval(name, 'open', model);
@@ -39,15 +47,26 @@ for n = 1:numel(files)
                 [block, other] = deal(other, block);
                 feval(name, 'restore', block, saved);
             end
-            assert(isequal(call(block, at), whole(at)));
+            assert(isequal(call(block, at, time), whole(at)));
         end
         feval(name, 'close', block);
         feval(name, 'close', other);
         samples = samples + numel(given);
     end
 end
-assert(numel(files) >= 15 && samples > 4000);
+assert(numel(files) >= 30 && samples > 7000);
 printf('vectors: %d files, %d samples, as whole signals and step by step\n', numel(files), samples);
+end
+
+% Time and load of samples, where the run has them.
+function named = around(run, at, time)
+named = {};
+if isfield(run, 'dt')
+    named = {'time', time(at)};
+end
+if isfield(run, 'load')
+    named = [named, {'load', run.load(at)}];
+end
 end
 
 % The object behind the key "model", by counting braces: model files have none inside texts.

@@ -18,7 +18,7 @@ def vectors(kind):
     cases = []
     for file in files:
         vector = json.loads(file.read_text())
-        assert vector["kind"] == kind and vector["version"] == 1
+        assert vector["kind"] == kind and vector["version"] in (1, 2)
         model = pyhysteron.Model.from_json(json.dumps(vector["model"]))
         cases += [pytest.param(model, vector["tolerance"], run, id=f"{file.stem}: {run['name']}") for run in vector["runs"]]
     return cases
@@ -30,6 +30,23 @@ def near(found, expected, tolerance):
     assert np.abs(found - expected).max() <= tolerance
 
 
+def series(run):
+    """Time and load as arguments for a whole series."""
+    keywords = {"load": run["load"]} if "load" in run else {}
+    return keywords | ({"time": np.cumsum(run["dt"])} if "dt" in run else {})
+
+
+def samples(run):
+    """Time step and load as arguments for each sample."""
+    names = [name for name in ("dt", "load") if name in run]
+    return [{name: run[name][n] for name in names} for n in range(len(run["input"]))]
+
+
+def inverse_of(model, run):
+    limits = tuple(run["drive_range"]) if "drive_range" in run else None
+    return model.inverse(drive_range=limits, horizon=run.get("horizon", 0.0))
+
+
 def saved_and_restored(model, state):
     return model.restore(state.save())
 
@@ -37,18 +54,21 @@ def saved_and_restored(model, state):
 @pytest.mark.parametrize(("model", "tolerance", "run"), vectors("forward"))
 class TestForward:
     def test_simulate(self, model, tolerance, run):
-        near(model.simulate(run["input"]), run["output"], tolerance["output"])
+        near(model.simulate(run["input"], **series(run)), run["output"], tolerance["output"])
 
     def test_step(self, model, tolerance, run):
         state = model.start()
-        near([state.step(x) for x in run["input"]], run["output"], tolerance["output"])
+        steps = zip(run["input"], samples(run), strict=True)
+        near([state.step(x, **around) for x, around in steps], run["output"], tolerance["output"])
 
     def test_restored_half_way(self, model, tolerance, run):
         half = len(run["input"]) // 2
         state = model.start()
-        first = state.run(run["input"][:half])
+        steps = list(zip(run["input"], samples(run), strict=True))
+        first = [state.step(x, **around) for x, around in steps[:half]]
         state = saved_and_restored(model, state)
-        near([*first, *state.run(run["input"][half:])], run["output"], tolerance["output"])
+        rest = [state.step(x, **around) for x, around in steps[half:]]
+        near([*first, *rest], run["output"], tolerance["output"])
 
 
 @pytest.mark.parametrize(("model", "tolerance", "run"), vectors("inverse"))
@@ -60,15 +80,17 @@ class TestInverse:
         self.step_through(model, tolerance, run, lambda state: saved_and_restored(model, state))
 
     def step_through(self, model, tolerance, run, between):
-        inverse, state, found = model.inverse(), model.start(), []
-        for target, heading in zip(run["target"], run["heading"], strict=True):
+        inverse, state, found = inverse_of(model, run), model.start(), []
+        for target, heading, around in zip(run["target"], run["heading"], samples(run), strict=True):
             state = between(state)
-            found.append(inverse.step(state, target, heading=HEADINGS[heading], tolerance=run["tolerance"]))
+            wanted = {"heading": HEADINGS[heading], "tolerance": run["tolerance"]}
+            found.append(inverse.step(state, target, **wanted, **around))
         self.judge(model, tolerance, run, *zip(*found, strict=True))
 
     def test_run(self, model, tolerance, run):
         headings = [HEADINGS[heading] for heading in run["heading"]]
-        inputs, status = model.inverse().run(run["target"], heading=headings, tolerance=run["tolerance"])
+        wanted = {"heading": headings, "tolerance": run["tolerance"]}
+        inputs, status = inverse_of(model, run).run(run["target"], **wanted, **series(run))
         self.judge(model, tolerance, run, inputs, status)
 
     def judge(self, model, tolerance, run, inputs, status):
@@ -76,13 +98,13 @@ class TestInverse:
         assert list(status) == run["status"]
         reached = np.array(status) == 0
         wanted = np.array(run["target"])[reached]
-        near(model.simulate(inputs)[reached], wanted, tolerance["output"] + run["tolerance"])
+        near(model.simulate(inputs, **series(run))[reached], wanted, tolerance["output"] + run["tolerance"])
 
 
 def test_a_run_that_anticipates_is_its_steps():
     for case in vectors("inverse"):
         model, _, run = case.values
-        if run["tolerance"]:
+        if run["tolerance"] or "dt" in run or "load" in run:
             continue
         inverse, state = model.inverse(), model.start()
         headings = pyhysteron.control.headings(run["target"], 0.01)

@@ -14,9 +14,10 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 const SANITIZE: &str = "-fsanitize=address,undefined";
-const SOURCES: [&str; 6] = [
+const SOURCES: [&str; 7] = [
     "main.c",
     "vector.c",
+    "vector_stages.c",
     "handles.c",
     "memory.c",
     "stages.c",
@@ -114,18 +115,31 @@ fn vectors(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
         let model = folder.join(format!("{name}.model.json"));
         std::fs::write(&model, file["model"].to_string()).unwrap();
         let kind = file["kind"].as_str().unwrap();
-        let (columns, tolerance) = match kind {
+        let (mut columns, tolerance) = match kind {
             "forward" => (vec!["input", "output"], "output"),
             _ => (vec!["heading", "target", "input", "status"], "input"),
         };
+        let staged = file["version"] == 2;
+        if staged {
+            columns.extend(["dt", "load"]);
+        }
         for (n, run) in file["runs"].as_array().unwrap().iter().enumerate() {
             let count = run["input"].as_array().unwrap().len();
             let (tolerance, policy) = (&file["tolerance"][tolerance], &run["tolerance"]);
             let policy = policy.as_f64().unwrap_or(0.0);
             let mut text = format!("{kind} {count} {tolerance} {policy}\n");
+            if staged {
+                let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+                let range = &run["drive_range"];
+                let limits = [&range[0], &range[1], &run["horizon"]].map(number);
+                text = format!("stages {text}{} {} {}\n", limits[0], limits[1], limits[2]);
+            }
             for row in 0..count {
                 for column in &columns {
-                    write!(text, "{} ", run[column][row]).unwrap();
+                    match &run[column][row] {
+                        Value::Null => text.push_str("nan "),
+                        number => write!(text, "{number} ").unwrap(),
+                    }
                 }
                 text.push('\n');
             }
@@ -134,8 +148,14 @@ fn vectors(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
             runs.push((model.clone(), table));
         }
     }
-    assert!(runs.len() >= 60, "{} runs", runs.len());
+    assert!(runs.len() >= 120, "{} runs", runs.len());
     runs
+}
+
+/// Model and table of this run: the vector's name and the run's number.
+fn one_of(runs: &[(PathBuf, PathBuf)], name: &str) -> (PathBuf, PathBuf) {
+    let of = |(_, table): &&(PathBuf, PathBuf)| table.to_str().unwrap().contains(name);
+    runs.iter().find(of).unwrap().clone()
 }
 
 #[test]
@@ -175,9 +195,13 @@ fn valgrind_finds_nothing() {
     };
     run(valgrind().current_dir(folder.path()));
     let runs = vectors(folder.path());
-    for name in ["forward-mkp-20.1", "inverse-mkp-5-negative.1"] {
-        let of = |(_, table): &&(PathBuf, PathBuf)| table.to_str().unwrap().contains(name);
-        let (model, table) = runs.iter().find(of).unwrap();
+    for name in [
+        "forward-mkp-20.1",
+        "inverse-mkp-5-negative.1",
+        "forward-chain-kp-5.2",
+        "inverse-chain-kp-5.4",
+    ] {
+        let (model, table) = one_of(&runs, name);
         run(valgrind().arg(model).arg(table));
     }
 }
@@ -189,7 +213,7 @@ fn a_wrong_vector_is_noticed() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let (model, table) = vectors(folder.path()).swap_remove(0);
+    let (model, table) = one_of(&vectors(folder.path()), "forward-mkp-20.0");
     let text = std::fs::read_to_string(&table).unwrap();
     let (head, rest) = text.split_once('\n').unwrap();
     let moved = rest.replacen(' ', "1 ", 1);
@@ -233,8 +257,18 @@ fn the_page_on_c() {
         let alone = shell(name).status().unwrap();
         assert!(!alone.success(), "without the model it says why");
     }
-    let (model, _) = vectors(folder.path()).swap_remove(0);
+    let (model, _) = one_of(&vectors(folder.path()), "forward-mkp-20.0");
     std::fs::rename(model, folder.path().join("spring.json")).unwrap();
+    for name in names {
+        run(&mut shell(name));
+    }
+    // The second program, of a model with stages.
+    let program = page.split("```c\n").nth(2).unwrap();
+    let program = program.split("```").next().unwrap();
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    run(&mut shell(commands));
+    let (model, _) = one_of(&vectors(folder.path()), "inverse-chain-mkp-5.0");
+    std::fs::rename(model, folder.path().join("wire.json")).unwrap();
     for name in names {
         run(&mut shell(name));
     }

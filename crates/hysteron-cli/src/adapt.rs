@@ -2,7 +2,9 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, recording, text};
-use hysteron::{Adapted, Columns, Compared, Errors, EstimatorOptions, Model, TableWriter};
+use hysteron::{
+    Adapted, Columns, Compared, Errors, EstimatorOptions, Model, ShiftFound, TableWriter,
+};
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -50,7 +52,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     }
     match args.json.json {
         true => print(&to_json(args, &adapted, refused).to_string())?,
-        false => print(&to_text(args, &adapted, refused))?,
+        false => print(&to_text(args, &adapted, &model, refused))?,
     }
     match refused {
         true => Err(worse(args, &adapted).into()),
@@ -88,11 +90,40 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "again": adapted.again,
         "counts": adapted.counts,
         "drift": adapted.drift,
+        "shift": adapted.shift.as_ref().map(|found| json!({
+            "shift": found.shift,
+            "deviation": found.deviation,
+            "load": found.load,
+            "from": found.from,
+        })),
         "fit": adapted.model.fit,
     })
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
+/// The shift at the end, and the load that it tells.
+fn shift(found: &ShiftFound, model: &Model) -> String {
+    let mut line = format!(
+        "shift of the axis at the end {}, give or take {}",
+        text::with_unit(found.shift, &model.input),
+        text::number(found.deviation)
+    );
+    if let (Some(load), Some(from), Some(dependence)) = (found.load, found.from, &model.load) {
+        let (low, high) = dependence.range();
+        line += &format!(
+            " from that at {}; it tells {} {}",
+            text::with_unit(from, &dependence.quantity),
+            match load {
+                load if load <= low => "at most",
+                load if load >= high => "at least",
+                _ => "about",
+            },
+            text::with_unit(load, &dependence.quantity)
+        );
+    }
+    line
+}
+
+fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -128,7 +159,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
             counts.at_rest,
             counts.rejected
         ),
-        EstimatorOptions::Weights(_) => format!(
+        EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
             "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
              readings rejected, {} times rolled back",
             counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back
@@ -138,10 +169,11 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
         true => "not written".into(),
         false => args.out.display().to_string(),
     };
-    let mut lines = vec![
-        format!("{target}: {told}"),
-        text::table(&rows),
-        format!(
+    let mut lines = vec![format!("{target}: {told}"), text::table(&rows)];
+    if let Some(found) = &adapted.shift {
+        lines.push(shift(found, model));
+    } else {
+        lines.push(format!(
             "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
              their sum",
             text::number(drift.weights.0),
@@ -149,8 +181,8 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
             text::number(drift.offset.0),
             text::with_unit(drift.offset.1, output),
             100.0 * drift.moved
-        ),
-    ];
+        ));
+    }
     if adapted.probation > 0 {
         lines.push(format!(
             "the last {} samples are on probation, as none judge them: the model has nothing of \
@@ -161,7 +193,11 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, refused: bool) -> String {
     if counts.outside > 0 {
         lines.push(format!("{} inputs outside the plane", counts.outside));
     }
-    if drift.moved == 0.0 && drift.offset.0 == drift.offset.1 {
+    let shifted = adapted
+        .shift
+        .as_ref()
+        .is_some_and(|found| found.shift != 0.0);
+    if drift.moved == 0.0 && drift.offset.0 == drift.offset.1 && !shifted {
         lines.push("nothing was learned: the model is the one that it was".into());
     }
     lines.join("\n")

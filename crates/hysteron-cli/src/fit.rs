@@ -19,7 +19,8 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let inputs: Vec<&Path> = args.data.iter().map(PathBuf::as_path).collect();
+    let inputs = args.data.iter().chain(&args.repeat);
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let mut prepared = Vec::new();
     for data in &args.data {
@@ -36,7 +37,9 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         prepared.push(prepare::before_fit(recording, &args.prepare)?);
     }
     let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
-    let model = identify(args, &recordings)?;
+    let repeats = args.repeat.iter();
+    let repeats = repeats.map(|file| recording::read(file, columns, &args.repair));
+    let model = identify(args, &recordings, repeats.collect::<Result<_>>()?)?;
     file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
@@ -53,7 +56,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     }
 }
 
-fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
+fn identify(args: &args::Fit, recordings: &[Recording], repeats: Vec<Recording>) -> Result<Model> {
     let levels = match args.levels {
         args::Levels::Auto => Choice::Auto,
         args::Levels::Fixed(levels) => Choice::Fixed(levels),
@@ -111,6 +114,7 @@ fn identify(args: &args::Fit, recordings: &[Recording]) -> Result<Model> {
         .start(args.start)
         .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
         .thermal(args.thermal.is_some())
+        .repeats(repeats)
         .progress(Progress::new(&told));
     let model = fit.run(recordings)?;
     bar.finish_and_clear();

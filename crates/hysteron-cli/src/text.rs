@@ -64,6 +64,12 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
             with_unit(confidence.sensor, &model.output),
             with_unit(misfit(fit.rmse, confidence.sensor), &model.output)
         ),
+        match confidence.sessions {
+            0 | 1 => "the 95 % band holds within this session; --repeat FILE widens it to \
+                      others"
+                .to_owned(),
+            sessions => format!("the 95 % band holds for {sessions} sessions"),
+        },
     ]
 }
 

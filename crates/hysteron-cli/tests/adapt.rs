@@ -84,6 +84,72 @@ fn every_method_prints_and_writes_what_it_learned() {
     );
 }
 
+/// A play operator whose axis a load shifts by 2 for each unit, recorded at two loads; and a
+/// recording at another one, of which nobody tells the load.
+#[test]
+fn an_unknown_load_is_found_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let play = |table: &mut String, load: f64, named: bool| {
+        let mut play = 15.0_f64;
+        for n in 0..800 {
+            let x = 50.0 - 35.0 * (f64::from(n) * 0.02).cos() * (1.0 - f64::from(n) / 2000.0);
+            let seen = x - 2.0 * load;
+            play = play.clamp(seen - 5.0, seen + 5.0);
+            let y = ((play - 40.0) / 8.0).tanh();
+            *table += &match named {
+                true => format!("{x},{y},{load}\n"),
+                false => format!("{x},{y}\n"),
+            };
+        }
+    };
+    for load in [0.0, 4.0] {
+        let mut known = String::from("x,y,load\n");
+        play(&mut known, load, true);
+        fs::write(folder.path().join(format!("at{load}.csv")), known).unwrap();
+    }
+    let mut unknown = String::from("x,y\n");
+    play(&mut unknown, 3.0, false);
+    fs::write(folder.path().join("unknown.csv"), unknown).unwrap();
+    let fit = "fit at0.csv at4.csv --input x --output y --load load --levels 20 --bootstrap 0 -o \
+               model.json";
+    let done = run(folder.path(), fit);
+    assert!(done.status.success(), "{}", text(&done.stderr));
+
+    let line = "adapt model.json unknown.csv --input x --output y --method load -o adapted.json \
+                --table table.csv";
+    let said = json(folder.path(), line);
+    let number = |name: &str| said["shift"][name].as_f64().unwrap();
+    // From the middle, 2, to 3: two units of the input, a load to a tenth of the range.
+    assert!((number("load") - 3.0).abs() < 0.4, "{said}");
+    assert!((number("shift") - 2.0).abs() < 0.8, "{said}");
+    assert_eq!(number("from"), 2.0);
+    let last = &said["thirds"][2];
+    let rmse = |of: &str| last[of]["rmse"].as_f64().unwrap();
+    assert!(rmse("adapting") < 0.5 * rmse("fixed"), "{said}");
+    let table = fs::read_to_string(folder.path().join("table.csv")).unwrap();
+    let mut lines = table.lines();
+    let head = "x,y,output_model,error,outcome,shift_model,load_model";
+    assert_eq!(lines.next().unwrap(), head);
+    let last: Vec<&str> = lines.last().unwrap().split(',').collect();
+    let of = |n: usize| last[n].parse::<f64>().unwrap();
+    assert!((of(6) - 3.0).abs() < 0.4, "{last:?}");
+    // What was written is a model at that load.
+    let judged = json(
+        folder.path(),
+        "evaluate adapted.json unknown.csv --input x --output y",
+    );
+    let judged = judged["forward"]["rmse"].as_f64().unwrap();
+    assert!((judged / said["again"]["rmse"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+
+    let done = run(
+        folder.path(),
+        &line.replace("-o adapted.json --table table.csv", "-o b.json"),
+    );
+    let words = text(&done.stdout);
+    assert!(words.contains("shift of the axis at the end"), "{words}");
+    assert!(words.contains("it tells about"), "{words}");
+}
+
 #[test]
 fn faults_are_named_and_nothing_is_written() {
     let folder = wires();
@@ -118,6 +184,14 @@ fn faults_are_named_and_nothing_is_written() {
             "replace",
         ),
         (format!("adapt after.csv after.csv {rest}"), "model"),
+        (
+            format!("adapt model.json after.csv {rest} --method load --forgetting 1"),
+            "`forgetting`",
+        ),
+        (
+            format!("adapt model.json after.csv {rest} --method load --trial 9"),
+            "`trial`",
+        ),
     ];
     for (line, word) in cases {
         let said = refused(folder.path(), &line);

@@ -46,7 +46,8 @@ impl Bench {
 
     fn fitted() -> Self {
         let bench = Self::new();
-        let done = bench.run("fit run.csv --input x --output y -o model.json");
+        let done = bench
+            .run("fit run.csv --input x --output y --levels 20 --spacing uniform -o model.json");
         assert_eq!(done.code, 0, "{}", done.err);
         bench
     }

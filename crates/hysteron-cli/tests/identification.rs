@@ -61,11 +61,13 @@ fn levels_and_smoothness_are_chosen_and_told() {
 #[test]
 fn an_open_start_is_told_and_estimated() {
     let folder = bench();
-    let line = "fit run.csv --input x --output y --bootstrap 0 -o m.json";
-    let done = run(folder.path(), line);
+    let line = "fit run.csv --input x --output y --bootstrap 0 --levels 20 -o m.json";
+    let done = run(folder.path(), &format!("{line} --start off"));
     assert!(text(&done.stderr).contains("use --start unknown"));
-    let off = json(folder.path(), line);
-    let unknown = json(folder.path(), &format!("{line} --start unknown"));
+    let off = json(folder.path(), &format!("{line} --start off"));
+    // This is what is done without options, too.
+    let unknown = json(folder.path(), line);
+    assert_eq!(unknown["fit"]["start"], "unknown");
     let percent = |value: &Value| value["nrmse_percent"].as_f64().unwrap();
     assert!(percent(&unknown["fit"]) < 0.8 * percent(&off["fit"]));
     // What was fitted from an unknown start is judged from one.

@@ -83,7 +83,7 @@ fn a_fit_prepares_when_told_to() {
     let error = |options: &str| {
         let done = run(
             folder.path(),
-            &format!("fit {COLUMNS} {options} -o model.json --json"),
+            &format!("fit {COLUMNS} --start off --robust off {options} -o model.json --json"),
         );
         assert!(done.status.success(), "{}", text(&done.stderr));
         let json: Value = serde_json::from_str(&text(&done.stdout)).unwrap();

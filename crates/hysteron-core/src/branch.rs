@@ -83,6 +83,29 @@ impl<T: Real> Position<T> {
         key(self) == key(other)
     }
 
+    /// The slope of `Σ μ γ` over the position, along the present branch.
+    pub(crate) fn slope(&self, grid: Grid<'_, T>) -> T {
+        let here = Split::of(self.x, grid.levels);
+        match self.is_rising() {
+            true => grid.slope_up(here, self.began),
+            false => grid.slope_down(self.began, here),
+        }
+    }
+
+    /// As [`Position::slope`] for relays, whose position is the index of a level: the larger one of
+    /// the steps to the next level and from the last one.
+    pub(crate) fn step_of_relays(&self, grid: Grid<'_, T>) -> T {
+        let level = |split: Split<T>| split.cell + usize::from(split.part > T::HALF);
+        let (here, began) = (level(Split::of(self.x, grid.levels)), level(self.began));
+        let step = |n: usize| match self.is_rising() {
+            true => grid.corner(n + 1, began) - grid.corner(n, began),
+            false => grid.corner(began, n) - grid.corner(began, n + 1),
+        };
+        let next = |n: usize| if n < grid.levels { step(n) } else { T::ZERO };
+        let last = here.checked_sub(1).map_or(T::ZERO, step);
+        next(here).max(last)
+    }
+
     /// Computes the outputs of another table at all turning points and at the present position.
     pub(crate) fn rebase(&mut self, turns: &mut [Turn<T>], grid: Grid<'_, T>) {
         let split = |x| Split::of(x, grid.levels);

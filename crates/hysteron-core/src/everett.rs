@@ -168,4 +168,25 @@ impl<T: Real> Grid<'_, T> {
         let [near, mid, far] = [near, mid, far].map(|index| self.table[index]);
         near + larger * (mid - near) + smaller * (far - mid)
     }
+
+    /// The slope of `e(M, m)` over `M`, on the side of larger `M`.
+    pub(crate) fn slope_up(self, max: Split<T>, min: Split<T>) -> T {
+        // Where the parts are equal, `M` moves into the triangle in which its part is the larger.
+        let q = min.cell + usize::from(max.part < min.part);
+        self.corner(max.cell + 1, q) - self.corner(max.cell, q)
+    }
+
+    /// The fall of `e(M, m)` over `m`, on the side of smaller `m`.
+    pub(crate) fn slope_down(self, max: Split<T>, min: Split<T>) -> T {
+        let p = max.cell + usize::from(min.part <= max.part);
+        self.corner(p, min.cell) - self.corner(p, min.cell + 1)
+    }
+
+    /// `C[p][q]`, which is zero for `q ≥ p`.
+    pub(crate) fn corner(self, p: usize, q: usize) -> T {
+        match q < p {
+            true => self.table[table_index(p, q)],
+            false => T::ZERO,
+        }
+    }
 }

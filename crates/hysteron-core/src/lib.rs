@@ -6,7 +6,8 @@
 //! - [`Definition`] computes it as written, in `O(K²)` per sample.
 //! - [`Model`] computes the same output in amortised `O(1)` per sample.
 //! - [`Inverse`] finds the input that gives a wanted output, exactly, in `O(log K)`.
-//! - [`Estimator`] adapts the weights while the model runs.
+//! - [`Estimator`] adapts the weights while the model runs, [`ShiftEstimator`] follows an unknown
+//!   load.
 //! - [`Stages`] stand before and after the operators: thermal body, load, spacing, creep, lag.
 //!
 //! The core does not allocate: the caller provides all memory. It has no unsafe code and does not
@@ -41,8 +42,8 @@ mod state;
 mod target;
 
 pub use adapt::{
-    Adaptation, Estimator, Gate, Learning, Method, Outcome, Verdict, estimator_len,
-    estimator_len_of_basis,
+    Adaptation, Estimator, Gate, Learning, Method, Outcome, ShiftEstimator, ShiftOptions, Verdict,
+    estimator_len, estimator_len_of_basis,
 };
 pub use branch::Turn;
 pub use definition::Definition;

@@ -2,7 +2,7 @@
 
 use crate::branch::Turn;
 use crate::error::{Error, NegativeWeights};
-use crate::everett;
+use crate::everett::{self, Grid};
 use crate::memory::Memory;
 use crate::operator::Operator;
 use crate::plane::{Clipped, Plane};
@@ -273,6 +273,41 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         S: Memory<Turn<T>>,
     {
         self.outward(state.branch_position().y)
+    }
+
+    /// The slope of the output over the input along the present branch, per unit of the input.
+    ///
+    /// It is exact: the output is piecewise linear along a branch. Between two pieces it is the slope
+    /// of the next one. It is zero beyond the plane. The output of relays is a staircase; its slope
+    /// is that from the last level or to the next one, whichever is larger.
+    ///
+    /// ```
+    /// use hysteron_core::{Model, Operator, Plane, Turn, table_len, turn_capacity};
+    /// let plane = Plane::new(1.0, 2.0, 2)?; // from 0 to 2
+    /// let model = Model::new(plane, Operator::Mkp, &[1.0, 0.0, 3.0], [0.0; table_len(2)])?;
+    /// let mut state = model.state([Turn::default(); turn_capacity(2)])?;
+    /// model.step(&mut state, 0.5)?;
+    /// assert_eq!(model.slope(&state), 1.0);
+    /// model.step(&mut state, 1.5)?;
+    /// assert_eq!(model.slope(&state), 3.0);
+    /// # Ok::<(), hysteron_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn slope<S>(&self, state: &State<T, S>) -> T
+    where
+        S: Memory<Turn<T>>,
+    {
+        if self.plane.clipped(state.input()).is_some() {
+            return T::ZERO;
+        }
+        let (table, levels) = (self.table(), self.plane.levels());
+        let (gain, _) = self.outward_line();
+        let (grid, position) = (Grid { table, levels }, state.branch_position());
+        let slope = match self.operator {
+            Operator::Mkp | Operator::Kp => position.slope(grid),
+            Operator::Relay => position.step_of_relays(grid),
+        };
+        gain * slope * self.plane.per_unit()
     }
 
     /// The Everett table, ordered by [`crate::table_index`].

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, dense, options, rng, strokes, unit_plane,
-    weights,
+    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, build, dense, options, rng, start_covariance,
+    strokes, unit_plane, weights,
 };
 use hysteron_core::{
     Adaptation, Estimator, Method, Operator, Outcome, estimator_len_of_basis, operator_count,
@@ -59,17 +59,7 @@ fn least_squares_without_forgetting_is_the_batch_solution() {
         let mut learner = Learner::new(unit_plane(K), Operator::Mkp, &offline, guards);
         // (Σ φφᵀ/r + P₀⁻¹) (θ − θ₀) = Σ φ (y − φᵀθ₀)/r
         let places: Vec<_> = operators(K).collect();
-        let start = |a: usize, b: usize| match (places.get(a), places.get(b)) {
-            _ if a == b => spread * spread,
-            (Some(&(i, j)), Some(&(k, l))) if correlation > 0.0 => {
-                let square = |p: usize, q: usize| (p.abs_diff(q) as f64 / correlation).powi(2);
-                spread * spread / (1.0 + square(i, k) + square(j, l))
-            }
-            _ => 0.0,
-        };
-        let start: Vec<Vec<f64>> = (0..=n)
-            .map(|a| (0..=n).map(|b| start(a, b)).collect())
-            .collect();
+        let start = start_covariance(K, spread, correlation);
         let unit = |k: usize| (0..=n).map(|a| f64::from(a == k)).collect();
         let mut normal: Vec<Vec<f64>> = (0..=n).map(|k| solved(start.clone(), unit(k))).collect();
         let mut right = vec![0.0; n + 1];

@@ -150,6 +150,27 @@ fn weights_memory_and_offset() {
 }
 
 #[test]
+fn no_more_memory_than_the_arrays_need() {
+    for levels in 2..20 {
+        let n = operator_count(levels);
+        // Parameters with the offset: now, off-line, good, candidate, regressor; states.
+        let common = 5 * (n + 1) + n;
+        let triangle = operator_count(n + 1);
+        assert_eq!(estimator_len(levels, GRADIENT), common);
+        assert_eq!(estimator_len(levels, INCREMENTS), common + n);
+        let matrices = 2 * triangle + 2 * (n + 1);
+        assert_eq!(estimator_len(levels, LEAST_SQUARES), common + matrices);
+        for count in 1..5 {
+            let common = 5 * (count + 1) + count * table_len(levels);
+            let matrices = 2 * operator_count(count + 1) + 2 * (count + 1);
+            let len = |method| estimator_len_of_basis(levels, method, count);
+            assert_eq!(len(GRADIENT), common);
+            assert_eq!(len(LEAST_SQUARES), common + matrices);
+        }
+    }
+}
+
+#[test]
 fn parts_and_shares() {
     let new = |method, basis: &[f64], coefficients: &[f64]| {
         let (mut model, _) = build(unit_plane(K), Operator::Mkp, &[1.0; N]);
@@ -171,10 +192,13 @@ fn parts_and_shares() {
     assert_eq!(new(GRADIENT, &[], &[]), bad("coefficients"));
     assert_eq!(new(INCREMENTS, &basis, &[1.0, 1.0]), bad("method"));
     assert_eq!(new(LEAST_SQUARES, &basis, &[1.0, 1.0]), bad("correlation"));
-    assert!(matches!(
-        new(GRADIENT, &basis, &[1.0]),
-        Err(Error::WeightCount { .. })
-    ));
+    let (expected, found) = (3 * N, 2 * N);
+    let count = Error::WeightCount { expected, found };
+    assert_eq!(new(GRADIENT, &basis, &[1.0; 3]), Err(count));
+    // Twice the sum of the weights has to be a number, as for every model.
+    let all = |share: f64| [share * (f64::MAX / (2 * N) as f64); 2];
+    assert_eq!(new(GRADIENT, &basis, &all(0.49)), Ok(()));
+    assert_eq!(new(GRADIENT, &basis, &all(0.51)), bad("coefficients"));
     let negative = [-1.0; 2 * N];
     assert!(matches!(
         new(GRADIENT, &negative, &[1.0, 1.0]),

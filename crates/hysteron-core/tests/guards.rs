@@ -5,8 +5,8 @@
 mod common;
 
 use common::{
-    GRADIENT, INCREMENTS, LEAST_SQUARES, Learner, METHODS, OPERATORS, build, dense, inputs,
-    options, rng, strokes, unit_plane, weights,
+    GRADIENT, INCREMENTS, Learner, METHODS, OPERATORS, build, dense, inputs, options, rng, strokes,
+    unit_plane, weights,
 };
 use hysteron_core::{Adaptation, Method, Operator, Outcome, operator_count};
 use rand::RngExt;
@@ -107,7 +107,7 @@ fn weights_of_zero_are_not_left_to_the_negative_side() {
 
 #[test]
 fn leakage_leads_back_to_the_offline_weights() {
-    for method in [GRADIENT, LEAST_SQUARES] {
+    for method in METHODS {
         let mut rng = rng(9);
         let k = 6;
         let plane = unit_plane(k);
@@ -120,10 +120,13 @@ fn leakage_leads_back_to_the_offline_weights() {
         };
         let mut learner = Learner::new(plane, Operator::Mkp, &offline, guards);
         let mut away = 0.0;
-        for (n, input) in strokes(&mut rng, &plane, 20_000, 40)
-            .into_iter()
-            .enumerate()
-        {
+        // An increment moves the weights that it concerns, not all.
+        let count = if method == INCREMENTS {
+            200_000
+        } else {
+            20_000
+        };
+        for (n, input) in strokes(&mut rng, &plane, count, 40).into_iter().enumerate() {
             let factor = if n < 2000 { 3.0 } else { 1.0 };
             let measured = factor * plant.step(&mut there, input).unwrap().output;
             learner.step(input, measured).unwrap();
@@ -131,7 +134,7 @@ fn leakage_leads_back_to_the_offline_weights() {
             let largest = difference.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
             if n == 1999 {
                 away = largest;
-            } else if n == 19_999 {
+            } else if n == count - 1 {
                 assert!(largest < 1e-6 * away, "{method:?}: {largest} after {away}");
             }
         }
@@ -210,6 +213,7 @@ fn frozen_it_predicts_and_does_not_learn() {
         let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &dense(&mut rng, k));
         let offline = vec![0.5; operator_count(k)];
         let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &offline, options(method));
+        assert!(!learner.estimator.is_frozen());
         learner.estimator.freeze(true);
         assert!(learner.estimator.is_frozen());
         for (n, input) in strokes(&mut rng, &unit_plane(k), 40_000, 40)
@@ -297,5 +301,68 @@ fn a_plant_in_another_unit_is_learned_in_the_same_way() {
         let learned = scaled(one.estimator.parameters());
         assert_eq!(other.estimator.parameters(), learned);
         assert_ne!(learned, scaled(&offline));
+    }
+}
+
+/// In units in which squares are numbers, the trials are the same too.
+#[test]
+fn trials_do_not_depend_on_the_unit() {
+    let (k, mut taken_back) = (4, 0);
+    // A gain near 2 follows noise, so that trials take weights back.
+    let (gain, span) = (1.9, 1.0);
+    for method in [Method::Gradient { gain }, Method::Increments { gain, span }] {
+        for unit in [2.0_f64.powi(300), 2.0_f64.powi(-300)] {
+            let mut rng = rng(92);
+            let weights = dense(&mut rng, k);
+            let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &weights);
+            let guards = Adaptation {
+                gate: 0.0,
+                trial: 40,
+                ..options(method)
+            };
+            let scaled: Vec<f64> = weights.iter().map(|w| unit * w).collect();
+            let learner =
+                |weights: &[f64]| Learner::new(unit_plane(k), Operator::Mkp, weights, guards);
+            let (mut one, mut other) = (learner(&weights), learner(&scaled));
+            for input in strokes(&mut rng, &unit_plane(k), 10_000, 20) {
+                let noise = rng.random_range(-1.0..1.0);
+                let measured = plant.step(&mut there, input).unwrap().output + noise;
+                let expected = one.step(input, measured).unwrap();
+                let found = other.step(input, unit * measured).unwrap();
+                assert_eq!(found.outcome, expected.outcome, "{method:?}");
+                taken_back += usize::from(found.outcome == Outcome::RolledBack);
+            }
+        }
+    }
+    assert!(taken_back > 10, "{taken_back}");
+}
+
+/// Errors of the size of rounding are no reason to go back.
+#[test]
+fn rounding_errors_take_nothing_back() {
+    let k = 4;
+    for method in METHODS {
+        let mut rng = rng(93);
+        let weights = dense(&mut rng, k);
+        let (plant, mut there) = build(unit_plane(k), Operator::Mkp, &weights);
+        let guards = Adaptation {
+            trial: 2,
+            gate: 0.0,
+            ..options(method)
+        };
+        // Nothing is nothing, exactly.
+        let zeros = vec![0.0; operator_count(k)];
+        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &zeros, guards);
+        for input in strokes(&mut rng, &unit_plane(k), 100, 20) {
+            let outcome = learner.step(input, 0.0).unwrap().outcome;
+            assert_ne!(outcome, Outcome::RolledBack, "{method:?}");
+        }
+        let mut learner = Learner::new(unit_plane(k), Operator::Mkp, &weights, guards);
+        for input in strokes(&mut rng, &unit_plane(k), 20_000, 20) {
+            let output = plant.step(&mut there, input).unwrap().output;
+            let measured = output * (1.0 + f64::EPSILON * rng.random_range(-4.0..4.0));
+            let outcome = learner.step(input, measured).unwrap().outcome;
+            assert_ne!(outcome, Outcome::RolledBack, "{method:?}");
+        }
     }
 }

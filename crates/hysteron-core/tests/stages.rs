@@ -5,158 +5,14 @@
 
 mod common;
 
+use common::stages::{Constants, Owned};
 use common::{OPERATORS, build, build_f32, inputs, levels, plane, rng, weights};
 use hysteron_core::{
-    Axis, Body, Creep, Definition, Direction, Error, Load, Model, Operator, Plane, Real, Sample,
-    StageState, Stages, Status, Target, Turn, Wanted, mix, table_len, turn_capacity,
+    Axis, Body, Creep, Definition, Direction, Error, Load, MAX_CREEP, Model, Operator, Plane, Real,
+    Sample, StageState, Stages, Status, Target, Turn, Wanted, mix, table_len, turn_capacity,
 };
 use rand::RngExt;
 use rand::rngs::StdRng;
-
-/// Random constants of all stages. Each is there in half of the cases.
-#[derive(Debug, Clone)]
-struct Constants {
-    body: Option<[f64; 4]>,
-    loads: Vec<f64>,
-    shifts: Vec<f64>,
-    scales: Vec<f64>,
-    gains: Vec<f64>,
-    offsets: Vec<f64>,
-    spacing: Vec<f64>,
-    coefficients: Vec<f64>,
-    taus: Vec<f64>,
-    lag: f64,
-    offset: f64,
-    falling: bool,
-}
-
-fn ascending(rng: &mut StdRng, count: usize, from: f64, span: f64) -> Vec<f64> {
-    let steps: Vec<f64> = (0..count).map(|_| rng.random_range(0.2..1.0)).collect();
-    let total: f64 = steps.iter().sum();
-    let mut at = from;
-    let knot = |step: &f64| {
-        at += span * step / total;
-        at
-    };
-    steps.iter().map(knot).collect()
-}
-
-impl Constants {
-    fn random(rng: &mut StdRng, plane: &Plane<f64>) -> Self {
-        let span = plane.max() - plane.bottom();
-        let count = if rng.random() {
-            rng.random_range(1..5)
-        } else {
-            0
-        };
-        let creeps = if rng.random() {
-            rng.random_range(1..=4)
-        } else {
-            0
-        };
-        let mut numbers = |count: usize, low: f64, high: f64| -> Vec<f64> {
-            (0..count).map(|_| rng.random_range(low..high)).collect()
-        };
-        let shifts = numbers(count, -0.2 * span, 0.2 * span);
-        let scales = numbers(count, 0.7, 1.4);
-        let gains = numbers(count, 0.3, 3.0);
-        let offsets = numbers(count, -4.0, 4.0);
-        let coefficients = numbers(creeps, 0.0, 0.2);
-        let taus = numbers(creeps, 0.05, 20.0);
-        let body = numbers(4, 0.3, 3.0);
-        let offset = numbers(1, -5.0, 5.0)[0];
-        let lag = numbers(1, 0.01, 1.0)[0];
-        let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
-        let corners = plane.levels() + 1;
-        Self {
-            body: rng
-                .random::<bool>()
-                .then(|| [plane.bottom(), span * body[1], body[2], body[3]]),
-            loads: ascending(rng, count, -3.0, 10.0),
-            shifts,
-            scales: if scaled { scales } else { Vec::new() },
-            gains: if gained { gains } else { Vec::new() },
-            offsets: if gained { offsets } else { Vec::new() },
-            spacing: match spaced {
-                true => ascending(rng, corners, plane.bottom(), span),
-                false => Vec::new(),
-            },
-            coefficients,
-            taus,
-            lag: if rng.random() { lag } else { 0.0 },
-            offset,
-            falling: rng.random(),
-        }
-    }
-
-    fn map<T: Real>(&self, number: impl Fn(f64) -> T) -> Owned<T> {
-        let all = |values: &[f64]| values.iter().map(|v| number(*v)).collect();
-        Owned {
-            body: self
-                .body
-                .map(|[ambient, gain, tau_heating, tau_cooling]| Body {
-                    ambient: number(ambient),
-                    gain: number(gain),
-                    tau_heating: number(tau_heating),
-                    tau_cooling: number(tau_cooling),
-                }),
-            lists: [
-                &self.loads,
-                &self.shifts,
-                &self.scales,
-                &self.gains,
-                &self.offsets,
-                &self.spacing,
-                &self.coefficients,
-                &self.taus,
-            ]
-            .map(|list| all(list)),
-            lag: number(self.lag),
-            offset: number(self.offset),
-            falling: self.falling,
-        }
-    }
-}
-
-struct Owned<T> {
-    body: Option<Body<T>>,
-    lists: [Vec<T>; 8],
-    lag: T,
-    offset: T,
-    falling: bool,
-}
-
-impl<T: Real> Owned<T> {
-    fn stages(&self) -> Stages<'_, T> {
-        let [
-            loads,
-            shifts,
-            scales,
-            gains,
-            offsets,
-            spacing,
-            coefficients,
-            taus,
-        ] = &self.lists;
-        Stages {
-            body: self.body,
-            axis: Axis {
-                load: Load {
-                    loads,
-                    shifts,
-                    scales,
-                    gains,
-                    offsets,
-                },
-                spacing,
-            },
-            creep: Creep { coefficients, taus },
-            lag: self.lag,
-            offset: self.offset,
-            falling: self.falling,
-        }
-    }
-}
 
 /// The value at `x` of the line through the knots, by search from the left.
 fn line(xs: &[f64], ys: &[f64], x: f64) -> f64 {
@@ -551,6 +407,7 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     ];
     let inverse = model.inverse().unwrap();
     for (sample, error) in bad {
+        assert_eq!(stages.accepts(&memory, sample), Err(error));
         assert_eq!(
             stages.step(&model, &mut state, &mut memory, sample),
             Err(error)
@@ -575,154 +432,299 @@ fn what_cannot_be_is_refused_and_moves_nothing() {
     let refused = stages.invert(&inverse, &mut state, &mut memory, wanted);
     assert_eq!(refused, Err(Error::Stage { stage: "drive" }));
 
-    let wrong = |stages: Stages<'_, f64>, stage| {
-        assert_eq!(stages.check(&model), Err(Error::Stage { stage }));
+    assert_eq!(stages.accepts(&memory, good), Ok(()));
+    // Before the first sample there is no time to know.
+    let first = Sample { dt: None, ..good };
+    assert_eq!(stages.accepts(&StageState::default(), first), Ok(()));
+    for drive in [(0.0, f64::NAN), (f64::NAN, 1.0)] {
+        let refused = stages.invert(
+            &inverse,
+            &mut state,
+            &mut memory,
+            Wanted { drive, ..wanted },
+        );
+        assert_eq!(refused, Err(Error::Stage { stage: "drive" }));
+    }
+}
+
+/// Values that a constant above zero, or from zero on, must not have.
+const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+const NEGATIVE: [f64; 4] = [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+const NO_NUMBER: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+#[test]
+fn constants_out_of_range_are_refused_by_name() {
+    let plane = Plane::new(1.0, 2.0, 2).unwrap();
+    let model = Model::new(plane, Operator::Mkp, &[1.0; 3], [0.0; table_len(2)]).unwrap();
+    let body = Body {
+        ambient: 0.0,
+        gain: 1.0,
+        tau_heating: 1.0,
+        tau_cooling: 2.0,
     };
-    for (stage, body) in [
-        ("gain", Body { gain: 0.0, ..body }),
-        (
-            "ambient",
-            Body {
-                ambient: f64::NAN,
-                ..body
-            },
-        ),
-        (
-            "tau_heating",
-            Body {
-                tau_heating: -1.0,
-                ..body
-            },
-        ),
-        (
-            "tau_cooling",
-            Body {
-                tau_cooling: f64::INFINITY,
-                ..body
-            },
-        ),
-    ] {
+    let load = Load {
+        loads: &[1.0, 2.0],
+        shifts: &[0.0, 0.5],
+        scales: &[1.0, 2.0],
+        gains: &[1.0, 2.0],
+        offsets: &[0.0, -1.0],
+    };
+    let axis = Axis {
+        load,
+        spacing: &[0.0, 1.0, 3.0],
+    };
+    let creep = Creep {
+        coefficients: &[0.1, 0.0],
+        taus: &[1.0, 2.0],
+    };
+    let stages = Stages {
+        body: Some(body),
+        axis,
+        creep,
+        lag: 0.5,
+        offset: -1.0,
+        falling: true,
+    };
+    assert_eq!(stages.check(&model), Ok(()));
+    let wrong = |stage: &'static str, changed: Stages<'_, f64>| {
+        assert_eq!(
+            changed.check(&model),
+            Err(Error::Stage { stage }),
+            "{changed:?}"
+        );
+    };
+    let of_body = |stage: &'static str, body: Body<f64>| {
         wrong(
+            stage,
             Stages {
                 body: Some(body),
                 ..stages
             },
+        )
+    };
+    let of_load = |stage: &'static str, load: Load<'_, f64>| {
+        wrong(
             stage,
+            Stages {
+                axis: Axis { load, ..axis },
+                ..stages
+            },
+        )
+    };
+    let of_creep = |creep: Creep<'_, f64>| wrong("creep", Stages { creep, ..stages });
+    for value in NOT_POSITIVE {
+        of_body(
+            "gain",
+            Body {
+                gain: value,
+                ..body
+            },
+        );
+        of_body(
+            "tau_heating",
+            Body {
+                tau_heating: value,
+                ..body
+            },
+        );
+        of_body(
+            "tau_cooling",
+            Body {
+                tau_cooling: value,
+                ..body
+            },
+        );
+        of_load(
+            "scales",
+            Load {
+                scales: &[1.0, value],
+                ..load
+            },
+        );
+        of_load(
+            "gains",
+            Load {
+                gains: &[value, 1.0],
+                ..load
+            },
+        );
+        of_creep(Creep {
+            taus: &[1.0, value],
+            ..creep
+        });
+    }
+    for value in NEGATIVE {
+        of_creep(Creep {
+            coefficients: &[value, 0.1],
+            ..creep
+        });
+        wrong(
+            "lag",
+            Stages {
+                lag: value,
+                ..stages
+            },
         );
     }
-    let axis = stages.axis;
-    wrong(
-        Stages {
-            axis: Axis {
-                load: Load {
-                    loads: &[2.0, 1.0],
-                    ..axis.load
-                },
-                ..axis
+    for value in NO_NUMBER {
+        of_body(
+            "ambient",
+            Body {
+                ambient: value,
+                ..body
             },
-            ..stages
-        },
+        );
+        of_load(
+            "loads",
+            Load {
+                loads: &[value, 2.0],
+                ..load
+            },
+        );
+        of_load(
+            "loads",
+            Load {
+                loads: &[1.0, value],
+                ..load
+            },
+        );
+        of_load(
+            "shifts",
+            Load {
+                shifts: &[value, 0.0],
+                ..load
+            },
+        );
+        of_load(
+            "offsets",
+            Load {
+                offsets: &[0.0, value],
+                ..load
+            },
+        );
+        wrong(
+            "offset",
+            Stages {
+                offset: value,
+                ..stages
+            },
+        );
+        for spacing in [[value, 1.0, 3.0], [0.0, value, 3.0], [0.0, 1.0, value]] {
+            wrong(
+                "spacing",
+                Stages {
+                    axis: Axis {
+                        spacing: &spacing,
+                        ..axis
+                    },
+                    ..stages
+                },
+            );
+        }
+    }
+    of_load(
         "loads",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                load: Load {
-                    shifts: &[2.0],
-                    ..axis.load
-                },
-                ..axis
-            },
-            ..stages
+        Load {
+            loads: &[2.0, 1.0],
+            ..load
         },
+    );
+    of_load(
+        "loads",
+        Load {
+            loads: &[1.0, 1.0],
+            ..load
+        },
+    );
+    for values in [&[1.0][..], &[1.0, 2.0, 3.0]] {
+        of_load(
+            "shifts",
+            Load {
+                shifts: values,
+                ..load
+            },
+        );
+        of_load(
+            "scales",
+            Load {
+                scales: values,
+                ..load
+            },
+        );
+        of_load(
+            "gains",
+            Load {
+                gains: values,
+                ..load
+            },
+        );
+        of_load(
+            "offsets",
+            Load {
+                offsets: values,
+                ..load
+            },
+        );
+        of_creep(Creep {
+            taus: values,
+            ..creep
+        });
+    }
+    of_creep(Creep {
+        coefficients: &[0.1; MAX_CREEP + 1],
+        taus: &[1.0; MAX_CREEP + 1],
+    });
+    // Corners need to be several rounding units apart, where they are far from zero too.
+    let ulp = f64::EPSILON;
+    for (spacing, fine) in [
+        (&[0.0, 1.0][..], false),
+        (&[0.0, 1.0, 2.0, 3.0], false),
+        (&[0.0, 2.0, 1.0], false),
+        (&[0.0, 1.0, 1.0], false),
+        (&[0.0, 0.0, 1.0], false),
+        (&[0.0, 1.0, 1.0 + 2.0 * ulp], false),
+        (&[0.0, 1.0, 1.0 + 8.0 * ulp], true),
+        (&[-1.0 - 2.0 * ulp, -1.0, 0.0], false),
+        (&[-1.0 - 8.0 * ulp, -1.0, 0.0], true),
+        (&[1e-300, 2e-300, 3e-300], true),
+    ] {
+        let stages = Stages {
+            axis: Axis { spacing, ..axis },
+            ..stages
+        };
+        assert_eq!(stages.check(&model).is_ok(), fine, "{spacing:?}");
+    }
+    // A curve is empty, or as long as the loads.
+    for load in [
+        Load {
+            shifts: &[],
+            ..load
+        },
+        Load {
+            scales: &[],
+            ..load
+        },
+        Load {
+            gains: &[],
+            offsets: &[],
+            ..load
+        },
+        Load::NONE,
+    ] {
+        assert_eq!(
+            Stages {
+                axis: Axis { load, ..axis },
+                ..stages
+            }
+            .check(&model),
+            Ok(())
+        );
+    }
+    of_load(
         "shifts",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                load: Load {
-                    scales: &[1.0, 0.0],
-                    ..axis.load
-                },
-                ..axis
-            },
-            ..stages
+        Load {
+            shifts: &[1.0],
+            ..Load::NONE
         },
-        "scales",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                spacing: &[0.0, 2.0, 1.0],
-                ..axis
-            },
-            ..stages
-        },
-        "spacing",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                spacing: &[0.0, 2.0],
-                ..axis
-            },
-            ..stages
-        },
-        "spacing",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                load: Load {
-                    gains: &[1.0, -1.0],
-                    ..axis.load
-                },
-                ..axis
-            },
-            ..stages
-        },
-        "gains",
-    );
-    wrong(
-        Stages {
-            axis: Axis {
-                load: Load {
-                    offsets: &[1.0],
-                    ..axis.load
-                },
-                ..axis
-            },
-            ..stages
-        },
-        "offsets",
-    );
-    let creep = Creep {
-        coefficients: &[0.1],
-        taus: &[0.0],
-    };
-    wrong(Stages { creep, ..stages }, "creep");
-    wrong(
-        Stages {
-            creep: Creep {
-                coefficients: &[-0.1],
-                taus: &[1.0],
-            },
-            ..stages
-        },
-        "creep",
-    );
-    wrong(
-        Stages {
-            lag: f64::NAN,
-            ..stages
-        },
-        "lag",
-    );
-    wrong(
-        Stages {
-            offset: f64::INFINITY,
-            ..stages
-        },
-        "offset",
     );
 }

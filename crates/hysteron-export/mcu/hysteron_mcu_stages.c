@@ -1,15 +1,11 @@
 /* The forward step of an actuator with stages, and its state. */
 #include "hysteron_mcu_stages_internal.h"
 
-int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
-                       size_t count)
+static int begin(const hys_actuator *actuator, hys_actuator_state *state, const hys_model *model,
+                 hys_turn *turns, size_t count)
 {
     size_t k;
-    int code;
-    if (actuator == NULL || state == NULL) {
-        return HYS_NULL;
-    }
-    code = hys_start(actuator->operators, &state->operators, turns, count);
+    int code = hys_start(model, &state->operators, turns, count);
     if (code == HYS_OK && actuator->start != NULL) {
         code = hys_restore(&state->operators, actuator->start, actuator->start_count,
                            actuator->start_input);
@@ -27,21 +23,88 @@ int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, 
     return HYS_OK;
 }
 
-/* The temperature after a sample time in which `drive` was held. It moves towards its value at rest
- * and never beyond it, so one time constant holds for all of the sample time. */
-static hys_real heated(const hys_actuator_state *state, hys_real drive)
+int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
+                       size_t count)
 {
-    const hys_actuator *actuator = state->actuator;
-    hys_real rest, factor;
-    if (!actuator->body) {
-        return drive;
+    if (actuator == NULL || state == NULL) {
+        return HYS_NULL;
     }
-    rest = actuator->ambient + actuator->gain * drive;
-    if (!state->started) {
-        return rest;
+    if (actuator->parts != NULL) {
+        return HYS_MEMORY_TOO_SMALL;
     }
-    factor = rest > state->temperature ? actuator->heating : actuator->cooling;
-    return rest + (state->temperature - rest) * factor;
+    state->mixed = NULL;
+    return begin(actuator, state, actuator->operators, turns, count);
+}
+
+/* The values of the Bernstein polynomials at s in [0, 1], by de Casteljau's algorithm. */
+static void bernstein(hys_real s, size_t count, hys_real *values)
+{
+    size_t n, k;
+    values[0] = ONE;
+    for (n = 1u; n < count; n++) { /* at most HYS_MOST_PARTS iterations, as the next loop */
+        values[n] = s * values[n - 1u];
+        for (k = n - 1u; k > 0u; k--) {
+            values[k] = s * values[k - 1u] + (ONE - s) * values[k];
+        }
+        values[0] = (ONE - s) * values[0];
+    }
+}
+
+/* The model at a load: its table is the sum of those of the parts, entry by entry. */
+static void mix(const hys_parts *parts, hys_mixed *mixed, hys_real load)
+{
+    hys_model *model = &mixed->model;
+    size_t entries = table_index(model->levels + 1u, 0u), n, k;
+    hys_real factors[HYS_MOST_PARTS];
+    bernstein(hys_clamp((load - parts->min) / (parts->max - parts->min), ZERO, ONE), parts->count,
+              factors);
+    for (n = 0u; n < entries; n++) { /* (K + 1)(K + 2)/2 iterations */
+        hys_real entry = ZERO;
+        for (k = 0u; k < parts->count; k++) { /* at most HYS_MOST_PARTS iterations */
+            entry = entry + factors[k] * parts->tables[k * entries + n];
+        }
+        mixed->table[n] = entry;
+    }
+    model->total = mixed->table[table_index(model->levels, 0u)];
+    model->rounding = (hys_real)4 * HYS_EPSILON * model->total;
+    mixed->offset = ZERO;
+    for (k = 0u; k < parts->count; k++) {
+        mixed->offset = mixed->offset + factors[k] * parts->offsets[k];
+    }
+    mixed->load = load;
+}
+
+/* The same for a state, whose operators stay as they are. */
+static int mix_state(hys_mixed *mixed, const hys_parts *parts, hys_state *operators, hys_real load)
+{
+    if (!is_finite(load)) {
+        return HYS_LOAD;
+    }
+    mix(parts, mixed, load);
+    return hys_rebase(operators);
+}
+
+int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *state,
+                             hys_turn *turns, size_t count, hys_mixed *mixed, hys_real *table,
+                             size_t entries)
+{
+    if (actuator == NULL || state == NULL) {
+        return HYS_NULL;
+    }
+    if (actuator->parts == NULL) {
+        return hys_actuator_start(actuator, state, turns, count);
+    }
+    if (mixed == NULL || table == NULL
+        || entries < table_index(actuator->operators->levels + 1u, 0u)) {
+        return HYS_MEMORY_TOO_SMALL;
+    }
+    mixed->model = *actuator->operators;
+    mixed->model.table = table;
+    mixed->table = table;
+    mixed->place = mix_state;
+    mix(actuator->parts, mixed, actuator->parts->min);
+    state->mixed = mixed;
+    return begin(actuator, state, &mixed->model, turns, count);
 }
 
 /* Creep and lag of the operators' sum. */
@@ -82,6 +145,9 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
     }
     code = curves_at(actuator, load, &at);
     if (code == HYS_OK) {
+        code = place(state, load);
+    }
+    if (code == HYS_OK) {
         code = hys_step(&state->operators, seen_at(actuator, &at, temperature), &sum);
     }
     if (code != HYS_OK) {
@@ -90,7 +156,7 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
     sum = settled(state, at.gain * sum);
     state->started = 1;
     state->temperature = temperature;
-    *output = at.offset + (actuator->falls ? actuator->offset - sum : actuator->offset + sum);
+    *output = at.offset + (actuator->falls ? offset_of(state) - sum : offset_of(state) + sum);
     return HYS_OK;
 }
 

@@ -14,16 +14,20 @@
  *   hys_actuator_step          two bisections, of at most log2(n) + 1 and log2(K) + 2 halvings for
  *                              each curve and the spacing, then one hys_step
  *   hys_actuator_inverse_step  one hys_inverse_step, these bisections, one hys_actuator_step
- *   hys_actuator_start         one hys_step for each turning point of the model's start */
+ *   hys_actuator_start         one hys_step for each turning point of the model's start
+ * Where weights depend on the load, a step at another load than the one before first makes the table
+ * of that load: n products for each of its (K + 1)(K + 2)/2 entries, for n parts; then one
+ * hys_rebase. */
 #ifndef HYSTERON_MCU_STAGES_H
 #define HYSTERON_MCU_STAGES_H
 
 #include "hysteron_mcu.h"
 
 /* Layout of hys_actuator. Models that were exported for another layout do not compile. */
-#define HYS_STAGES_LAYOUT 1
+#define HYS_STAGES_LAYOUT 2
 
 #define HYS_MOST_CREEP 4
+#define HYS_MOST_PARTS 8
 
 /* Numbers that hys_actuator_save writes. */
 #define HYS_STAGE_NUMBERS (HYS_MOST_CREEP + 3)
@@ -39,6 +43,26 @@ enum { HYS_LOAD = 13 };
  * as it can. */
 enum { HYS_LIMITED = 3 };
 
+/* Weights that depend on the load: sums of parts, whose factors are the Bernstein polynomials of
+ * the load. */
+typedef struct {
+    const hys_real *tables;      /* Everett tables of the parts, one after the other */
+    const hys_real *offsets;     /* output of each part where its sum is zero */
+    size_t count;                /* number of parts */
+    hys_real min, max;           /* the range of the loads */
+} hys_parts;
+
+/* The operators at one load. It is the caller's memory; only these functions may use its members.
+ * The function is called through a pointer, so that programs without such a model do not hold it.
+ */
+typedef struct hys_mixed {
+    hys_model model;
+    hys_real *table;
+    int (*place)(struct hys_mixed *mixed, const hys_parts *parts, hys_state *operators,
+                 hys_real load);
+    hys_real load, offset;
+} hys_mixed;
+
 /* An actuator. Written by `hysteron export c`; do not change it. A pointer is null where there is
  * no such stage. */
 typedef struct {
@@ -47,6 +71,7 @@ typedef struct {
     const hys_real *shifts, *scales, *gains, *offsets; /* the curves at these loads */
     const hys_real *spacing;     /* the K + 1 corners of the grid, ascending */
     const hys_real *start;       /* turning points that the model starts with */
+    const hys_parts *parts;      /* weights that depend on the load */
     size_t load_count, start_count, creep_count;
     hys_real start_input;        /* the operators' input at the start */
     hys_real steepest;           /* steepest slope of the spacing; 1 without one */
@@ -67,14 +92,22 @@ typedef struct {
 typedef struct {
     hys_state operators;
     const hys_actuator *actuator;
+    hys_mixed *mixed;            /* null where the weights do not depend on the load */
     int started;                 /* 0 before the first sample: body, creep and lag are at rest */
     hys_real temperature;        /* after the last sample; the input itself without a body */
     hys_real crept[HYS_MOST_CREEP], lagged;
 } hys_actuator_state;
 
-/* Starts a state where the model starts. Arguments and errors as for hys_start. */
+/* Starts a state where the model starts. Arguments and errors as for hys_start. A model whose
+ * weights depend on the load needs hys_actuator_start_mixed: HYS_MEMORY_TOO_SMALL. */
 int hys_actuator_start(const hys_actuator *actuator, hys_actuator_state *state, hys_turn *turns,
                        size_t count);
+
+/* The same for any model. The state uses `mixed` and the `entries` elements of `table`, at least
+ * (K + 1)(K + 2)/2 (NAME_TABLE), from now on, if its weights depend on the load. */
+int hys_actuator_start_mixed(const hys_actuator *actuator, hys_actuator_state *state,
+                             hys_turn *turns, size_t count, hys_mixed *mixed, hys_real *table,
+                             size_t entries);
 
 /* Moves by one sample time, in which `drive` was held, and writes the output at its end. At the
  * first sample body, creep and lag are at rest. A load beyond the outermost ones acts as the

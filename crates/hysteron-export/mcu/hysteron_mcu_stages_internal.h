@@ -5,6 +5,10 @@
 #include "hysteron_mcu_internal.h"
 #include "hysteron_mcu_stages.h"
 
+/* The distance from one to the next larger number. */
+#define HYS_EPSILON \
+    (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON)
+
 /* The values of all curves at one load. */
 typedef struct {
     hys_real scale, shift, gain, offset;
@@ -16,6 +20,22 @@ static inline int usable_actuator(const hys_actuator_state *state)
         return HYS_NULL;
     }
     return state->actuator == NULL ? HYS_STATE_MISMATCH : usable_state(&state->operators);
+}
+
+/* Brings the operators to a load, where their weights depend on it. They stay as they are. */
+static inline int place(hys_actuator_state *state, hys_real load)
+{
+    hys_mixed *mixed = state->mixed;
+    if (mixed == NULL || load == mixed->load) {
+        return HYS_OK;
+    }
+    return mixed->place(mixed, state->actuator->parts, &state->operators, load);
+}
+
+/* The output where the operators' sum is zero. */
+static inline hys_real offset_of(const hys_actuator_state *state)
+{
+    return state->mixed == NULL ? state->actuator->offset : state->mixed->offset;
 }
 
 /* The linear piece for x: between knots k and k + 1. Beyond the ends it is the outermost one. */
@@ -81,6 +101,23 @@ static inline int curves_at(const hys_actuator *actuator, hys_real load, loaded_
     at->gain = curve(actuator, actuator->gains, ONE, load);
     at->offset = curve(actuator, actuator->offsets, ZERO, load);
     return HYS_OK;
+}
+
+/* The temperature after a sample time in which `drive` was held. It moves towards its value at rest
+ * and never beyond it, so one time constant holds for all of the sample time. */
+static inline hys_real heated(const hys_actuator_state *state, hys_real drive)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real rest, factor;
+    if (!actuator->body) {
+        return drive;
+    }
+    rest = actuator->ambient + actuator->gain * drive;
+    if (!state->started) {
+        return rest;
+    }
+    factor = rest > state->temperature ? actuator->heating : actuator->cooling;
+    return rest + (state->temperature - rest) * factor;
 }
 
 /* The operators' input at a temperature. */

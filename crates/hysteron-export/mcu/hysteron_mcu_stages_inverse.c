@@ -2,19 +2,17 @@
  * the last to the first. Applications that only run models forward do not need this file. */
 #include "hysteron_mcu_stages_internal.h"
 
-/* Eight times the distance from one to the next larger number. */
-static const hys_real EIGHT_EPSILON =
-    (hys_real)8
-    * (sizeof(hys_real) == sizeof(double) ? (hys_real)DBL_EPSILON : (hys_real)FLT_EPSILON);
+static const hys_real EIGHT_EPSILON = (hys_real)8 * HYS_EPSILON;
 
 static hys_real magnitude(hys_real x)
 {
     return hys_max(x, -x);
 }
 
-static hys_real inward(const hys_actuator *actuator, hys_real output)
+static hys_real inward(const hys_actuator_state *state, hys_real output)
 {
-    return actuator->falls ? actuator->offset - output : output - actuator->offset;
+    hys_real offset = offset_of(state);
+    return state->actuator->falls ? offset - output : output - offset;
 }
 
 /* The operators' sum that gives an output in this sample, and the gain from that sum to the
@@ -36,7 +34,7 @@ static hys_real aim_at(const hys_actuator_state *state, const loaded_axis *at, h
         rise = rise * rest;
     }
     *gain = rise * at->gain;
-    return (inward(actuator, output - at->offset) - base) / *gain;
+    return (inward(state, output - at->offset) - base) / *gain;
 }
 
 /* The operators' input for a sum. hys_inverse_step goes there, and everything goes back to where it
@@ -99,23 +97,6 @@ static hys_real slack_of(const hys_actuator *actuator, const loaded_axis *at, hy
     return EIGHT_EPSILON * (effective * actuator->steepest + ends);
 }
 
-/* A relay switches at its level and not an ulp before it. */
-static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
-                       hys_real temperature)
-{
-    const hys_actuator *actuator = state->actuator;
-    int rising = input > state->operators.input, n;
-    for (n = 0; n < 4; n++) {
-        hys_real seen = seen_at(actuator, at, temperature), nudge;
-        if (seen == input || (seen > input) == rising) {
-            break;
-        }
-        nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, magnitude(temperature)));
-        temperature = rising ? temperature + nudge : temperature - nudge;
-    }
-    return temperature;
-}
-
 static hys_real within_range(const hys_actuator *actuator, hys_real drive)
 {
     return actuator->limited ? hys_clamp(drive, actuator->drive_min, actuator->drive_max) : drive;
@@ -148,14 +129,53 @@ static hys_real drive_for(const hys_actuator_state *state, hys_real temperature)
     return is_finite(drive) ? drive : holding(actuator, now);
 }
 
+/* The drive for an input of the operators, and the size of the numbers that it comes from. */
+static hys_real drive_to(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
+                         hys_real *size)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real temperature = temperature_at(actuator, at, input);
+    hys_real drive = drive_for(state, temperature);
+    *size = magnitude(temperature);
+    if (actuator->body) {
+        *size = *size + (magnitude(actuator->ambient) + magnitude(actuator->gain * drive));
+    }
+    return drive;
+}
+
+/* The drive at which a relay switches: at its level and not an ulp before it. One that has just
+ * switched switches back where the input turns by an ulp: a branch that stays goes on. */
+static hys_real nudged(const hys_actuator_state *state, const loaded_axis *at, hys_real input,
+                       hys_real drive, hys_real *size)
+{
+    const hys_actuator *actuator = state->actuator;
+    hys_real aim = input, last = state->operators.input;
+    int rising = input > last, n;
+    if (input == last) {
+        rising = is_rising(&state->operators) && state->operators.x > ZERO;
+    }
+    for (n = 0; n < 4; n++) {
+        hys_real seen = seen_at(actuator, at, heated(state, drive)), nudge;
+        if (seen == input || (seen > input) == rising) {
+            break;
+        }
+        /* In the unit of the operators' input, which need not be that of the temperature. */
+        nudge = hys_max(actuator->operators->nudge, slack_of(actuator, at, *size));
+        aim = rising ? aim + nudge : aim - nudge;
+        drive = drive_to(state, at, aim, size);
+    }
+    return drive;
+}
+
 /* Whether a target lies beyond the outputs at rest. */
-static int reach_of(const hys_actuator *actuator, const loaded_axis *at, hys_real target,
+static int reach_of(const hys_actuator_state *state, const loaded_axis *at, hys_real target,
                     hys_real tolerance)
 {
-    const hys_model *model = actuator->operators;
+    const hys_actuator *actuator = state->actuator;
+    const hys_model *model = state->operators.model;
     hys_real gain = at->gain * actuator->creep_gain;
     hys_real reach = hys_max(tolerance, gain * model->rounding);
-    hys_real sum = inward(actuator, target - at->offset);
+    hys_real sum = inward(state, target - at->offset);
     if (sum > gain * own_sum(model, model->total) + reach) {
         return actuator->falls ? HYS_LOW : HYS_HIGH;
     }
@@ -171,7 +191,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_actuator *actuator;
     const hys_model *model;
     loaded_axis at;
-    hys_real aim, gain, input, temperature, to, size, slack, reached, error, rounding, offsets;
+    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
     if (code != HYS_OK) {
@@ -184,7 +204,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         return HYS_VALUE;
     }
     actuator = state->actuator;
-    model = actuator->operators;
+    model = state->operators.model;
     if (!model->inverse) {
         return HYS_NEGATIVE_WEIGHTS;
     }
@@ -192,6 +212,9 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         return HYS_INPUT_NOT_FINITE;
     }
     code = curves_at(actuator, load, &at);
+    if (code == HYS_OK) {
+        code = place(state, load);
+    }
     if (code != HYS_OK) {
         return code;
     }
@@ -206,13 +229,10 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
         /* A lag that cannot move in a sample: stay. */
         input = hys_clamp(state->operators.input, model->bottom, model->max);
     }
-    temperature = temperature_at(actuator, &at, input);
+    to = drive_to(state, &at, input, &size);
     if (model->kind == RELAY) {
-        temperature = nudged(state, &at, input, temperature);
+        to = nudged(state, &at, input, to, &size);
     }
-    to = drive_for(state, temperature);
-    size = magnitude(temperature)
-        + (actuator->body ? magnitude(actuator->ambient) + magnitude(actuator->gain * to) : ZERO);
     slack = slack_of(actuator, &at, size);
     code = hys_actuator_step(state, to, load, &reached);
     if (code != HYS_OK) {
@@ -221,11 +241,11 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     gain = at.gain * actuator->creep_gain;
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
-    offsets = magnitude(actuator->offset) + magnitude(at.offset) + magnitude(target);
+    offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target);
     if (error <= hys_max(tolerance, ZERO) + rounding + EIGHT_EPSILON * offsets) {
         found = HYS_REACHED;
     } else {
-        int beyond = reach_of(actuator, &at, target, tolerance);
+        int beyond = reach_of(state, &at, target, tolerance);
         found = beyond != HYS_REACHED ? beyond : found == HYS_PASSED ? HYS_PASSED : HYS_LIMITED;
     }
     *drive = to;

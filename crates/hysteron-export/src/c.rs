@@ -178,8 +178,8 @@ impl CWorstCase {
 /// keeps them.
 ///
 /// # Errors
-/// [`Error::Export`] for a model that depends on time, or whose weights depend on a load, or that
-/// does not fit the number type; for a name that cannot be one in C; for files in the folder that
+/// [`Error::Export`] for a model that depends on time, or has weights of more than the seventh order
+/// in a load, or does not fit the number type; for a name that cannot be one in C; for files in the folder that
 /// are of the other number type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
@@ -196,7 +196,8 @@ pub fn c<'a>(
 /// `hysteron_mcu_stages_inverse.c`. The C then gives the digits of
 /// [`hysteron_core::Stages::step_at`] and [`hysteron_core::Stages::invert_at`] in the same number
 /// type. The factors of the sample time are constants, so it needs no library either. The load is an
-/// argument of each step.
+/// argument of each step. Where the weights depend on it, a state has memory for the table of one
+/// load, which [`hysteron_core::mix`] makes of the parts' tables here and there.
 ///
 /// ```
 /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign};

@@ -7,9 +7,10 @@ use common::programs::{has, links, run, skip};
 use common::reference::Number;
 use common::staged::{Call, Case, calls, case, script};
 use common::{Exported, REALS, answers, same, walks};
-use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
+use hysteron::{FirstOrder, Model, Operator, Plane, Sample, Sign, Target, Wanted};
 use hysteron_core::operator_count;
 use hysteron_export::{COptions, CReal, CSampling, c, c_sampled};
+use rand::RngExt;
 use std::path::Path;
 use std::process::Command;
 
@@ -74,6 +75,16 @@ fn random_stages_have_the_same_digits() {
     }
     for seed in 0..6 {
         let zoo = zoo(seed);
+        let parts = |case: &&Case| {
+            case.model
+                .load
+                .as_ref()
+                .is_some_and(|l| l.parts().len() > 1)
+        };
+        assert!(
+            zoo.iter().filter(parts).count() >= 3,
+            "weights over the load"
+        );
         let cases = fuzz(&zoo, 100 + seed, 3000);
         for real in REALS {
             let exported = exported(&zoo, real);
@@ -128,7 +139,7 @@ fn the_stages_need_no_library() {
     if !has("cc") || !has("nm") {
         return;
     }
-    let case = every();
+    let case = weighted();
     for real in REALS {
         let exported = exported(std::slice::from_ref(&case), real);
         for level in ["-O0", "-O2", "-Os", "-O3"] {
@@ -167,13 +178,22 @@ fn memory_is_what_is_told() {
     if !has(ARM) {
         return;
     }
-    let case = every();
-    for real in REALS {
+    for (case, real) in [every(), weighted()]
+        .iter()
+        .flat_map(|case| REALS.map(|real| (case, real)))
+    {
         let folder = tempfile::tempdir().unwrap();
         let made = c_sampled(&case.model, folder.path(), &named(real), &case.sampling).unwrap();
         let text = std::fs::read_to_string(folder.path().join("one.c")).unwrap();
         let arrays: Vec<&str> = [
-            "loads", "shifts", "scales", "gains", "offsets", "spacing", "start",
+            "loads",
+            "shifts",
+            "scales",
+            "gains",
+            "offsets",
+            "spacing",
+            "start",
+            "part_offsets",
         ]
         .into_iter()
         .filter(|array| text.contains(&format!("hys_real {array}[]")))
@@ -183,10 +203,17 @@ fn memory_is_what_is_told() {
             .iter()
             .map(|array| format!(" + sizeof {array}"))
             .collect();
+        let (parts, mixed) = match text.contains("hys_parts parts") {
+            true => (
+                " + sizeof parts",
+                " + sizeof(hys_mixed) + ONE_TABLE * sizeof(hys_real)",
+            ),
+            false => ("", ""),
+        };
         let text = format!(
             "#include \"one.c\"\n\
-             typedef char constants[sizeof table + sizeof operators + sizeof one{arrays} == {} ? 1 : -1];\n\
-             typedef char state[sizeof(hys_actuator_state) == {} ? 1 : -1];\n",
+             typedef char constants[sizeof table + sizeof operators + sizeof one{arrays}{parts} == {} ? 1 : -1];\n\
+             typedef char state[sizeof(hys_actuator_state){mixed} == {} ? 1 : -1];\n",
             made.memory.constants, made.memory.state,
         );
         std::fs::write(folder.path().join("sizes.c"), text).unwrap();
@@ -200,6 +227,67 @@ fn memory_is_what_is_told() {
             ])
             .current_dir(folder.path()));
     }
+}
+
+/// A model with every stage whose weights depend on the load too.
+fn weighted() -> Case {
+    let mut rng = walks::rng(3);
+    let found = std::iter::repeat_with(|| case(&mut rng, Operator::Mkp, 5, true));
+    let of = |case: &Case| {
+        let load = case.model.load.as_ref();
+        load.is_some_and(|load| load.parts().len() == 4) && case.model.inverse().is_ok()
+    };
+    found.into_iter().find(of).unwrap()
+}
+
+/// Weights that depend on the load: the C has the digits of the library itself, the memory that is
+/// told, and refuses to start without it (`staged.c`).
+#[test]
+fn weights_over_the_load_are_those_of_the_library() {
+    if !has("cc") {
+        return;
+    }
+    let case = weighted();
+    let model = &case.model;
+    let (low, high) = model.load.as_ref().unwrap().range();
+    let (a, b) = model.output_range();
+    let mut rng = walks::rng(4);
+    let mut state = model.start();
+    let (mut commands, mut expected) = (String::from("m 0\n"), String::from("m 0\n"));
+    let mut load = low;
+    let (from, to) = case.sampling.drive.unwrap_or_else(|| model.drive_range());
+    let inverse = model.inverse().unwrap().drive_range(from, to).unwrap();
+    for n in 0..2000 {
+        if n % 3 == 0 {
+            load = rng.random_range(low..=high);
+        }
+        let (dt, given) = (case.sampling.dt, Some(load));
+        if n % 2 == 0 {
+            let input = rng.random_range(case.drives.0..case.drives.1);
+            let sample = Sample {
+                input,
+                dt,
+                load: given,
+            };
+            let output = model.step(&mut state, sample).unwrap().output;
+            commands += &format!("s {} {}\n", input.hex(), load.hex());
+            expected += &format!("s 0 {}\n", output.hex());
+        } else {
+            let target = rng.random_range(a.min(b)..a.max(b));
+            let wanted = Wanted {
+                dt,
+                load: given,
+                ..Target::new(target).into()
+            };
+            let found = inverse.step(&mut state, wanted).unwrap();
+            commands += &format!("i {} 0 {} {}\n", target.hex(), 0.0f64.hex(), load.hex());
+            expected += &format!("i 0 {} {}\n", found.input.hex(), found.status.number());
+        }
+    }
+    let exported = exported(std::slice::from_ref(&case), CReal::Double);
+    let program = exported.compile("cc", &["-O2"], "staged.c");
+    let found = answers(&mut Command::new(program), &commands);
+    same(&commands, &expected, &found, "the library");
 }
 
 fn named(real: CReal) -> COptions<'static> {

@@ -72,8 +72,11 @@ impl Adapted {
 /// time : array_like, shape (n,), optional
 ///     As in `Recording`. Needed for a model that depends on time, otherwise only checked for going
 ///     back.
-/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments'}
-///     What learns; see `Adaptive`. 'refit' errs least on measured recordings.
+/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments', 'load'}
+///     What learns; see `Adaptive`. 'refit' errs least on measured recordings. 'load' follows the
+///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
+///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
+///     tells a load.
 /// start : {'off', 'on', 'unknown'}
 ///     State of the operators before the first sample. 'unknown': off or on, whichever gives the
 ///     smaller error of the model as it is.
@@ -81,7 +84,7 @@ impl Adapted {
 ///     As for `fit`. Ctrl-C ends the work in any case.
 /// window, every, ridge, gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
 ///     As for `Adaptive`. Defaults follow from model and recording. The noise is that of the
-///     output, and at least 2 % (with 'drift' 5 %) of the larger of the ranges of output and
+///     output, and at least 2 % (with 'drift' and 'load' 5 %) of the larger of the ranges of output and
 ///     model. The dead zone is twice the output's noise.
 ///
 /// Returns
@@ -145,6 +148,12 @@ pub(crate) fn adapt<'py>(
     comparison.set_item("counts", to_python(py, &adapted.counts)?)?;
     comparison.set_item("drift", to_python(py, &adapted.drift)?)?;
     table.set_item("output_model", PyArray1::from_vec(py, adapted.output_model))?;
+    if let Some(found) = adapted.shift {
+        table.set_item("shift_model", PyArray1::from_vec(py, found.shifts))?;
+        if let Some(loads) = found.loads {
+            table.set_item("load_model", PyArray1::from_vec(py, loads))?;
+        }
+    }
     Ok(Adapted {
         model: adapted.model.into(),
         table: table.unbind(),

@@ -54,6 +54,7 @@ pub(crate) fn learner(name: &str) -> PyResult<Learner> {
         ("increments", Learner::Increments),
         ("least-squares", Learner::LeastSquares),
         ("drift", Learner::Drift),
+        ("load", Learner::Load),
     ];
     choice("method", name, &learners)
 }

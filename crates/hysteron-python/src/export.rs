@@ -41,8 +41,7 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For a sample time that is missing or not needed, for weights that depend on a load, and
-    ///     for an invalid C name.
+    ///     For a sample time that is missing or not needed, and for an invalid C name.
     /// FileError
     ///
     /// Examples

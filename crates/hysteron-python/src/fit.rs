@@ -66,8 +66,8 @@ use pyo3::types::{PyDict, PyString};
 ///     Time constant of a lag after the operators, s, from 0 on; 'auto' as for `creep`. Needs
 ///     `time`.
 /// bootstrap : int, optional
-///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 45
-///     levels on 0.
+///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 25
+///     levels on 60, from 45 on 0.
 /// thermal : {None, 'first-order', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a

@@ -92,6 +92,7 @@ fn plant(known: &Known, load_n: f64, seed: u64) -> Box<dyn SimulatedPlant> {
     match &mut options {
         PlantOptions::Spring(options) => options.load_n = load_n,
         PlantOptions::Preisach(options) => options.load_n = load_n,
+        PlantOptions::Wire(options) => options.load_n = load_n,
     }
     options.build(seed).unwrap()
 }

@@ -37,8 +37,8 @@ mod remedy;
 mod series;
 
 pub use adapt::{
-    AdaptOptions, Adapted, Adaptive, Compared, Drift, DriftBasis, EstimatorOptions, Learner,
-    OutcomeCounts, Refit, Window, adapt,
+    AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
+    Learner, OutcomeCounts, Refit, ShiftFound, Window, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{
@@ -53,7 +53,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Region, Solution, Status, Target, operator_index, operators,
+    Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, LoadLaw, Spacing,
@@ -71,11 +71,12 @@ pub use model::{
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
-    Spikes, Step, noise, prepare, rate_dependence,
+    Spikes, Step, prepare, rate_dependence,
 };
 pub use progress::Progress;
 pub use recording::{Origin, Quantity, Recording, Source};
 pub use remedy::{Remedy, Setting, SettingValue};
+pub use series::noise::noise;
 pub use series::{
     Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,
     remembered, usual_tolerance,

@@ -1,12 +1,16 @@
 //! The test vectors: the façade reproduces them, and the files are what their example makes.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../examples/vectors/chain.rs"]
+mod chain;
 #[path = "../examples/vectors/make.rs"]
 mod make;
 #[path = "../examples/vectors/plain.rs"]
 mod plain;
+#[path = "../examples/vectors/staged.rs"]
+mod staged;
 
-use hysteron::{Direction, Model, Target};
+use hysteron::{Direction, Model, Sample, Target, Wanted};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +38,14 @@ struct Run {
     #[serde(default)]
     tolerance: f64,
     #[serde(default)]
+    dt: Option<Vec<f64>>,
+    #[serde(default)]
+    load: Option<Vec<f64>>,
+    #[serde(default)]
+    drive_range: Option<(f64, f64)>,
+    #[serde(default)]
+    horizon: f64,
+    #[serde(default)]
     heading: Vec<i8>,
     #[serde(default)]
     target: Vec<f64>,
@@ -41,13 +53,43 @@ struct Run {
     status: Vec<i8>,
 }
 
+impl Run {
+    /// Time and load of a sample with this input or target.
+    fn sample(&self, n: usize, input: f64) -> Sample {
+        let at = |series: &Option<Vec<f64>>| series.as_ref().map(|series| series[n]);
+        Sample {
+            input,
+            dt: at(&self.dt),
+            load: at(&self.load),
+        }
+    }
+
+    /// The definition's outputs for these inputs.
+    fn defined(&self, model: &Model, inputs: &[f64]) -> Vec<f64> {
+        let at = |series: &Option<Vec<f64>>, n: usize| series.as_ref().map_or(0.0, |s| s[n]);
+        let sample = |(n, &value): (usize, &f64)| chain::Sample {
+            value,
+            dt: at(&self.dt, n),
+            load: at(&self.load, n),
+        };
+        let samples: Vec<_> = inputs.iter().enumerate().map(sample).collect();
+        chain::Chain::new(model).unwrap().forward(&samples).unwrap()
+    }
+}
+
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors")
 }
 
 fn forward(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
-    let outputs = model.simulate(&run.input).unwrap();
+    let mut state = model.start();
+    let outputs: Vec<f64> = (run.input.iter().enumerate())
+        .map(|(n, &input)| model.step(&mut state, run.sample(n, input)).unwrap().output)
+        .collect();
     assert_eq!(outputs.len(), run.output.len());
+    if let (None, None) = (&run.dt, &run.load) {
+        assert_eq!(model.simulate(&run.input).unwrap(), outputs);
+    }
     let pairs = outputs.iter().zip(&run.output);
     pairs
         .map(|(a, b)| (a - b).abs() / tolerance.output)
@@ -55,7 +97,9 @@ fn forward(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
 }
 
 fn inverse(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
-    let inverse = model.inverse().unwrap();
+    let (low, high) = run.drive_range.unwrap_or_else(|| model.drive_range());
+    let inverse = model.inverse().unwrap().drive_range(low, high).unwrap();
+    let inverse = inverse.horizon(run.horizon).unwrap();
     let mut state = model.start();
     let mut worst = 0.0_f64;
     let mut inputs = Vec::new();
@@ -68,6 +112,12 @@ fn inverse(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
         let wanted = Target::new(target)
             .heading(heading)
             .tolerance(run.tolerance);
+        let Sample { dt, load, .. } = run.sample(n, target);
+        let wanted = Wanted {
+            dt,
+            load,
+            ..wanted.into()
+        };
         let solution = inverse.step(&mut state, wanted).unwrap();
         assert_eq!(
             solution.status.number(),
@@ -79,7 +129,7 @@ fn inverse(model: &Model, tolerance: &Tolerance, run: &Run) -> f64 {
         inputs.push(solution.input);
     }
     // H(H⁻¹(y)) = y by the definition.
-    let outputs = plain::forward(model, &inputs).unwrap();
+    let outputs = run.defined(model, &inputs);
     for (n, output) in outputs.iter().enumerate() {
         if run.status[n] == 0 {
             let error = (output - run.target[n]).abs() - run.tolerance;
@@ -125,4 +175,26 @@ fn the_files_are_what_the_example_makes() {
     let json = |name: &PathBuf| name.extension().is_some_and(|e| e == "json");
     let there = there.map(|e| e.unwrap().path()).filter(json).count();
     assert_eq!(there, files.len(), "a file in vectors/ is made by nothing");
+}
+
+/// Where the drive is limited and time stands still, the files say so, and reach every status.
+#[test]
+fn the_stages_reach_every_status() {
+    let mut found = [0; 4];
+    let (mut still, mut jumps) = (0, 0);
+    for (name, text) in make::all().unwrap() {
+        let file: File = serde_json::from_str(&text).unwrap();
+        for run in file.runs.iter().filter(|run| run.dt.is_some()) {
+            let steps = &run.dt.as_ref().unwrap()[1..];
+            still += steps.iter().filter(|dt| **dt == 0.0).count();
+            jumps += steps.iter().filter(|dt| **dt >= 1e3).count();
+            for status in &run.status {
+                let place = [-1, 0, 1, 3].iter().position(|s| s == status);
+                assert!(place.is_some(), "{name}: {status}");
+                found[place.unwrap()] += 1;
+            }
+        }
+    }
+    assert!(found.iter().all(|count| *count >= 50), "{found:?}");
+    assert!(still >= 20 && jumps >= 20, "{still}, {jumps}");
 }

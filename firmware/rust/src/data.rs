@@ -42,14 +42,8 @@ pub struct Run {
 
 pub fn all(vectors: &Path) -> (Vec<Model>, Vec<Run>) {
     let (mut models, mut runs) = (Vec::new(), Vec::new());
-    let files = std::fs::read_dir(vectors).expect("the folder of the vectors");
-    let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|e| e == "json"));
-    files.sort();
-    for path in files {
-        let text = std::fs::read_to_string(&path).expect("a vector file");
-        let file: Value = serde_json::from_str(&text).expect("JSON");
-        let name = path.file_stem().expect("a name").to_string_lossy();
+    // Version 2 has models with stages: `staged.rs`.
+    for (name, file) in files(vectors, 1) {
         for run in file["runs"].as_array().expect("runs") {
             runs.push(vector(&name, models.len(), &file, run));
         }
@@ -63,16 +57,34 @@ pub fn all(vectors: &Path) -> (Vec<Model>, Vec<Run>) {
     (models, runs)
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+/// Name and content of each vector of a version.
+pub fn files(vectors: &Path, version: u8) -> Vec<(String, Value)> {
+    let files = std::fs::read_dir(vectors).expect("the folder of the vectors");
+    let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
+    files.retain(|path| path.extension().is_some_and(|e| e == "json"));
+    files.sort();
+    let read = |path: std::path::PathBuf| {
+        let text = std::fs::read_to_string(&path).expect("a vector file");
+        let file: Value = serde_json::from_str(&text).expect("JSON");
+        let name = path.file_stem().expect("a name").to_string_lossy();
+        (name.into_owned(), file)
+    };
+    let files = files.into_iter().map(read);
+    files
+        .filter(|(_, file)| file["version"] == version)
+        .collect()
+}
+
+pub fn numbers(value: &Value) -> Vec<f64> {
     let values = value.as_array().map(Vec::as_slice).unwrap_or_default();
     values.iter().map(number).collect()
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-fn model(name: &str, json: Value) -> Model {
+pub fn model(name: &str, json: Value) -> Model {
     Model {
         name: name.into(),
         operator: json["operator"].as_str().expect("an operator").into(),
@@ -119,10 +131,10 @@ fn vector(name: &str, model: usize, file: &Value, run: &Value) -> Run {
 }
 
 /// Xorshift (Marsaglia 2003), in `[0, 1)`. It gives the same numbers on every machine.
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         for (left, by) in [(true, 13), (false, 7), (true, 17)] {
             self.0 ^= if left { self.0 << by } else { self.0 >> by };
         }
@@ -131,13 +143,13 @@ impl Random {
 }
 
 /// Rounds to a multiple of 1/1024, so that single precision has the same numbers.
-fn short(value: f64) -> f64 {
+pub fn short(value: f64) -> f64 {
     (value * 1024.0).round() / 1024.0
 }
 
 /// An MKP model with weights from 1/8 to 9/8, in multiples of 1/64. Weights on the diagonal are
 /// zero, which makes dead bands.
-fn bench_model(levels: usize) -> Model {
+pub fn bench_model(levels: usize) -> Model {
     let mut random = Random(0x9e37_79b9_7f4a_7c15 + levels as u64);
     let places = (1..=levels).flat_map(|j| (1..=j).map(move |i| (i, j)));
     let weights: Vec<f64> = places
@@ -157,7 +169,7 @@ fn bench_model(levels: usize) -> Model {
 }
 
 /// Number of samples of the runs over which means are taken.
-const SAMPLES: usize = 500;
+pub const SAMPLES: usize = 500;
 
 fn bench_runs(model: &Model, number: usize) -> Vec<Run> {
     let total: f64 = model.weights.iter().sum();

@@ -4,6 +4,7 @@
 
 mod port;
 mod run;
+mod run_staged;
 
 fn all() -> Result<(), hysteron_core::Error> {
     port::start();

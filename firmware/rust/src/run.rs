@@ -1,6 +1,7 @@
 //! All runs, one after the other, in one number type.
 
 use crate::port::{count, depth, note, say};
+use crate::run_staged;
 use core::hint::black_box;
 use hysteron_core::{
     Direction, Error, Inverse, Model, Operator, Plane, Real, State, Target, Turn, table_len,
@@ -27,14 +28,15 @@ pub struct Run {
     pub steps: &'static [(i8, f64)],
 }
 
-mod made {
+pub mod made {
     use super::{ModelData as Model, Operator, Run};
+    use crate::run_staged::{Staged, StagedRun};
     include!(concat!(env!("OUT_DIR"), "/runs.rs"));
 }
 
-const FORWARD: i8 = 2;
+pub const FORWARD: i8 = 2;
 /// The largest number of levels for which there is memory.
-const MOST: usize = 40;
+pub const MOST: usize = 40;
 
 /// `f32` or `f64`.
 pub trait Number: Real {
@@ -57,11 +59,12 @@ impl Number for f64 {
 }
 
 pub fn all<T: Number>() -> Result<(), Error> {
-    made::RUNS.iter().try_for_each(one::<T>)
+    made::RUNS.iter().try_for_each(one::<T>)?;
+    made::STAGED_RUNS.iter().try_for_each(run_staged::one::<T>)
 }
 
-type Core<'a, T> = Model<T, &'a mut [T]>;
-type Memory<'a, T> = State<T, &'a mut [Turn<T>]>;
+pub type Core<'a, T> = Model<T, &'a mut [T]>;
+pub type Memory<'a, T> = State<T, &'a mut [Turn<T>]>;
 
 /// The output in the model's unit, `offset + sign · Σ μ γ`, as the library computes it.
 struct Line<T> {
@@ -139,7 +142,7 @@ impl<T: Number> Subject<'_, T> {
 
 /// The cost of the steps of one kind.
 #[derive(Default)]
-struct Tally {
+pub struct Tally {
     steps: u32,
     instructions: u64,
     most: u32,
@@ -148,11 +151,25 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, instructions: u32, step: usize) {
+    pub fn add(&mut self, instructions: u32, step: usize) {
         self.steps += 1;
         self.instructions += u64::from(instructions);
         if instructions > self.most {
             (self.most, self.which) = (instructions, step);
+        }
+    }
+}
+
+pub fn note_all(tallies: [Tally; 2], number: &str, name: &str) {
+    for (kind, tally) in ["forward", "inverse"].iter().zip(tallies) {
+        let Tally {
+            steps,
+            instructions,
+            most,
+            which,
+        } = tally;
+        if steps > 0 {
+            note!("steps\t{number}\t{name}\t{kind}\t{steps}\t{instructions}\t{most}\t{which}");
         }
     }
 }
@@ -204,17 +221,7 @@ fn one<T: Number>(run: &Run) -> Result<(), Error> {
             say!("restored: {:0digits$x} {other_status}", other.bits());
         }
     }
-    for (kind, tally) in ["forward", "inverse"].iter().zip(tallies) {
-        let Tally {
-            steps,
-            instructions,
-            most,
-            which,
-        } = tally;
-        if steps > 0 {
-            note!("steps\t{number}\t{name}\t{kind}\t{steps}\t{instructions}\t{most}\t{which}");
-        }
-    }
+    note_all(tallies, number, name);
 
     // Again without printing, for the stack.
     model.reset_off(&mut state)?;

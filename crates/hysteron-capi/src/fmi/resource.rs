@@ -303,10 +303,12 @@ mod tests {
     #[test]
     fn whatever_is_cut_or_changed_is_refused_with_its_line() {
         let text = closed(&LINES);
-        for length in 0..text.len() {
+        // Miri takes a thousand times as long.
+        let apart = if cfg!(miri) { 29 } else { 1 };
+        for length in (0..text.len()).step_by(apart) {
             assert!(parse(&text.as_bytes()[..length]).is_err(), "{length} bytes");
         }
-        for place in 0..text.len() {
+        for place in (0..text.len()).step_by(apart) {
             for bit in 0..8 {
                 let mut bytes = text.clone().into_bytes();
                 bytes[place] ^= 1 << bit;

@@ -80,6 +80,12 @@ void vector_run(const char *model_file, const char *run_file) {
     char kind[16];
     FILE *file = fopen(run_file, "r");
     REQUIRE(file != NULL);
+    REQUIRE(fscanf(file, "%15s", kind) == 1);
+    if (strcmp(kind, "stages") == 0) {
+        vector_stages(model_file, file);
+        fclose(file);
+        return;
+    }
     OK(hysteron_model_read(model_file, &model));
     OK(hysteron_model_info(model, &form.info));
     OK(hysteron_state_new(model, &form.state));
@@ -97,7 +103,7 @@ void vector_run(const char *model_file, const char *run_file) {
     state_memory = room(bytes);
     OK(hysteron_core_state_init(form.model, state_memory, bytes, &form.core));
 
-    REQUIRE(fscanf(file, "%15s %zu %lf %lf", kind, &count, &tolerance, &policy) == 4);
+    REQUIRE(fscanf(file, "%zu %lf %lf", &count, &tolerance, &policy) == 3);
     if (strcmp(kind, "forward") == 0) {
         forward(&form, file, count, tolerance);
     } else {

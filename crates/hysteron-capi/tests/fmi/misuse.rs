@@ -320,10 +320,11 @@ fn a_broken_model_gives_no_instance() {
             std::fs::write(&file, bytes).unwrap();
             fmu.try_instance(Some(&mut log)).is_none()
         };
-        for length in 0..text.len() {
+        let apart = stride(17);
+        for length in (0..text.len()).step_by(apart) {
             assert!(refused(&text[..length]), "{length} bytes");
         }
-        for place in 0..text.len() {
+        for place in (0..text.len()).step_by(apart) {
             let mut bytes = text.clone();
             bytes[place] ^= 1 << (place % 8);
             assert!(refused(&bytes), "byte {place}");
@@ -331,7 +332,7 @@ fn a_broken_model_gives_no_instance() {
         std::fs::remove_file(&file).unwrap();
         assert!(fmu.try_instance(Some(&mut log)).is_none());
         if fmu.fmi == Fmi::V3 {
-            assert_eq!(log.len(), 2 * text.len() + 1);
+            assert_eq!(log.len(), 2 * text.len().div_ceil(apart) + 1);
             let (missing, broken) = log.split_last().unwrap();
             assert!(broken.iter().all(|text| text.contains("model.txt, line ")));
             assert!(missing.contains("model.txt: "), "{missing}");

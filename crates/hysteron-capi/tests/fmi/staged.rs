@@ -97,6 +97,7 @@ fn run(
 }
 
 #[test]
+#[cfg_attr(miri, ignore = "it is about digits, and takes Miri hours")]
 fn the_model_with_every_stage_to_the_last_bit() {
     for (model, low, high) in [
         (every_stage(), -0.1, 1.1),
@@ -125,6 +126,7 @@ fn the_model_with_every_stage_to_the_last_bit() {
 }
 
 #[test]
+#[cfg_attr(miri, ignore = "it is about digits, and takes Miri hours")]
 fn its_inverse_to_the_last_bit() {
     for model in [every_stage(), model_without_body()] {
         let (a, b) = model.output_range();

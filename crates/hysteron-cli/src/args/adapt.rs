@@ -17,7 +17,8 @@ pub(crate) struct Adapt {
     /// Column of the output
     #[arg(long, value_name = "COL")]
     pub(crate) output: String,
-    /// Column of time, in seconds or with its unit in its name, for the table
+    /// Column of time, in seconds or with its unit in its name, for the table and for a model that
+    /// depends on time
     #[arg(long, value_name = "COL")]
     pub(crate) time: Option<String>,
     /// State of the operators before the first sample; `unknown`: off or on, whichever gives the
@@ -27,8 +28,8 @@ pub(crate) struct Adapt {
     /// What follows the error, and how
     #[arg(long, value_enum, default_value = "refit")]
     pub(crate) method: Learner,
-    /// With `refit` and `drift`, for a model that depends on a load: the load to start at [default: the middle
-    /// of its range]
+    /// With `refit`, `drift` and `load`, for a model that depends on a load: the load to start at
+    /// [default: the middle of its range]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]
@@ -42,7 +43,8 @@ pub(crate) struct Adapt {
     #[command(flatten)]
     pub(crate) force: Force,
     /// Write the recording with the columns `output_model` (predicted before each sample was
-    /// learned from), `error` and `outcome`; CSV, or Parquet where the name ends with .parquet
+    /// learned from), `error` and `outcome`, with `load` also `shift_model` and `load_model`; CSV, or
+    /// Parquet where the name ends with .parquet
     #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]
@@ -75,13 +77,15 @@ pub(crate) struct Tuning {
     /// [default: 0.999, with drift 0.9999]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = parse_finite)]
     forgetting: Option<f64>,
-    /// least-squares, drift: standard deviation of a reading's error, model error included, in the
-    /// output's unit [default: the noise found, and at least 2 %, with drift 5 %, of the range]
+    /// least-squares, drift, load: standard deviation of a reading's error, model error included, in
+    /// the output's unit [default: the noise found, and at least 2 %, with drift and load 5 %, of the
+    /// range]
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_finite)]
     noise: Option<f64>,
     /// least-squares, drift: standard deviation of a weight (in the output's unit) or a coefficient
     /// around the model's [default: such that the sum of the weights may deviate by 0.3 of the
-    /// range; of a coefficient 0.5]
+    /// range; of a coefficient 0.5]; load: of the shift, in the input's unit [default: half of what
+    /// it can reach]
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = parse_finite)]
     spread: Option<f64>,
     /// least-squares: correlation length of the deviations, in levels [default: 1]

@@ -61,8 +61,7 @@ pub(crate) struct ExportC {
     /// body the drives it was fitted with, otherwise no limits]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_limits, allow_hyphen_values = true)]
     pub(crate) drive_range: Option<(f64, f64)>,
-    /// Take the model at this load. Needed where the weights depend on the load; otherwise the load
-    /// is an argument on the target
+    /// Take the model at this load; without it the load is an argument on the target
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]

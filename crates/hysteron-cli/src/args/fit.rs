@@ -75,10 +75,14 @@ pub(crate) struct Fit {
     /// give the square of a current or a voltage. Needs --time
     #[arg(long, value_enum, value_name = "BODY", requires = "time")]
     pub(crate) thermal: Option<Thermal>,
-    /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 45
-    /// levels on 0]
+    /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 25
+    /// levels on 60, from 45 on 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
     pub(crate) bootstrap: Option<usize>,
+    /// Another recording of the same actuator; may be given several times. The model is not fitted
+    /// to it. The band is widened to what changes between sessions
+    #[arg(long, value_name = "FILE")]
+    pub(crate) repeat: Vec<PathBuf>,
     /// Lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,

@@ -158,6 +158,8 @@ pub(crate) enum Learner {
     /// A few coefficients: the weights shifted along the plane, or the load dependence of a model
     /// with a load
     Drift,
+    /// The shift of the input axis alone: a load that nobody measures
+    Load,
 }
 
 impl From<Learner> for hysteron::Learner {
@@ -168,6 +170,7 @@ impl From<Learner> for hysteron::Learner {
             Learner::Increments => Self::Increments,
             Learner::LeastSquares => Self::LeastSquares,
             Learner::Drift => Self::Drift,
+            Learner::Load => Self::Load,
         }
     }
 }

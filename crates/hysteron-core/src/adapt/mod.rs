@@ -3,6 +3,9 @@
 //! The output is linear in the weights: `H = φᵀμ`, with the operators' outputs `φ`. So estimators
 //! of linear parameters apply. With every method the weights are zero or above after every sample,
 //! so the inverse exists at every instant.
+//!
+//! [`ShiftEstimator`] leaves the weights alone. It follows one number: by how much an unknown load
+//! shifts the operators' axis.
 
 mod estimator;
 mod gate;
@@ -14,6 +17,8 @@ mod memory;
 mod operators;
 mod options;
 mod parameters;
+mod shift;
+mod shift_options;
 mod start;
 mod trial;
 mod vector;
@@ -23,3 +28,5 @@ pub use gate::{Gate, Verdict};
 pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_basis};
 pub use options::{Adaptation, Method};
+pub use shift::ShiftEstimator;
+pub use shift_options::ShiftOptions;

@@ -83,6 +83,44 @@ impl<T: Real> Load<'_, T> {
         })
     }
 
+    /// The load at which the shift is `shift`: the inverse of the curve. Beyond its ends it is the
+    /// outermost load. `None` for a curve that is empty, or does not rise or fall all the way.
+    ///
+    /// ```
+    /// use hysteron_core::Load;
+    /// let load = Load { loads: &[0.0, 100.0], shifts: &[5.0, 15.0], ..Load::NONE };
+    /// assert_eq!(load.of_shift(10.0), Some(50.0));
+    /// assert_eq!(load.of_shift(99.0), Some(100.0));
+    /// ```
+    #[must_use]
+    pub fn of_shift(&self, shift: T) -> Option<T> {
+        let (first, last) = (*self.shifts.first()?, *self.shifts.last()?);
+        let rises = last > first;
+        let ordered = |pair: &[T]| pair[0] != pair[1] && (pair[1] > pair[0]) == rises;
+        if self.shifts.len() < 2 || !self.shifts.windows(2).all(ordered) {
+            return None;
+        }
+        let before = |knot: &T| (*knot < shift) == rises;
+        let k = self.shifts.partition_point(before);
+        let Some(k) = k.checked_sub(1) else {
+            return self.loads.first().copied();
+        };
+        if k + 1 == self.shifts.len() {
+            return self.loads.last().copied();
+        }
+        let (from, to) = (self.loads[k], self.loads[k + 1]);
+        let part = (shift - self.shifts[k]) / (self.shifts[k + 1] - self.shifts[k]);
+        Some((from + part * (to - from)).clamp(from, to))
+    }
+
+    /// The nearest shift that one of the loads known has; any shift, where they tell no load.
+    pub(crate) fn within(&self, shift: T) -> T {
+        match (self.of_shift(shift), self.shifts) {
+            (Some(_), [first, .., last]) => shift.clamp(first.min(*last), first.max(*last)),
+            _ => shift,
+        }
+    }
+
     fn check(&self) -> Result<(), Error> {
         let fault = |stage| Err(Error::Stage { stage });
         let finite = |values: &[T]| values.iter().all(|v| v.is_finite());
@@ -148,6 +186,26 @@ impl<T: Real> Axis<'_, T> {
         match self.spacing {
             [] => effective,
             corners => between(corners, |k| plane.level(k), effective),
+        }
+    }
+
+    /// The slope of the operators' input over `a T − s`, at an input of the operators.
+    pub(crate) fn slope(&self, plane: &Plane<T>, input: T) -> T {
+        match self.spacing {
+            [] => T::ONE,
+            corners => {
+                let k = plane.normalise(input).floor_index();
+                let k = k.min(corners.len() - 2);
+                plane.step() / (corners[k + 1] - corners[k])
+            }
+        }
+    }
+
+    /// The mean distance between levels, in the unit of `a T − s`.
+    pub(crate) fn level(&self, plane: &Plane<T>) -> T {
+        match self.spacing {
+            [low, .., high] => (*high - *low) / T::from_index(plane.levels()),
+            _ => plane.step(),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
 use crate::stages::after::{Creep, Fade, MAX_CREEP, Past};
-use crate::stages::axis::Axis;
+use crate::stages::axis::{Axis, Loaded};
 use crate::stages::body::{Body, Decay};
 use crate::state::State;
 
@@ -230,6 +230,15 @@ impl<T: Real> Stages<'_, T> {
         (self.outward(h), next)
     }
 
+    /// The range of the operators' sum, at the load where it is widest.
+    pub(crate) fn range<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> T {
+        let (off, on) = model.output_range();
+        let gains = self.axis.load.gains.iter();
+        let gain = gains.fold(T::ZERO, |most, gain| most.max(*gain));
+        let gain = if gain > T::ZERO { gain } else { T::ONE };
+        (on - off).max(off - on) * gain
+    }
+
     /// Whether a stage depends on time, so that each sample needs its `dt`.
     #[must_use]
     pub fn is_timed(&self) -> bool {
@@ -303,15 +312,28 @@ impl<T: Real> Stages<'_, T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let temperature = match self.body {
-            None => input,
-            Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
-            Some(body) => body.rest(input),
-        };
+        let loaded = self.axis.load.at(load)?;
+        self.step_loaded(model, state, memory, rates, input, loaded)
+    }
+
+    /// As [`Stages::step_at`], with the values of the load's curves.
+    pub(crate) fn step_loaded<C, S>(
+        &self,
+        model: &Model<T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        rates: &Rates<T>,
+        input: T,
+        loaded: Loaded<T>,
+    ) -> Result<Output<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let temperature = self.heated(memory, rates, input);
         if !(input.is_finite() && temperature.is_finite()) {
             return Err(Error::InputNotFinite { index: 0 });
         }
-        let loaded = self.axis.load.at(load)?;
         let seen = self.axis.forward(model.plane(), loaded, temperature);
         let step = model.step(state, seen)?;
         let h = loaded.gain * step.output;
@@ -326,6 +348,23 @@ impl<T: Real> Stages<'_, T> {
             output: loaded.offset + self.outward(sum),
             clipped: step.clipped,
         })
+    }
+
+    /// The temperature after a step with this input.
+    pub(crate) fn heated(&self, memory: &StageState<T>, rates: &Rates<T>, input: T) -> T {
+        match self.body {
+            None => input,
+            Some(body) if memory.started => body.step(memory.temperature, input, rates.decay),
+            Some(body) => body.rest(input),
+        }
+    }
+
+    /// The gain from the operators' sum `g h` to the output in the next sample, without its sign.
+    pub(crate) fn gain_after(&self, memory: &StageState<T>, rates: &Rates<T>) -> T {
+        match memory.started {
+            true => self.creep.line(memory.past, rates.fade).1,
+            false => self.creep.gain(),
+        }
     }
 
     /// The factors for a time step; those of no time before the first sample.

@@ -107,7 +107,25 @@ impl<T: Real> Stages<'_, T> {
         C: AsRef<[T]>,
         S: Memory<Turn<T>>,
     {
-        let Wanted { target, load, .. } = wanted;
+        let loaded = self.axis.load.at(wanted.load)?;
+        self.invert_loaded(inverse, state, memory, rates, wanted, loaded)
+    }
+
+    /// As [`Stages::invert_at`], with the values of the load's curves in place of the load.
+    pub(crate) fn invert_loaded<C, S>(
+        &self,
+        inverse: &Inverse<'_, T, C>,
+        state: &mut State<T, S>,
+        memory: &mut StageState<T>,
+        rates: &Rates<T>,
+        wanted: Wanted<T>,
+        loaded: Loaded<T>,
+    ) -> Result<Solution<T>, Error>
+    where
+        C: AsRef<[T]>,
+        S: Memory<Turn<T>>,
+    {
+        let target = wanted.target;
         if !target.output.is_finite() {
             return Err(Error::InputNotFinite { index: 0 });
         }
@@ -117,7 +135,6 @@ impl<T: Real> Stages<'_, T> {
             return Err(Error::Stage { stage: "drive" });
         }
         let (model, plane) = (inverse.model, inverse.model.plane());
-        let loaded = self.axis.load.at(load)?;
         let aim = self.aim(memory, rates, loaded, target);
         let solution = match aim.output.is_finite() {
             true => inverse.solve(state, aim)?,
@@ -127,31 +144,36 @@ impl<T: Real> Stages<'_, T> {
                 status: Status::Limited,
             },
         };
-        let mut temperature = self.axis.backward(plane, loaded, solution.input);
+        let place = |aim: T| {
+            let temperature = self.axis.backward(plane, loaded, aim);
+            let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
+            let input = self.drive(memory, rates, wanted, temperature);
+            (input, self.size(temperature, input))
+        };
+        let (mut input, mut size) = place(solution.input);
         if model.operator() == Operator::Relay {
-            // A relay switches at its level and not an ulp before it.
-            let rising = solution.input > state.input();
+            // A relay switches at its level and not an ulp before it. One that has just switched
+            // switches back where the input turns by an ulp: a branch that stays goes on.
+            let rising = match solution.input == state.input() {
+                true => state.is_rising() && state.position() > T::ZERO,
+                false => solution.input > state.input(),
+            };
+            let mut aim = solution.input;
             for _ in 0..4 {
+                let temperature = self.heated(memory, rates, input);
                 let seen = self.axis.forward(plane, loaded, temperature);
                 if seen == solution.input || (seen > solution.input) == rising {
                     break;
                 }
-                let size = temperature.max(-temperature);
+                // In the unit of the operators' input, which need not be that of the temperature.
                 let nudge = plane.nudge().max(self.axis.rounding(plane, loaded, size));
-                temperature = if rising {
-                    temperature + nudge
-                } else {
-                    temperature - nudge
-                };
+                aim = if rising { aim + nudge } else { aim - nudge };
+                (input, size) = place(aim);
             }
         }
-        let temperature = temperature.clamp(wanted.temperature.0, wanted.temperature.1);
-        let input = self.drive(memory, rates, wanted, temperature);
-        let slack = self
-            .axis
-            .rounding(plane, loaded, self.size(temperature, input));
+        let slack = self.axis.rounding(plane, loaded, size);
         let reached = self
-            .step_at(model, state, memory, rates, input, load)?
+            .step_loaded(model, state, memory, rates, input, loaded)?
             .output;
         let gain = loaded.gain * self.creep.gain();
         let rounding = gain * (inverse.rounding() + model.total() * (slack / plane.step()));

@@ -1,9 +1,11 @@
 //! Random models, and input sequences that are hard for a memory of turning points.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod stages;
+
 use hysteron_core::{
     Adaptation, Error, Estimator, Learning, Method, Model, Operator, Plane, State, Turn,
-    estimator_len, operator_count, table_len, turn_capacity,
+    estimator_len, operator_count, operators, table_len, turn_capacity,
 };
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
@@ -198,6 +200,22 @@ impl Learner {
         self.estimator
             .step(&mut self.model, &mut self.state, input, measured)
     }
+}
+
+/// The covariance that least squares starts from, of all weights and the offset.
+pub fn start_covariance(levels: usize, spread: f64, correlation: f64) -> Vec<Vec<f64>> {
+    let n = operator_count(levels);
+    let places: Vec<_> = operators(levels).collect();
+    let at = |a: usize, b: usize| match (places.get(a), places.get(b)) {
+        _ if a == b => spread * spread,
+        (Some(&(i, j)), Some(&(k, l))) if correlation > 0.0 => {
+            let square = |p: usize, q: usize| (p.abs_diff(q) as f64 / correlation).powi(2);
+            spread * spread / (1.0 + square(i, k) + square(j, l))
+        }
+        _ => 0.0,
+    };
+    let row = |a: usize| (0..=n).map(|b| at(a, b)).collect();
+    (0..=n).map(row).collect()
 }
 
 /// Strokes of `samples` samples with random reversals over the whole plane. In the long run they

@@ -102,6 +102,9 @@ impl<T: Number> Constants<T> {
             start: start.transpose()?,
         };
         constants.stages = Staged::of(model, &constants, sampling)?;
+        if constants.stages.as_ref().is_some_and(Staged::is_negative) {
+            constants.rounding = None;
+        }
         Ok(constants)
     }
 
@@ -123,8 +126,12 @@ impl<T: Number> Constants<T> {
         }
     }
 
-    /// The table without what follows it in the core's memory.
+    /// The table without what follows it in the core's memory; those of all parts where the
+    /// weights depend on the load.
     pub(super) fn table(&self) -> &[T] {
+        if let Some(Some(parts)) = self.stages.as_ref().map(|stages| &stages.parts) {
+            return &parts.tables;
+        }
         let levels = self.core.plane().levels();
         &self.core.table()[..table_len(levels)]
     }
@@ -135,12 +142,24 @@ impl<T: Number> Constants<T> {
         let aligned = |bytes: usize| bytes.next_multiple_of(T::BYTES);
         let model = aligned(2 * WORD + 10 * T::BYTES + 3);
         let operators = aligned(4 * WORD + 6 * T::BYTES);
+        // `hys_mixed` and its table.
+        let len = table_len(self.core.plane().levels());
+        let mixed = match &self.stages {
+            Some(staged) if staged.parts.is_some() => {
+                model + aligned(2 * WORD) + (2 + len) * T::BYTES
+            }
+            _ => 0,
+        };
         let (stages, state) = match &self.stages {
             None => (0, operators),
             Some(staged) => (
-                aligned(aligned(11 * WORD) + (11 + 2 * MAX_CREEP) * T::BYTES + 3)
+                aligned(aligned(12 * WORD) + (11 + 2 * MAX_CREEP) * T::BYTES + 3)
+                    + staged
+                        .parts
+                        .as_ref()
+                        .map_or(0, |_| aligned(3 * WORD) + 2 * T::BYTES)
                     + staged.numbers() * T::BYTES,
-                operators + aligned(2 * WORD) + (2 + MAX_CREEP) * T::BYTES,
+                operators + aligned(3 * WORD) + (2 + MAX_CREEP) * T::BYTES + mixed,
             ),
         };
         let start = match (&self.start, &self.stages) {

@@ -20,6 +20,15 @@ pub(super) fn remarks<T: Number>(model: &Model, staged: &Staged<T>) -> Vec<Strin
             quantity(&load.quantity)
         ));
     }
+    if let Some((load, parts)) = model.load.as_ref().zip(staged.parts.as_ref()) {
+        let (low, high) = parts.range;
+        lines.push(format!(
+            "weights for a load: {}, from {low:?} to {high:?}, {} parts; start it with \
+             hys_actuator_start_mixed",
+            quantity(&load.quantity),
+            parts.offsets.len()
+        ));
+    }
     if let Some((low, high)) = staged.drive {
         lines.push(format!(
             "range of the drive in the inverse: {low:?} to {high:?}"
@@ -81,6 +90,19 @@ pub(super) fn actuator<T: Number>(
             list(numbers)
         );
     }
+    if let Some(parts) = &staged.parts {
+        let (low, high) = parts.range;
+        let _ = write!(
+            text,
+            "\nstatic const hys_real part_offsets[] = {}\nstatic const hys_parts parts = {{\n    \
+             .tables = table,\n    .offsets = part_offsets,\n    .count = {},\n    .min = {},\n    \
+             .max = {}\n}};\n",
+            list(&parts.offsets),
+            parts.offsets.len(),
+            low.literal(),
+            high.literal()
+        );
+    }
     let _ = write!(
         text,
         "\nconst hys_actuator {name} = {{\n    .operators = &operators,\n"
@@ -89,6 +111,12 @@ pub(super) fn actuator<T: Number>(
         let value = if numbers.is_empty() { "NULL" } else { array };
         let _ = writeln!(text, "    .{array} = {value},");
     }
+    let parts = if staged.parts.is_some() {
+        "&parts"
+    } else {
+        "NULL"
+    };
+    let _ = writeln!(text, "    .parts = {parts},");
     for (field, count) in [
         ("load_count", staged.loads.len()),
         ("start_count", start.len()),

@@ -2,7 +2,7 @@
 
 use super::constants::{Constants, Number, unfit};
 use hysteron::{Error, Model, Remedy, Result, Setting};
-use hysteron_core::{Axis, Body, Creep, Load, MAX_CREEP, Real, Stages};
+use hysteron_core::{Axis, Body, Creep, Load, MAX_CREEP, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,6 +13,20 @@ pub struct CSampling {
     /// Lowest and highest drive that the inverse may give; by default [`Model::drive_range`]. Only
     /// for a model with stages.
     pub drive: Option<(f64, f64)>,
+}
+
+/// The largest number of parts, `HYS_MOST_PARTS`.
+const MAX_PARTS: usize = 8;
+
+/// Weights that depend on the load: the constants of `hys_parts`.
+pub(super) struct Parts<T> {
+    /// The Everett tables, one after the other.
+    pub(super) tables: Vec<T>,
+    pub(super) offsets: Vec<T>,
+    /// The range of the loads.
+    pub(super) range: (T, T),
+    /// Whether a weight of a part is below zero.
+    negative: bool,
 }
 
 /// The constants of `hys_actuator`.
@@ -35,6 +49,8 @@ pub(super) struct Staged<T> {
     pub(super) steepest: T,
     /// The range of the drive, where there is one.
     pub(super) drive: Option<(T, T)>,
+    /// `None` where the weights do not depend on the load.
+    pub(super) parts: Option<Parts<T>>,
 }
 
 impl<T: Number> Staged<T> {
@@ -46,7 +62,12 @@ impl<T: Number> Staged<T> {
     ) -> Result<Option<Self>> {
         let stages = model.stages();
         let load = stages.axis.load;
-        let bare = stages.body.is_none()
+        let parts = model
+            .load
+            .as_ref()
+            .is_some_and(|load| load.parts().len() > 1);
+        let bare = !parts
+            && stages.body.is_none()
             && load.loads.is_empty()
             && stages.axis.spacing.is_empty()
             && !model.is_timed();
@@ -93,6 +114,7 @@ impl<T: Number> Staged<T> {
             creep_gain: T::ONE,
             steepest: T::ONE,
             drive,
+            parts: Parts::of(model, constants)?,
         };
         let core = staged.core(constants);
         core.check(&constants.core)
@@ -143,7 +165,7 @@ impl<T: Number> Staged<T> {
     pub(super) fn names(&self) -> Vec<&'static str> {
         let all = [
             ("body", self.body.is_some()),
-            ("load", !self.loads.is_empty()),
+            ("load", !self.loads.is_empty() || self.parts.is_some()),
             ("spacing", !self.spacing.is_empty()),
             ("creep", !self.creep.is_empty()),
             ("lag", self.lag > T::ZERO),
@@ -156,7 +178,56 @@ impl<T: Number> Staged<T> {
     pub(super) fn numbers(&self) -> usize {
         let curves = [&self.shifts, &self.scales, &self.gains, &self.offsets];
         let curves: usize = curves.iter().map(|curve| curve.len()).sum();
-        self.loads.len() + curves + self.spacing.len()
+        let offsets = self.parts.as_ref().map_or(0, |parts| parts.offsets.len());
+        self.loads.len() + curves + self.spacing.len() + offsets
+    }
+
+    /// Whether the inverse has to be refused, because a part has weights below zero.
+    pub(super) fn is_negative(&self) -> bool {
+        self.parts.as_ref().is_some_and(|parts| parts.negative)
+    }
+}
+
+impl<T: Number> Parts<T> {
+    fn of(model: &Model, constants: &Constants<T>) -> Result<Option<Self>> {
+        let Some(load) = model.load.as_ref().filter(|load| load.parts().len() > 1) else {
+            return Ok(None);
+        };
+        let count = load.parts().len();
+        if count > MAX_PARTS {
+            let what =
+                format!("the weights have {count} parts over the load, and C has {MAX_PARTS}");
+            let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
+            return Err(Error::Export(what).remedied(remedy));
+        }
+        let number = |what: &str, number: f64| {
+            let near = T::of(number).filter(|near| near.is_finite());
+            near.ok_or_else(|| unfit(&format!("{what} of {number:e}")))
+        };
+        let plane = *constants.core.plane();
+        let (low, high) = load.range();
+        let mut parts = Self {
+            tables: Vec::new(),
+            offsets: Vec::new(),
+            range: (number("a load", low)?, number("a load", high)?),
+            negative: false,
+        };
+        for part in load.parts() {
+            let weights = part.weights.iter().map(|&mu| number("a weight", mu));
+            let weights = weights.collect::<Result<Vec<T>>>()?;
+            let table = vec![T::ZERO; table_len(plane.levels())];
+            let core = hysteron_core::Model::new(plane, model.operator(), &weights, table)
+                .map_err(|_| unfit("the sum of the weights"))?;
+            parts.negative |= core.negative_weights().is_some();
+            parts.tables.extend_from_slice(core.table());
+            parts.offsets.push(number("an offset", part.offset)?);
+        }
+        // False where both round to one number.
+        let apart = parts.range.0 < parts.range.1;
+        match apart {
+            true => Ok(Some(parts)),
+            false => Err(unfit("the range of the loads")),
+        }
     }
 }
 
@@ -166,12 +237,6 @@ fn check(model: &Model, sampling: &CSampling, bare: bool) -> Result<()> {
         let remedy = Remedy::new(words, [Setting::any(name)]);
         Err(Error::Export(what).remedied(remedy))
     };
-    if let Some(load) = model.load.as_ref().filter(|load| load.parts().len() > 1) {
-        let name = &load.quantity.name;
-        let what =
-            format!("the model has other weights at each load `{name}`, and the C has one set");
-        return refused(what, "export it at one load with {}", "load");
-    }
     match sampling.dt {
         None if model.is_timed() => {
             let what = "the model depends on time, and the C runs at a fixed sample time".into();

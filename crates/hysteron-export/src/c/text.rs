@@ -4,7 +4,7 @@ use super::constants::{Constants, Number};
 use super::stage_text::{actuator, remarks, start_declared, start_defined};
 use super::{ALGORITHM, CExport, STAGES};
 use hysteron::{Model, Operator, Quantity, Sign};
-use hysteron_core::{operator_index, table_index, turn_capacity};
+use hysteron_core::{operator_index, table_index, table_len, turn_capacity};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -89,6 +89,9 @@ pub(super) fn header<T: Number>(
         );
         weights += &format!("extern const hys_real {name}_weights[{shout}_OPERATORS];\n");
     }
+    if staged.is_some_and(|staged| staged.parts.is_some()) {
+        sizes += &format!("#define {shout}_TABLE {}\n", table_len(*levels));
+    }
     let operators = check(name, "HYS_LAYOUT", ALGORITHM[0]);
     let (file, kind, checks) = match staged {
         None => (ALGORITHM[0].0, "hys_model", operators),
@@ -159,7 +162,10 @@ static const hys_real table[] = ",
         version = env!("CARGO_PKG_VERSION"),
         bytes = T::BYTES,
     );
-    let rows = (0..=*levels).map(|p| &constants.table()[table_index(p, 0)..][..=p]);
+    // One table, or those of the parts.
+    let tables = constants.table().chunks(table_len(*levels));
+    let rows =
+        tables.flat_map(|table| (0..=*levels).map(move |p| &table[table_index(p, 0)..][..=p]));
     text += &array(rows);
     let (offset, falls) = constants.operators_own();
     let fields = [

@@ -122,9 +122,10 @@ impl Exported {
         sources.sort();
         sources.dedup();
         let text = format!(
-            "{includes}#define MOST_TURNS {}\n\
+            "{includes}#define MOST_TURNS {}\n#define MOST_TABLE {}\n\
              static const hys_actuator *const models[] = {{{list}}};\n",
-            turn_capacity(largest)
+            turn_capacity(largest),
+            table_len(largest)
         );
         std::fs::write(folder.path().join("models.h"), text).unwrap();
         Self {

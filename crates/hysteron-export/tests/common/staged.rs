@@ -2,10 +2,10 @@
 
 use super::reference::Number;
 use super::walks;
-use hysteron::{Model, Operator, Sign};
+use hysteron::{LoadPart, Model, Operator, Sign};
 use hysteron_core::{
     Axis, Body, Creep, Direction, Load, Plane, Rates, StageState, Stages, State, Target, Turn,
-    Wanted, table_len, turn_capacity,
+    Wanted, mix, table_len, turn_capacity,
 };
 use hysteron_export::CSampling;
 use rand::RngExt;
@@ -68,9 +68,17 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
     if coin(rng) {
         let (curves, range) = curves(rng, width);
         loads = range;
+        // The weights of half of the models depend on the load too, up to the third order.
+        let count = [1, 1, 1, 2, 3, 4][rng.random_range(0..6)];
+        let part = |n: usize| {
+            let other = walks::model(rng, operator, levels);
+            let part = if n == 0 { &plain } else { &other };
+            json!({"offset": part.offset(), "weights": part.weights()})
+        };
+        let parts: Vec<Value> = (0..count).map(part).collect();
         file["load"] = json!({
             "name": "stress", "min": range.0 - 1.0, "max": range.1 + 1.0, "curves": curves,
-            "parts": [{"offset": plain.offset(), "weights": plain.weights()}],
+            "parts": parts,
         });
     }
     if coin(rng) {
@@ -112,6 +120,18 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
         sampling,
         drives,
         loads,
+    }
+}
+
+impl Case {
+    /// This model at this sampling, for calls of one's own.
+    pub fn of(model: Model, sampling: CSampling) -> Self {
+        Self {
+            drives: model.drive_range(),
+            loads: (0.0, 1.0),
+            model,
+            sampling,
+        }
     }
 }
 
@@ -240,8 +260,52 @@ impl<T: Number> Numbers<T> {
     }
 }
 
+/// Weights that depend on the load, in the number type.
+struct Parts<T> {
+    tables: Vec<Vec<T>>,
+    offsets: Vec<T>,
+    range: (T, T),
+    negative: bool,
+}
+
+impl<T: Number> Parts<T> {
+    fn of(model: &Model, plane: Plane<T>) -> Option<Self> {
+        let load = model.load.as_ref().filter(|load| load.parts().len() > 1)?;
+        let core = |part: &LoadPart| {
+            let weights: Vec<T> = part.weights.iter().map(|&mu| T::of(mu)).collect();
+            let table = vec![T::ZERO; table_len(plane.levels())];
+            hysteron_core::Model::new(plane, model.operator(), &weights, table).unwrap()
+        };
+        let cores: Vec<_> = load.parts().iter().map(core).collect();
+        let (low, high) = load.range();
+        Some(Self {
+            negative: cores.iter().any(|core| core.negative_weights().is_some()),
+            tables: cores.iter().map(|core| core.table().to_vec()).collect(),
+            offsets: load.parts().iter().map(|part| T::of(part.offset)).collect(),
+            range: (T::of(low), T::of(high)),
+        })
+    }
+
+    /// The values of the Bernstein polynomials of the load, as the library computes them.
+    fn factors(&self, load: T) -> Vec<T> {
+        let (low, high) = self.range;
+        let s = ((load - low) / (high - low)).clamp(T::ZERO, T::ONE);
+        let mut values = vec![T::ONE];
+        for _ in 1..self.tables.len() {
+            let mut next = vec![T::ZERO; values.len() + 1];
+            for (k, &value) in values.iter().enumerate() {
+                next[k] = next[k] + (T::ONE - s) * value;
+                next[k + 1] = next[k + 1] + s * value;
+            }
+            values = next;
+        }
+        values
+    }
+}
+
 struct Reference<T> {
     model: hysteron_core::Model<T, Vec<T>>,
+    parts: Option<Parts<T>>,
     numbers: Numbers<T>,
     rates: Rates<T>,
     drive: (T, T),
@@ -271,6 +335,7 @@ impl<T: Number> Reference<T> {
         let (low, high) = case.sampling.drive.unwrap_or_else(|| model.drive_range());
         Self {
             saved: (Vec::new(), state.input(), StageState::default()),
+            parts: Parts::of(model, plane),
             model: core,
             numbers,
             rates,
@@ -280,7 +345,27 @@ impl<T: Number> Reference<T> {
         }
     }
 
+    /// Brings the operators to a load, where their weights depend on it.
+    fn place(&mut self, load: T) {
+        if let Some(parts) = self.parts.as_ref().filter(|_| load.is_finite()) {
+            let factors = parts.factors(load);
+            mix(&mut self.model, &mut self.state, &parts.tables, &factors).unwrap();
+            let offsets = parts.offsets.iter().zip(factors);
+            let sum = |sum: T, (&offset, factor): (&T, T)| sum + factor * offset;
+            self.numbers.offset = offsets.fold(T::ZERO, sum);
+        }
+    }
+
     fn invert(&mut self, target: Target<T>, load: T) -> Result<(T, i8), i32> {
+        if self.parts.as_ref().is_some_and(|parts| parts.negative) {
+            return Err(5);
+        }
+        if self.parts.is_some() && target.output.is_finite() {
+            if !load.is_finite() {
+                return Err(13);
+            }
+            self.place(load);
+        }
         let wanted = Wanted {
             load: Some(load),
             drive: self.drive,
@@ -297,7 +382,16 @@ impl<T: Number> Reference<T> {
     fn answer(&mut self, call: &Call, answers: &mut String) {
         match call {
             Call::Step(drive, load) => {
-                let (drive, load) = (T::of(*drive), Some(T::of(*load)));
+                let (drive, load) = (T::of(*drive), T::of(*load));
+                if drive.is_finite() {
+                    self.place(load);
+                }
+                // Curves or none: weights alone need the load too.
+                if self.parts.is_some() && drive.is_finite() && !load.is_finite() {
+                    writeln!(answers, "s 13 0").unwrap();
+                    return;
+                }
+                let load = Some(load);
                 let stages = self.numbers.stages();
                 let (state, memory) = (&mut self.state, &mut self.memory);
                 let step = stages.step_at(&self.model, state, memory, &self.rates, drive, load);

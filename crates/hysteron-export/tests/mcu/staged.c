@@ -8,6 +8,25 @@
 static hys_turn turns[MOST_TURNS];
 static hys_real points[MOST_TURNS];
 static hys_actuator_state state;
+static hys_mixed mixed;
+static hys_real table[MOST_TABLE];
+
+static int start(const hys_actuator *actuator, size_t count)
+{
+    size_t levels = actuator->operators->levels, entries = (levels + 1) * (levels + 2) / 2;
+    memset(&state, 0x55, sizeof state);
+    memset(&mixed, 0x55, sizeof mixed);
+    memset(table, 0x55, sizeof table);
+    if (actuator->parts == NULL) {
+        return hys_actuator_start(actuator, &state, turns, count);
+    }
+    if (hys_actuator_start(actuator, &state, turns, count) != HYS_MEMORY_TOO_SMALL
+        || hys_actuator_start_mixed(actuator, &state, turns, count, &mixed, table, entries - 1)
+            != HYS_MEMORY_TOO_SMALL) {
+        return -1;
+    }
+    return hys_actuator_start_mixed(actuator, &state, turns, count, &mixed, table, entries);
+}
 
 int main(void)
 {
@@ -23,8 +42,7 @@ int main(void)
         switch (command == NULL ? ' ' : command[0]) {
         case 'm':
             n = (size_t)atoi(word());
-            memset(&state, 0x55, sizeof state);
-            code = hys_actuator_start(models[n], &state, turns, 4 * models[n]->operators->levels + 8);
+            code = start(models[n], 4 * models[n]->operators->levels + 8);
             printf("m %d\n", code);
             break;
         case 's':
@@ -58,7 +76,7 @@ int main(void)
         case 'r':
             /* Into memory that held something else. */
             memset(turns, 0x55, sizeof turns);
-            code = hys_actuator_start(models[n], &state, turns, MOST_TURNS);
+            code = start(models[n], MOST_TURNS);
             if (code == HYS_OK) {
                 code = hys_restore(&state.operators, points, count, saved_input);
             }

@@ -16,6 +16,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
+/// Learners of weights.
 const LEARNERS: [(&str, Learner); 5] = [
     ("refit", Learner::Refit),
     ("gradient", Learner::Gradient),
@@ -58,9 +59,10 @@ fn main() -> Result<()> {
     }
     print!("\n{}", include_str!("adaptation-load.md"));
     println!(
-        "| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 |"
+        "| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 | load \
+         | load found |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -341,6 +343,14 @@ impl Loops {
         Ok(format!("{:.1}, {:.1}", after(1)?, after(PASSES)?))
     }
 
+    /// The load that the method `load` finds in one pass through a loop.
+    fn load_found(&self, model: &Model, to: usize) -> Result<f64> {
+        let options = adapting(Learner::Load);
+        let found = adapt(model, &self.loops[to], &options, Progress::NONE)?.shift;
+        let load = found.and_then(|found| found.load);
+        Ok(load.ok_or("the shift tells no load")?)
+    }
+
     fn row(&self, from: usize, to: usize) -> Result<()> {
         let model = |n: usize| Fit::from(&self.options).run(&self.loops[n]);
         let before = model(from)?;
@@ -373,7 +383,7 @@ impl Loops {
             Err(_) => "outside".into(),
         };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {} | {:.0} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
@@ -383,6 +393,8 @@ impl Loops {
             self.adapted(&model, to, &adapting(Learner::Refit))?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,
+            self.adapted(&model, to, &adapting(Learner::Load))?,
+            self.load_found(&model, to)?,
         );
         Ok(())
     }

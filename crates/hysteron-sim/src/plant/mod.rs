@@ -5,7 +5,9 @@
 //! - [`PreisachPlant`]: a piezo-like actuator with an amplifier, made of relays that no model of
 //!   this toolkit has on its plane.
 //!
-//! Both are read through a [`SensorChain`]. Neither contains a model, an operator or a table of the
+//! - [`WirePlant`]: a wire heated by a duty, of which only the displacement is measured.
+//!
+//! All are read through a [`SensorChain`]. None contains a model, an operator or a table of the
 //! toolkit, so no model is tested on itself. Their options are plain data that a scenario file can
 //! set.
 
@@ -16,12 +18,14 @@ mod preisach;
 mod relays;
 mod sensor;
 mod spring;
+mod wire;
 
 pub use drift::DriftOptions;
 pub use fatigue::FatigueOptions;
 pub use preisach::{PreisachPlant, PreisachPlantOptions};
 pub use sensor::{SensorChain, SensorOptions};
 pub use spring::{SpringPlant, SpringPlantOptions};
+pub use wire::{WirePlant, WirePlantOptions};
 
 /// Divides `dt_s` (s) into equal steps, none longer than `longest_s`: their number and length. No
 /// steps for a time that is not finite or not above zero.

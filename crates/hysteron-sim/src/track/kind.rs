@@ -17,6 +17,8 @@ pub enum Kind {
     InversePid,
     /// Inverse and PID, *anticipate*.
     InversePidAnticipate,
+    /// Adaptive inverse alone, *anticipate*. Only where a scenario names it.
+    AdaptiveAnticipate,
     /// Adaptive inverse and PID, *hold*.
     AdaptivePid,
     /// Adaptive inverse and PID, *anticipate*.
@@ -45,6 +47,7 @@ impl Kind {
             Self::InverseAnticipate => "inverse, anticipate",
             Self::InversePid => "inverse + PID, hold",
             Self::InversePidAnticipate => "inverse + PID, anticipate",
+            Self::AdaptiveAnticipate => "adaptive inverse, anticipate",
             Self::AdaptivePid => "adaptive inverse + PID, hold",
             Self::AdaptivePidAnticipate => "adaptive inverse + PID, anticipate",
         }
@@ -59,24 +62,36 @@ impl Kind {
             Self::InverseAnticipate => "inverse-anticipate",
             Self::InversePid => "inverse-pid",
             Self::InversePidAnticipate => "inverse-pid-anticipate",
+            Self::AdaptiveAnticipate => "adaptive-anticipate",
             Self::AdaptivePid => "adaptive-pid",
             Self::AdaptivePidAnticipate => "adaptive-pid-anticipate",
         }
     }
 
     pub(super) fn has_pid(self) -> bool {
-        !matches!(self, Self::Inverse | Self::InverseAnticipate)
+        let alone = [
+            Self::Inverse,
+            Self::InverseAnticipate,
+            Self::AdaptiveAnticipate,
+        ];
+        !alone.contains(&self)
     }
 
     pub(super) fn adapts(self) -> bool {
-        matches!(self, Self::AdaptivePid | Self::AdaptivePidAnticipate)
+        let adaptive = [
+            Self::AdaptiveAnticipate,
+            Self::AdaptivePid,
+            Self::AdaptivePidAnticipate,
+        ];
+        adaptive.contains(&self)
     }
 
     pub(super) fn policy(self) -> Policy {
         match self {
-            Self::InverseAnticipate | Self::InversePidAnticipate | Self::AdaptivePidAnticipate => {
-                Policy::Anticipate
-            }
+            Self::InverseAnticipate
+            | Self::AdaptiveAnticipate
+            | Self::InversePidAnticipate
+            | Self::AdaptivePidAnticipate => Policy::Anticipate,
             _ => Policy::Hold,
         }
     }

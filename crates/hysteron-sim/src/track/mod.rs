@@ -26,7 +26,7 @@ pub use score::{ReversalLag, Score, Window, reversal_lags};
 pub use summary::{Median, Ratio};
 
 use hysteron::control::{Compensator, Controller, Course, Gains, Scheme, Trace, run};
-use hysteron::{Adaptive, Error, Model, Progress, Result, headings};
+use hysteron::{Error, Model, Progress, Result, headings};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
@@ -186,10 +186,11 @@ fn base(scenario: &Scenario) -> Result<Scheme> {
         policy: hysteron::Policy::Hold,
         tolerance: scenario.shared.tolerance,
         pid: None,
-        bias: truth
-            .input
-            .unwrap_or(drives.0)
-            .clamp(commands.0, commands.1),
+        bias: match scenario.plant.has_body() {
+            true => drives.0,
+            false => truth.input.unwrap_or(drives.0),
+        }
+        .clamp(commands.0, commands.1),
         commands,
         drives,
         inner: None,
@@ -207,10 +208,7 @@ fn controller(
 ) -> Result<Controller> {
     let compensator = match kind {
         Kind::Pid => None,
-        _ if kind.adapts() => {
-            let adaptation = scenario.adaptation.resolve(model)?;
-            Some(Compensator::adaptive(Adaptive::new(model, adaptation)?))
-        }
+        _ if kind.adapts() => Some(scenario.adaptation.compensator(model)?),
         _ => Some(Compensator::fixed(model)?),
     };
     Controller::new(Scheme {

@@ -1,6 +1,7 @@
 //! How the plant's model is identified, what the loops share, and how they learn.
 
-use hysteron::{AdaptOptions, Adaptation, Learner, Model, Plane, Result};
+use hysteron::control::Compensator;
+use hysteron::{AdaptOptions, Adaptation, Adaptive, Learner, Model, Plane, Result};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -10,7 +11,8 @@ use std::path::PathBuf;
 pub struct ModelOptions {
     /// Number of levels, from 2 to 100.
     pub levels: usize,
-    /// Lowest and highest level, in the input's unit.
+    /// Lowest and highest level, in the input's unit. For the wire, the lowest and the highest drive
+    /// of the tests; the levels of its temperature follow from the recording.
     pub range: (f64, f64),
     /// Strength of the smoothness across, from 0; see [`Smooth`](hysteron::Smooth). Default 0.
     #[serde(default)]
@@ -108,6 +110,8 @@ pub enum MethodName {
     /// [`Learner::LeastSquares`].
     #[default]
     LeastSquares,
+    /// [`Learner::Load`].
+    Load,
 }
 
 impl From<MethodName> for Learner {
@@ -116,18 +120,35 @@ impl From<MethodName> for Learner {
             MethodName::Gradient => Self::Gradient,
             MethodName::Increments => Self::Increments,
             MethodName::LeastSquares => Self::LeastSquares,
+            MethodName::Load => Self::Load,
         }
     }
 }
 
 impl AdaptationOptions {
-    /// The estimator's options for `model`.
+    /// The estimator's options for `model`. The method [`Load`](MethodName::Load) has none of this
+    /// kind.
     ///
     /// # Errors
     /// [`hysteron::Error::Fit`] for an option that the method does not use. What is out of range is
     /// refused when an estimator is made.
     pub fn resolve(&self, model: &Model) -> Result<Adaptation<f64>> {
-        let options = AdaptOptions {
+        self.options().before(model)
+    }
+
+    /// A model that learns in the loop.
+    ///
+    /// # Errors
+    /// As [`AdaptationOptions::resolve`], and for options out of range.
+    pub(super) fn compensator(&self, model: &Model) -> Result<Compensator> {
+        Ok(match self.method {
+            MethodName::Load => Compensator::load(self.options().adaptive_load(model)?),
+            _ => Compensator::adaptive(Adaptive::new(model, self.resolve(model)?)?),
+        })
+    }
+
+    fn options(&self) -> AdaptOptions {
+        AdaptOptions {
             learner: self.method.into(),
             gain: self.gain,
             span: self.span,
@@ -143,7 +164,6 @@ impl AdaptationOptions {
             gate: self.gate,
             burst: self.burst,
             ..AdaptOptions::default()
-        };
-        options.before(model)
+        }
     }
 }

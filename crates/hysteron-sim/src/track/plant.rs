@@ -1,7 +1,8 @@
 //! The plant of a scenario, and what happens to it.
 
 use crate::plant::{
-    PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions,
+    PreisachPlant, PreisachPlantOptions, SensorOptions, SpringPlant, SpringPlantOptions, WirePlant,
+    WirePlantOptions,
 };
 use hysteron::control::{Disturbance, SimulatedPlant};
 use hysteron::{Quantity, Result};
@@ -15,6 +16,8 @@ pub enum PlantOptions {
     Spring(SpringPlantOptions),
     /// The simulated cloud of relays.
     Preisach(PreisachPlantOptions),
+    /// The simulated wire without a thermometer.
+    Wire(WirePlantOptions),
 }
 
 /// Something that happens.
@@ -62,6 +65,10 @@ impl PlantOptions {
                 let options = PreisachPlantOptions { seed, ..*options };
                 Box::new(PreisachPlant::new(&options)?)
             }
+            Self::Wire(options) => {
+                let options = WirePlantOptions { seed, ..*options };
+                Box::new(WirePlant::new(&options)?)
+            }
         })
     }
 
@@ -71,6 +78,7 @@ impl PlantOptions {
         match self {
             Self::Spring(options) => (0.0, options.limit_a),
             Self::Preisach(options) => (0.0, options.limit_v),
+            Self::Wire(_) => (0.0, 1.0),
         }
     }
 
@@ -88,6 +96,11 @@ impl PlantOptions {
                 Quantity::with_unit("voltage", "V"),
                 Quantity::with_unit("displacement", "um"),
             ],
+            Self::Wire(_) => [
+                Quantity::named("duty"),
+                Quantity::with_unit("temperature", "degC"),
+                Quantity::with_unit("displacement", "mm"),
+            ],
         }
     }
 
@@ -104,12 +117,19 @@ impl PlantOptions {
                 noisy(&options.output_sensor)
                     && (!options.measure_input || noisy(&options.input_sensor))
             }
+            Self::Wire(options) => noisy(&options.sensor),
         }
     }
 
     /// Whether a current heats, so that a loop around the temperature is needed.
     pub(super) fn heats(&self) -> bool {
         matches!(self, Self::Spring(_))
+    }
+
+    /// Whether the drive heats and nothing measures the temperature, so that the model needs a
+    /// thermal body.
+    pub(super) fn has_body(&self) -> bool {
+        matches!(self, Self::Wire(_))
     }
 }
 

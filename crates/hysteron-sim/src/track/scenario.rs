@@ -7,7 +7,7 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// The scenarios that need no file.
-const BUILTIN: [(&str, &str); 6] = [
+const BUILTIN: [(&str, &str); 7] = [
     ("load-step", include_str!("builtin/load-step.toml")),
     (
         "load-step-preisach",
@@ -17,6 +17,7 @@ const BUILTIN: [(&str, &str); 6] = [
     ("staircase", include_str!("builtin/staircase.toml")),
     ("drift", include_str!("builtin/drift.toml")),
     ("faults", include_str!("builtin/faults.toml")),
+    ("wire", include_str!("builtin/wire.toml")),
 ];
 
 /// What `track` compares controllers on. All times are in seconds.

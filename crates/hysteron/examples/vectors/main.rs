@@ -1,8 +1,10 @@
 //! Writes the test vectors that every surface must reproduce: `cargo run -p hysteron --example
 //! vectors -- vectors`
 
+mod chain;
 mod make;
 mod plain;
+mod staged;
 
 use std::error::Error;
 use std::path::PathBuf;

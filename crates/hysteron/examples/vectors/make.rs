@@ -1,6 +1,7 @@
 //! The files: models, inputs and targets, and what the definition says of them.
 
 use super::plain::{Search, Wanted, forward};
+use super::staged;
 use hysteron::{Model, Operator, Plane, Result, Sign, operators};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -41,12 +42,13 @@ pub fn all() -> Result<Vec<(String, String)>> {
         "inverse-mkp-5-negative.json".into(),
         inverse_file(&model_down)?,
     ));
+    files.extend(staged::all()?);
     Ok(files)
 }
 
 /// Weights in 1/64, from 1/8 to 9/8; those with `j − i` below `still` are zero, which makes dead
 /// bands.
-fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> Result<Model> {
+pub fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> Result<Model> {
     let mut random = ChaCha8Rng::seed_from_u64(levels as u64);
     let weights = operators(levels).map(|(i, j)| {
         let weight = f64::from(8 + random.next_u32() % 64) / 64.0;
@@ -58,13 +60,13 @@ fn model(operator: Operator, levels: usize, still: usize, line: (f64, Sign)) -> 
 
 /// Numbers that inputs and targets are multiples of, so that they are short in the file and the
 /// same in single precision.
-const GRAIN: f64 = 1.0 / 1024.0;
+pub const GRAIN: f64 = 1.0 / 1024.0;
 
-fn short(value: f64) -> f64 {
+pub fn short(value: f64) -> f64 {
     (value / GRAIN).round() * GRAIN
 }
 
-fn uniform(random: &mut ChaCha8Rng) -> f64 {
+pub fn uniform(random: &mut ChaCha8Rng) -> f64 {
     f64::from(random.next_u32()) / f64::from(u32::MAX)
 }
 
@@ -124,7 +126,7 @@ fn forward_file(model: &Model) -> Result<String> {
         r#"{{"output": {:e}, "reason": "1e-13 of the sum of the weights: the definition adds K(K+1)/2 products, another way fewer, and they round differently"}}"#,
         1e-13 * size
     );
-    Ok(file("forward", model, &tolerance, &runs))
+    Ok(file(1, "forward", model, &tolerance, &runs))
 }
 
 fn targets(model: &Model) -> Vec<(&'static str, Vec<Wanted>)> {
@@ -215,17 +217,17 @@ fn inverse_file(model: &Model) -> Result<String> {
         1e-10 * model.plane().step(),
         1e-12 * (on - off).abs()
     );
-    Ok(file("inverse", model, &tolerance, &runs))
+    Ok(file(1, "inverse", model, &tolerance, &runs))
 }
 
-fn array(values: &[f64]) -> String {
+pub fn array(values: &[f64]) -> String {
     format!("{values:?}")
 }
 
 /// Written out by hand, so that the order of the fields stays.
-fn file(kind: &str, model: &Model, tolerance: &str, runs: &[String]) -> String {
+pub fn file(version: u8, kind: &str, model: &Model, tolerance: &str, runs: &[String]) -> String {
     format!(
-        "{{\"format\": \"hysteron-vectors\", \"version\": 1, \"kind\": \"{kind}\",\n\"model\": {},\n\"tolerance\": {tolerance},\n\"runs\": [\n{}\n]}}\n",
+        "{{\"format\": \"hysteron-vectors\", \"version\": {version}, \"kind\": \"{kind}\",\n\"model\": {},\n\"tolerance\": {tolerance},\n\"runs\": [\n{}\n]}}\n",
         model.to_json().trim_end(),
         runs.join(",\n")
     )

@@ -53,8 +53,16 @@ impl<'m> Search<'m> {
         })
     }
 
-    /// The input for the next target, and the status: −1 below reach, 1 above, 0 reached.
+    /// The input for the next target, and the status: −1 below reach, 1 above, 0 reached. Goes
+    /// there.
     pub fn step(&mut self, wanted: &Wanted) -> Result<(f64, i8)> {
+        let found = self.find(wanted)?;
+        self.travel(found.0)?;
+        Ok(found)
+    }
+
+    /// As [`Search::step`], without going there.
+    pub fn find(&self, wanted: &Wanted) -> Result<(f64, i8)> {
         let &Wanted {
             target,
             heading,
@@ -92,8 +100,17 @@ impl<'m> Search<'m> {
             let met = |output| f64::from(direction) * (output - target) >= 0.0;
             (self.first(direction, met)?, 0)
         };
-        self.travel(input)?;
         Ok((input, status))
+    }
+
+    /// The last input.
+    pub fn input(&self) -> f64 {
+        self.input
+    }
+
+    /// The last output.
+    pub fn output(&self) -> f64 {
+        self.output
     }
 
     /// The first input at which `met` holds, on the way from here to the end of the output's range.
@@ -119,7 +136,8 @@ impl<'m> Search<'m> {
         Ok(outputs[outputs.len() - 1])
     }
 
-    fn travel(&mut self, input: f64) -> Result<()> {
+    /// Goes to an input.
+    pub fn travel(&mut self, input: f64) -> Result<()> {
         let output = self.after(input)?;
         if input != self.input {
             let upwards = (input > self.input) == (self.ends[0].0 < self.ends[1].0);

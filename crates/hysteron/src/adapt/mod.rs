@@ -3,30 +3,34 @@
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `options` are its settings. `adaptive` is the model that learns
 //! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
-//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `counts` counts what was
-//! done with the samples.
+//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `load` and `unknown_load`
+//! do the same for the shift of an unknown load. `counts` counts what was done with the samples.
 
 mod adaptive;
 mod basis;
 mod counts;
+mod load;
 mod options;
 mod refit;
 mod sums;
+mod unknown_load;
 mod window;
 
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
+pub use load::AdaptiveLoad;
 pub use options::{AdaptOptions, EstimatorOptions, Learner};
 pub use refit::Refit;
+pub use unknown_load::ShiftFound;
 pub use window::Window;
 
 use crate::error::{Error, Result};
-use crate::model::{FitSummary, Model, Start};
+use crate::model::{FitSummary, Model, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::Errors;
-use hysteron_core::{Method, Outcome};
+use hysteron_core::{Adaptation, Learning, Method, Outcome};
 use serde::Serialize;
 use serde_json::json;
 
@@ -64,6 +68,8 @@ pub struct Adapted {
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
+    /// What [`Learner::Load`] found; `None` for the other learners.
+    pub shift: Option<ShiftFound>,
     /// The options of what learned.
     pub options: EstimatorOptions,
 }
@@ -126,7 +132,8 @@ impl Adapted {
 /// # Errors
 /// - [`Error::Recording`] for an invalid recording.
 /// - [`Error::Fit`] for a model with a thermal body, for a model that depends on a load with a
-///   learner other than [`Learner::Refit`] and [`Learner::Drift`], and for options that the learner does not use.
+///   learner other than [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`], and for
+///   options that the learner does not use.
 /// - [`Error::Core`] for options out of range and negative weights.
 /// - The error that `progress` returns.
 pub fn adapt(
@@ -136,6 +143,9 @@ pub fn adapt(
     progress: Progress<'_>,
 ) -> Result<Adapted> {
     recording.check()?;
+    if options.learner == Learner::Load {
+        return unknown_load::adapt(model, recording, options, progress);
+    }
     if !model.is_plain() && model.load.is_none() {
         return adapt_within(model, recording, options, progress);
     }
@@ -153,51 +163,91 @@ pub fn adapt(
     let (output, late_output) = recording.output.split_at(count - probation);
     let mut learned = adaptive.run(input, output, progress)?;
     adaptive.refit()?;
-    let mut last = adaptive.model()?;
+    let last = adaptive.model()?;
     let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
     learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
-    let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
-    let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
-    let counts = OutcomeCounts::of(&learned);
-    let compare = |which: &dyn Fn(usize) -> bool| {
-        Some(Compared {
-            adapting: Errors::between(&recording.output, &output_model, which)?,
-            fixed: Errors::between(&recording.output, &fixed, which)?,
-        })
-    };
-    let whole = compare(&|_| true).ok_or_else(no_samples)?;
-    let third = |k: usize| k * count / 3..(k + 1) * count / 3;
-    let thirds = (0..3)
-        .map(|k| compare(&|n| third(k).contains(&n)))
-        .collect::<Option<_>>()
-        .unwrap_or_default();
-    let judges = |n: usize| n + probation < count && outcomes[n] != Outcome::Rejected;
-    let late = compare(&|n| third(2).contains(&n) && judges(n));
-    let again = run_from(&last, from_on, recording)?;
-    let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
-    last.fit = Some(summary(
-        &last,
-        &offline,
-        recording,
-        options,
-        learned_by,
-        (&again, counts),
-    ));
-    let drift = Drift::between(&offline, &last);
-    Ok(Adapted {
-        worse: is_worse(late.as_ref(), &drift, offline.output_range()),
-        drift,
-        model: last,
+    Learned {
+        offline,
+        last,
+        learned,
+        fixed,
+        from_on,
         probation,
-        output_model,
-        outcomes,
-        counts,
-        whole,
-        thirds,
-        late,
-        again,
+        shift: None,
         options: learned_by,
-    })
+    }
+    .judged(recording, options)
+}
+
+/// What an estimator made of a recording.
+struct Learned {
+    offline: Model,
+    last: Model,
+    learned: Vec<Learning<f64>>,
+    /// The outputs of the model left alone.
+    fixed: Vec<f64>,
+    from_on: bool,
+    probation: usize,
+    shift: Option<ShiftFound>,
+    options: EstimatorOptions,
+}
+
+impl Learned {
+    /// Compares it with the model left alone.
+    fn judged(self, recording: &Recording, options: &AdaptOptions) -> Result<Adapted> {
+        let Self {
+            offline,
+            mut last,
+            learned,
+            fixed,
+            ..
+        } = self;
+        let count = recording.len();
+        let output_model: Vec<f64> = learned.iter().map(|learning| learning.output).collect();
+        let outcomes: Vec<Outcome> = learned.iter().map(|learning| learning.outcome).collect();
+        let counts = OutcomeCounts::of(&learned);
+        let compare = |which: &dyn Fn(usize) -> bool| {
+            Some(Compared {
+                adapting: Errors::between(&recording.output, &output_model, which)?,
+                fixed: Errors::between(&recording.output, &fixed, which)?,
+            })
+        };
+        let whole = compare(&|_| true).ok_or_else(no_samples)?;
+        let third = |k: usize| k * count / 3..(k + 1) * count / 3;
+        let thirds = (0..3)
+            .map(|k| compare(&|n| third(k).contains(&n)))
+            .collect::<Option<_>>()
+            .unwrap_or_default();
+        let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
+        let late = compare(&|n| third(2).contains(&n) && judges(n));
+        let again = run_from(&last, self.from_on, recording)?;
+        let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
+        last.fit = Some(summary(
+            &last,
+            &offline,
+            recording,
+            options,
+            self.options.described(),
+            (&again, counts),
+        ));
+        let drift = Drift::between(&offline, &last);
+        let changed = drift.is_change(&offline) || shifted(self.shift.as_ref(), &offline);
+        Ok(Adapted {
+            worse: is_worse(late.as_ref(), changed, offline.output_range()),
+            drift,
+            model: last,
+            probation: self.probation,
+            output_model,
+            outcomes,
+            counts,
+            whole,
+            thirds,
+            late,
+            again,
+            shift: self.shift,
+            options: self.options,
+        })
+    }
 }
 
 /// Adapts the operators between the stages of a model. The errors are those of the operators: before
@@ -274,7 +324,8 @@ fn run_from(model: &Model, on: bool, recording: &Recording) -> Result<Vec<f64>> 
         false => model.off(),
     };
     let mut output = vec![0.0; recording.len()];
-    model.run(&mut state, &recording.input, &mut output)?;
+    let around = Surroundings::of(model, recording);
+    model.run_in(&mut state, &recording.input, around, &mut output)?;
     Ok(output)
 }
 
@@ -284,7 +335,7 @@ fn summary(
     offline: &Model,
     recording: &Recording,
     options: &AdaptOptions,
-    learned_by: EstimatorOptions,
+    described: serde_json::Value,
     (again, counts): (&Errors, OutcomeCounts),
 ) -> FitSummary {
     let before = offline.fit.clone().unwrap_or_default();
@@ -294,7 +345,7 @@ fn summary(
         "adapted".into(),
         json!({
             "method": options.learner,
-            "options": described(learned_by),
+            "options": described,
             "counts": counts,
             "from": offline.fit.as_ref().map(|fit| json!({
                 "file": fit.file, "sha256": fit.sha256, "samples": fit.samples, "rmse": fit.rmse,
@@ -320,12 +371,28 @@ fn summary(
     }
 }
 
+impl EstimatorOptions {
+    /// The options as a JSON object.
+    fn described(&self) -> serde_json::Value {
+        match self {
+            Self::Weights(adaptation) => described(adaptation),
+            Self::Refit(refit) => json!(refit),
+            Self::Shift(options) => json!({
+                "noise": options.noise,
+                "spread": options.spread,
+                "walk": options.walk,
+                "reach": options.reach,
+                "dead_zone": options.dead_zone,
+                "movement": options.movement,
+                "gate": options.gate,
+                "burst": options.burst,
+            }),
+        }
+    }
+}
+
 /// The options as a JSON object: those of the method, and those that guard against bad readings.
-fn described(options: EstimatorOptions) -> serde_json::Value {
-    let options = match options {
-        EstimatorOptions::Weights(adaptation) => adaptation,
-        EstimatorOptions::Refit(refit) => return json!(refit),
-    };
+fn described(options: &Adaptation<f64>) -> serde_json::Value {
     let mut object = match options.method {
         Method::Gradient { gain } => json!({ "gain": gain }),
         Method::Increments { gain, span } => json!({"gain": gain, "span": span}),
@@ -357,9 +424,7 @@ fn described(options: EstimatorOptions) -> serde_json::Value {
 const ROUNDING: f64 = 1e-9;
 
 /// [`Adapted::worse`].
-fn is_worse(late: Option<&Compared>, drift: &Drift, range: (f64, f64)) -> bool {
-    let moved = (drift.offset.1 - drift.offset.0).abs() / (range.1 - range.0).abs();
-    let changed = drift.moved > ROUNDING || moved > ROUNDING;
+fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
     match late.map(|late| late.loss(range)) {
         Some(loss) => loss > ROUNDING || changed && loss >= -ROUNDING,
         // Nothing says that it is better.
@@ -367,7 +432,21 @@ fn is_worse(late: Option<&Compared>, drift: &Drift, range: (f64, f64)) -> bool {
     }
 }
 
+/// Whether the axis of the `offline` model has moved.
+fn shifted(found: Option<&ShiftFound>, offline: &Model) -> bool {
+    let plane = offline.plane();
+    let least = ROUNDING * (plane.max() - plane.min());
+    found.is_some_and(|found| found.shift.abs() > least)
+}
+
 impl Drift {
+    /// Whether the weights or the offset differ from those of the `offline` model.
+    fn is_change(&self, offline: &Model) -> bool {
+        let (off, on) = offline.output_range();
+        let moved = (self.offset.1 - self.offset.0).abs() / (on - off).abs();
+        self.moved > ROUNDING || moved > ROUNDING
+    }
+
     fn between(before: &Model, after: &Model) -> Self {
         let sum = |model: &Model| model.weights().iter().sum::<f64>();
         let pairs = before.weights().iter().zip(after.weights());

@@ -2,14 +2,15 @@
 
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
+use crate::adapt::load::AdaptiveLoad;
 use crate::adapt::refit::Refit;
 use crate::adapt::window::Window;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
-use crate::prepare::noise;
 use crate::recording::Recording;
+use crate::series::noise::noise;
 use crate::series::range;
-use hysteron_core::{Adaptation, Method};
+use hysteron_core::{Adaptation, Method, ShiftOptions};
 use serde::Serialize;
 
 /// Gain of the gradient methods.
@@ -47,6 +48,8 @@ pub enum Learner {
     /// defaults it has the smallest errors on measured recordings.
     #[default]
     Refit,
+    /// The shift of the operators' axis alone, by a Kalman filter: a load that nobody measures.
+    Load,
 }
 
 /// The options that a learner runs with, all of them known.
@@ -56,6 +59,8 @@ pub enum EstimatorOptions {
     Weights(Adaptation<f64>),
     /// Those of a windowed refit.
     Refit(Refit),
+    /// Those of the estimator of the shift.
+    Shift(ShiftOptions<f64>),
 }
 
 /// The options of [`crate::adapt()`]. A field that is `None` follows from the model and the
@@ -66,15 +71,15 @@ pub enum EstimatorOptions {
 /// | --- | --- | --- | --- |
 /// | `learner` | refit | see [`Learner`] | parameters and method |
 /// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load to start at (refit, drift) |
+/// | `load` | middle of its range | the model's range | load to start at (refit, drift, load) |
 /// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
 /// | `every` | see the field | 1 or more | samples between two refits |
 /// | `ridge` | 0.1 | above 0, up to 1 | holds weights where they are (refit) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
-/// | `noise` | see the field | above 0 | error of a reading (least squares) |
-/// | `spread` | see the field | above 0 | deviation of a parameter (least squares) |
+/// | `noise` | see the field | above 0 | error of a reading (least squares, load) |
+/// | `spread` | see the field | above 0 | deviation of a parameter (least squares, load) |
 /// | `correlation` | 1 | 0 or more | correlation length (least squares of weights) |
 /// | `dead_zone` | twice the output's [`noise`] | 0 or more | errors that are noise |
 /// | `leakage` | 0 | 0 to 1 | return to the off-line weights |
@@ -90,8 +95,8 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load to start at, for [`Learner::Refit`] and [`Learner::Drift`] with a model that depends on
-    /// a load.
+    /// Load to start at, for [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`] with a
+    /// model that depends on a load.
     pub load: Option<f64>,
     /// The samples that a refit uses.
     pub window: Option<Window>,
@@ -107,12 +112,13 @@ pub struct AdaptOptions {
     pub span: Option<f64>,
     /// Forgetting factor of least squares: weight of a sample relative to the next one.
     pub forgetting: Option<f64>,
-    /// Least squares: standard deviation of a reading's error, including the error of the model, in
-    /// the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for weights and
-    /// 5 % for coefficients.
+    /// Least squares and load: standard deviation of a reading's error, including the error of the
+    /// model, in the output's unit. Default: the output's [`noise`], but at least 2 % of `Y` for
+    /// weights and 5 % for coefficients and the shift.
     pub noise: Option<f64>,
     /// Least squares: standard deviation by which a parameter may differ from its off-line value.
-    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5.
+    /// Default for weights: their sum may deviate by 0.3 `Y`. Default for coefficients: 0.5. For the
+    /// shift it is in the input's unit, by default half of what the shift can reach.
     pub spread: Option<f64>,
     /// Correlation length of the weights' deviations, in levels.
     pub correlation: Option<f64>,
@@ -149,7 +155,8 @@ impl AdaptOptions {
     /// The options of an estimator for `model` on `recording`.
     ///
     /// # Errors
-    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator.
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator,
+    /// and for [`Learner::Load`], which learns no weights.
     pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
         self.resolve(model, recording)?.estimator()
     }
@@ -199,16 +206,30 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
+    /// An estimator of the shift of `model`'s axis in a loop: of a load that nobody measures. The
+    /// learner has to be [`Learner::Load`].
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for another learner, for options that this one does not use, and as
+    /// [`AdaptiveLoad::new`].
+    pub fn adaptive_load(&self, model: &Model) -> Result<AdaptiveLoad> {
+        let options = self.resolved(model, 0.0, 0.0)?.shift()?;
+        let mut adaptive = AdaptiveLoad::new(model, self.load, options)?;
+        if self.start == Start::On {
+            adaptive.saturate();
+        }
+        Ok(adaptive)
+    }
+
     /// What learns the weights or the coefficients.
     pub(super) fn learner(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
-        match (options, self.learner) {
-            (EstimatorOptions::Refit(refit), _) => {
-                Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit)
-            }
-            (EstimatorOptions::Weights(adaptation), Learner::Drift) => {
-                DriftBasis::of(model, self.load)?.adaptive(adaptation)
-            }
-            (EstimatorOptions::Weights(adaptation), _) => Adaptive::new(model, adaptation),
+        if let EstimatorOptions::Refit(refit) = options {
+            return Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit);
+        }
+        let adaptation = options.estimator()?;
+        match self.learner {
+            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
+            _ => Adaptive::new(model, adaptation),
         }
     }
 
@@ -226,8 +247,24 @@ impl AdaptOptions {
                     burst: self.burst.unwrap_or(usual.burst),
                 })
             }
+            Learner::Load => EstimatorOptions::Shift(self.shift(model, rough, range)),
             _ => EstimatorOptions::Weights(self.weights(model, rough, range)),
         })
+    }
+
+    /// The options of the estimator of the shift.
+    fn shift(&self, model: &Model, rough: f64, range: f64) -> ShiftOptions<f64> {
+        let usual = AdaptiveLoad::usual_options(model);
+        let misfit = rough.max(usual.noise).max(MISFIT[1] * range);
+        ShiftOptions {
+            noise: self.noise.unwrap_or(misfit),
+            spread: self.spread.unwrap_or(usual.spread),
+            dead_zone: self.dead_zone.unwrap_or(2.0 * rough),
+            movement: self.movement.unwrap_or(usual.movement),
+            gate: self.gate.unwrap_or(usual.gate),
+            burst: self.burst.unwrap_or(usual.burst),
+            ..usual
+        }
     }
 
     /// The options of an estimator of weights or coefficients.
@@ -258,7 +295,8 @@ impl AdaptOptions {
                 least_squares(spread, correlation)
             }
             Learner::Drift => least_squares(SHARE, 0.0),
-            Learner::Refit => usual.method,
+            // These learn otherwise.
+            Learner::Refit | Learner::Load => usual.method,
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
@@ -277,30 +315,32 @@ impl AdaptOptions {
     }
 
     fn refuse_unused(&self, model: &Model) -> Result<()> {
-        use Learner::{Drift, Gradient, Increments, LeastSquares, Refit};
+        use Learner::{Drift, Gradient, Increments, LeastSquares, Load, Refit};
         let is = |learners: &[Learner]| learners.contains(&self.learner);
         let (steps, squares) = ([Gradient, Increments], [LeastSquares, Drift]);
-        let starts = is(&[Drift, Refit]) && model.load.is_some();
-        let estimator = !is(&[Refit]);
+        let filters = [LeastSquares, Drift, Load];
+        let starts = is(&[Drift, Refit, Load]) && model.load.is_some();
+        let (refit, estimator) = (is(&[Refit]), !is(&[Refit]));
+        let weights = !is(&[Refit, Load]);
         let given = [
             ("load", self.load.is_some(), starts),
-            ("window", self.window.is_some(), !estimator),
-            ("every", self.every.is_some(), !estimator),
-            ("ridge", self.ridge.is_some(), !estimator),
+            ("window", self.window.is_some(), refit),
+            ("every", self.every.is_some(), refit),
+            ("ridge", self.ridge.is_some(), refit),
             ("gain", self.gain.is_some(), is(&steps)),
             ("span", self.span.is_some(), is(&[Increments])),
             ("forgetting", self.forgetting.is_some(), is(&squares)),
-            ("noise", self.noise.is_some(), is(&squares)),
-            ("spread", self.spread.is_some(), is(&squares)),
+            ("noise", self.noise.is_some(), is(&filters)),
+            ("spread", self.spread.is_some(), is(&filters)),
             (
                 "correlation",
                 self.correlation.is_some(),
                 is(&[LeastSquares]),
             ),
             ("dead_zone", self.dead_zone.is_some(), estimator),
-            ("leakage", self.leakage.is_some(), estimator),
-            ("offset_share", self.offset_share.is_some(), estimator),
-            ("trial", self.trial.is_some(), estimator),
+            ("leakage", self.leakage.is_some(), weights),
+            ("offset_share", self.offset_share.is_some(), weights),
+            ("trial", self.trial.is_some(), weights),
         ];
         match given.iter().find(|(_, given, used)| *given && !used) {
             Some((name, ..)) => Err(Error::Fit(format!(
@@ -318,6 +358,18 @@ impl EstimatorOptions {
             Self::Refit(_) => Err(Error::Fit(
                 "a refit is no estimator: take another method here".into(),
             )),
+            Self::Shift(_) => Err(Error::Fit(
+                "the method `load` adapts no weights, but the shift of the axis".into(),
+            )),
+        }
+    }
+
+    pub(super) fn shift(self) -> Result<ShiftOptions<f64>> {
+        match self {
+            Self::Shift(options) => Ok(options),
+            _ => Err(Error::Fit(
+                "only the method `load` estimates the shift".into(),
+            )),
         }
     }
 
@@ -326,6 +378,7 @@ impl EstimatorOptions {
         match self {
             Self::Weights(Adaptation { gate, burst, .. }) => (gate, burst),
             Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
+            Self::Shift(ShiftOptions { gate, burst, .. }) => (gate, burst),
         }
     }
 }

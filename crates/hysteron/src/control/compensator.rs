@@ -10,7 +10,7 @@
 //! memory of the inverse until it is wiped out. So with a learning model, the inverse restarts from
 //! the measured input wherever the target turns. There it has to cross the dead band anyway.
 
-use crate::adapt::Adaptive;
+use crate::adapt::{Adaptive, AdaptiveLoad};
 use crate::error::Result;
 use crate::model::{Model, Sample, Sign, State, Wanted};
 use crate::series::Turning;
@@ -41,6 +41,7 @@ pub struct Compensator {
 enum Kind {
     Fixed { model: Box<Model>, state: State },
     Adaptive(Box<Adaptive>),
+    Load(Box<AdaptiveLoad>),
 }
 
 impl Compensator {
@@ -60,6 +61,12 @@ impl Compensator {
     #[must_use]
     pub fn adaptive(adaptive: Adaptive) -> Self {
         Self::new(Kind::Adaptive(Box::new(adaptive)))
+    }
+
+    /// A model that follows the shift of its axis by an unknown load while it runs.
+    #[must_use]
+    pub fn load(adaptive: AdaptiveLoad) -> Self {
+        Self::new(Kind::Load(Box::new(adaptive)))
     }
 
     fn new(kind: Kind) -> Self {
@@ -94,6 +101,18 @@ impl Compensator {
                 };
                 Ok((model.step(state, sample)?.output, None))
             }
+            (Kind::Load(adaptive), measured) => {
+                let sample = Sample {
+                    input,
+                    dt,
+                    load: None,
+                };
+                let Some(measured) = measured else {
+                    return Ok((adaptive.simulate(sample)?, None));
+                };
+                let learning = adaptive.step(sample, measured)?;
+                Ok((learning.output, Some(learning.outcome)))
+            }
             (Kind::Adaptive(adaptive), measured) => {
                 self.resting = match (input - from).abs() > adaptive.offline().plane().step() {
                     true => JUMP,
@@ -124,7 +143,7 @@ impl Compensator {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
         let branch = branch.branch();
-        if turns && self.adapting().is_some() {
+        if turns && !matches!(self.kind, Kind::Fixed { .. }) {
             self.set_out_again();
         }
         let (state, sign) = match &self.kind {
@@ -132,6 +151,7 @@ impl Compensator {
             Kind::Adaptive(adaptive) => {
                 (adaptive.state().clone().into(), adaptive.offline().sign())
             }
+            Kind::Load(adaptive) => (adaptive.state().clone(), adaptive.offline().sign()),
         };
         let wanted = self.wanted.get_or_insert(state);
         let rises = wanted.is_rising() == (sign == Sign::Positive);
@@ -153,6 +173,13 @@ impl Compensator {
                 model.inverse()?.step(wanted, wanted_now)
             }
             Kind::Adaptive(adaptive) => adaptive.solve_from(&mut wanted.operators, target),
+            Kind::Load(adaptive) => {
+                let wanted_now = Wanted {
+                    dt,
+                    ..target.into()
+                };
+                adaptive.solve_from(wanted, wanted_now)
+            }
         }
     }
 
@@ -162,12 +189,21 @@ impl Compensator {
         self.wanted = None;
     }
 
-    /// The adaptive model, if this compensator has one.
+    /// The model whose weights adapt, if this compensator has one.
     #[must_use]
     pub fn adapting(&self) -> Option<&Adaptive> {
         match &self.kind {
-            Kind::Fixed { .. } => None,
+            Kind::Fixed { .. } | Kind::Load(_) => None,
             Kind::Adaptive(adaptive) => Some(adaptive),
+        }
+    }
+
+    /// The model that follows an unknown load, if this compensator has one.
+    #[must_use]
+    pub fn following(&self) -> Option<&AdaptiveLoad> {
+        match &self.kind {
+            Kind::Load(adaptive) => Some(adaptive),
+            Kind::Fixed { .. } | Kind::Adaptive(_) => None,
         }
     }
 }

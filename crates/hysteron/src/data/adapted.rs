@@ -8,7 +8,9 @@ use crate::recording::Recording;
 impl Adapted {
     /// Writes the recording as a table with three more columns: `output_model` (expected before the
     /// sample was learned from), `error` (measured minus expected) and `outcome` (`learned`,
-    /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`).
+    /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`). With [`crate::Learner::Load`] also
+    /// `shift_model` (the shift before the sample was learned from) and, if the model's load tells
+    /// it, `load_model`.
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] if `recording` does not have as many samples as the
@@ -26,15 +28,30 @@ impl Adapted {
                 ),
             });
         }
-        let added = ["output_model", "error", "outcome"];
         let errors = self.errors(recording);
-        recording.write_with(table, &added, |n| {
-            let outcome = self.outcomes[n].name().to_owned();
+        let of = |n: usize| {
             [
                 self.output_model[n].to_string(),
                 errors[n].to_string(),
-                outcome,
+                self.outcomes[n].name().to_owned(),
             ]
+        };
+        let added = ["output_model", "error", "outcome"];
+        let [output, error, outcome] = added;
+        let Some(found) = &self.shift else {
+            return recording.write_with(table, &added, of);
+        };
+        let shift = |n: usize| found.shifts[n].to_string();
+        let Some(loads) = &found.loads else {
+            return recording.write_with(table, &[output, error, outcome, "shift_model"], |n| {
+                let [output, error, outcome] = of(n);
+                [output, error, outcome, shift(n)]
+            });
+        };
+        let added = [output, error, outcome, "shift_model", "load_model"];
+        recording.write_with(table, &added, |n| {
+            let [output, error, outcome] = of(n);
+            [output, error, outcome, shift(n), loads[n].to_string()]
         })
     }
 }

@@ -6,6 +6,8 @@ use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::noise::noise;
+use crate::series::{branches, usual_tolerance};
 use std::fmt;
 
 /// A warning about a fit. [`Advice::remedy`] suggests what may help.
@@ -25,6 +27,25 @@ pub enum Advice {
     AgainstInput {
         /// The share of the output's path on which it does so, from 0 to 1.
         part: f64,
+    },
+    /// The input has far more reversals than are larger than its noise. The others count as memory
+    /// of the material.
+    FalseReversals {
+        /// Number of all reversals.
+        all: usize,
+        /// Number of reversals that are larger than the noise.
+        real: usize,
+        /// Standard deviation of the input's noise, in its unit.
+        noise: f64,
+    },
+    /// There are hardly more samples than operators: most weights follow from the prior.
+    FewData {
+        /// Number of samples.
+        samples: usize,
+        /// Number of operators.
+        operators: usize,
+        /// Number of combinations of weights that the data determine; `None` without confidence.
+        rank: Option<usize>,
     },
     /// The first input does not determine the state of some operators, and all of these were taken
     /// as off.
@@ -57,6 +78,25 @@ impl fmt::Display for Advice {
                  weights cannot follow",
                 100.0 * part
             ),
+            Self::FalseReversals { all, real, noise } => write!(
+                f,
+                "the input reverses {all} times, but only {real} reversals are larger than its \
+                 noise of {noise:.3}: the others bend the model"
+            ),
+            Self::FewData {
+                samples,
+                operators,
+                rank,
+            } => {
+                write!(f, "{samples} samples for {operators} weights")?;
+                if let Some(rank) = rank {
+                    write!(f, ": the data determine {rank} combinations of them")?;
+                }
+                write!(
+                    f,
+                    ". The rest is the prior, whatever the error of the fit is"
+                )
+            }
             Self::OpenStart { operators } => write!(
                 f,
                 "the first input does not determine the state of {operators} operators: they are \
@@ -83,6 +123,13 @@ impl Advice {
                     Setting::any("load"),
                     Setting::any("thermal"),
                 ],
+            ),
+            Self::FalseReversals { .. } => {
+                Remedy::new("use {}, which removes them", [Setting::on("prepare")])
+            }
+            Self::FewData { .. } => Remedy::new(
+                "record more branches, and test the model on another recording",
+                [],
             ),
             Self::OpenStart { .. } => Remedy::new(
                 "if the recording does not begin after the lowest input, use {}",
@@ -120,9 +167,24 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
             range: (plane.bottom(), plane.max()),
         });
     }
+    let noisy = recordings.iter().find_map(false_reversals);
     if let Some(fit) = &model.fit {
-        if fit.solver == Solver::Nnls && against > AGAINST_INPUT {
+        if let Some(noisy) = noisy {
+            advice.push(noisy);
+        } else if fit.solver == Solver::Nnls && against > AGAINST_INPUT {
             advice.push(Advice::AgainstInput { part: against });
+        }
+        // Where whole branches were left out, the error on them tells.
+        let tested = fit
+            .validation
+            .as_ref()
+            .is_some_and(|found| found.whole_branches);
+        if fit.samples <= plane.operators() && !tested {
+            advice.push(Advice::FewData {
+                samples: fit.samples,
+                operators: plane.operators(),
+                rank: fit.confidence.as_ref().map(|found| found.rank),
+            });
         }
         let operators = fit.open_at_start;
         if fit.start == Start::Off && operators as f64 > MANY_OPEN * plane.operators() as f64 {
@@ -130,4 +192,21 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         }
     }
     Ok(advice)
+}
+
+/// So many times more reversals than real ones are noise, from this number of them on.
+const FALSE: usize = 4;
+const SOME: usize = 50;
+
+fn false_reversals(recording: &Recording) -> Option<Advice> {
+    let input = &recording.input;
+    let all = branches(input, 0.0).last()? + 1;
+    if all < SOME {
+        return None;
+    }
+    let noise = noise(input);
+    // Gaussian noise hardly ever reverses by more than six deviations.
+    let tolerance = usual_tolerance(input).max(6.0 * noise);
+    let real = branches(input, tolerance).last()? + 1;
+    (all > FALSE * real && noise > 0.0).then_some(Advice::FalseReversals { all, real, noise })
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::choose::{self, Open};
+use crate::identify::doubt::sessions::widen;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
 use crate::identify::stages::{self, Asked};
@@ -41,6 +42,7 @@ pub struct Fit<'a> {
     auto_start: bool,
     auto_bootstrap: bool,
     body: bool,
+    repeats: Vec<Recording>,
     progress: Progress<'a>,
 }
 
@@ -75,6 +77,7 @@ impl From<FitOptions> for Fit<'_> {
             auto_start: false,
             auto_bootstrap: false,
             body: false,
+            repeats: Vec::new(),
             progress: Progress::NONE,
         }
     }
@@ -239,6 +242,14 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// Other recordings of the same actuator. The weights are not fitted to them. They widen the
+    /// band to what changes between sessions.
+    #[must_use]
+    pub fn repeats(mut self, repeats: Vec<Recording>) -> Self {
+        self.repeats = repeats;
+        self
+    }
+
     /// A callback for the progress, which may cancel the work.
     #[must_use]
     pub fn progress(mut self, progress: Progress<'a>) -> Self {
@@ -275,11 +286,13 @@ impl<'a> Fit<'a> {
             body: self.body,
             open: self.open,
             auto_bootstrap: self.auto_bootstrap,
+            outliers: &outliers,
         };
         let mut model = stages::fit(&seen, &options, asked, self.progress)?;
         if let Some(fit) = &mut model.fit {
             fit.outliers = outliers;
         }
+        widen(&mut model, &self.repeats)?;
         Ok(model)
     }
 }

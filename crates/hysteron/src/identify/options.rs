@@ -78,26 +78,27 @@ pub enum Spacing {
     Auto,
 }
 
-/// The options of a fit.
+/// The options of a fit. Their defaults leave nothing to the data. Those of
+/// [`Fit::new`](crate::Fit::new) leave everything to it, where the table says so.
 ///
-/// | field | default | range | purpose |
+/// | field | default; of `Fit::new` | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `operator` | MKP | MKP, KP, relay | the elementary operator |
-/// | `levels` | 20 | 2 or more | number of levels `K` |
+/// | `levels` | 20; auto | 2 or more | number of levels `K` |
 /// | `range` | from the data | finite, in order | the plane's lowest and highest level |
 /// | `solver` | NNLS | NNLS, OLS | see [`Solver`] |
 /// | `sign` | the better one | ± | direction of the output |
 /// | `offset` | free | finite | output with every operator off |
-/// | `smooth` | none | 0 to 1e6 each | smoothness along and across the diagonal, see [`Smooth`] |
+/// | `smooth` | none; auto | 0 to 1e6 each | along and across the diagonal, see [`Smooth`] |
 /// | `ridge` | 1e-6 | 0 to 1 | pulls weights that the data hardly move to zero |
-/// | `robust` | off | | whether outliers are found and given no weight |
-/// | `start` | off | off, on, unknown | state of the operators before each recording |
+/// | `robust` | off; auto | | whether outliers are found and given no weight |
+/// | `start` | off; auto | off, on, unknown | state of the operators before each recording |
 /// | `load_law` | shift | shift, weights | what a load changes, if there is one |
 /// | `load_degree` | auto | 0 to 5 | order of the weights in the load; auto: by loads left out |
-/// | `spacing` | uniform | uniform, auto | where the levels are |
+/// | `spacing` | uniform; auto | uniform, auto | where the levels are |
 /// | `creep` | off (0) | auto, 0 to 4 | number of creep terms |
 /// | `lag` | off (0) | auto, 0 or more | time constant of a lag of the whole, in seconds |
-/// | `bootstrap` | 0 | up to 10,000 | replicates for standard errors and band; 0 for none |
+/// | `bootstrap` | 0; 200 | up to 10,000 | replicates for standard errors and band; 0 for none |
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// The elementary operator.

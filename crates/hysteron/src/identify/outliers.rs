@@ -5,10 +5,10 @@ use crate::error::Result;
 use crate::identify::options::{FitOptions, LoadLaw};
 use crate::identify::weights::problem::Problem;
 use crate::model::{Outlier, Smooth};
-use crate::prepare::isolated;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
+use crate::series::spikes::isolated;
 use std::borrow::Cow;
 
 /// Levels and smoothness of the model that outliers are judged by: enough to follow a loop, and
@@ -27,7 +27,10 @@ const DEVIATIONS: f64 = 6.0;
 const SMALLEST: f64 = 0.01;
 
 /// Each round uses a model that the outliers of the round before have not bent.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 10;
+
+/// Rounds end when outliers move by less than this share of the output's range.
+const SETTLED: f64 = 1e-3;
 
 /// The recordings with every outlier moved to where its neighbours say, and the outliers.
 ///
@@ -52,41 +55,49 @@ pub(super) fn mended<'a>(
         bootstrap: 0,
         ..options.clone()
     };
+    let all = recordings.iter().flat_map(|recording| &recording.output);
+    let (low, high) = range(&without_extremes(&all.copied().collect::<Vec<_>>()));
+    let span = high - low;
     let mut mended = Cow::Borrowed(recordings);
     let mut outliers: Vec<Outlier> = Vec::new();
     for _ in 0..ROUNDS {
         progress.tell("outliers", f64::NAN)?;
-        let found = round(&mended, &options)?;
-        if found.is_empty() {
+        let found = judged(recordings, &mended, &options)?;
+        let settled = found.len() == outliers.len()
+            && found.iter().zip(&outliers).all(|(a, b)| {
+                let moved = (a.by - b.by).abs();
+                (a.recording, a.sample) == (b.recording, b.sample) && moved <= SETTLED * span
+            });
+        outliers = found;
+        mended = Cow::Borrowed(recordings);
+        for outlier in &outliers {
+            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
+        }
+        if settled {
             break;
         }
-        for outlier in found {
-            mended.to_mut()[outlier.recording].output[outlier.sample] -= outlier.by;
-            let same = |other: &&mut Outlier| {
-                (other.recording, other.sample) == (outlier.recording, outlier.sample)
-            };
-            match outliers.iter_mut().find(same) {
-                Some(before) => before.by += outlier.by,
-                None => outliers.push(outlier),
-            }
-        }
     }
-    outliers.sort_by_key(|outlier| (outlier.recording, outlier.sample));
     Ok((mended, outliers))
 }
 
-fn round(recordings: &[Recording], options: &FitOptions) -> Result<Vec<Outlier>> {
-    let mut problem = Problem::new(recordings, options)?;
+/// The outliers of the recordings, judged by a model of the mended ones.
+fn judged(
+    recordings: &[Recording],
+    mended: &[Recording],
+    options: &FitOptions,
+) -> Result<Vec<Outlier>> {
+    let mut problem = Problem::new(mended, options)?;
     let fitted = problem.solve(None, Progress::NONE)?;
     let mut found = Vec::new();
-    for (recording, range_of) in problem.experiment.recordings.iter().enumerate() {
-        let residual: Vec<f64> = fitted.solution.residual[range_of.clone()]
-            .iter()
-            .map(|r| fitted.sign.factor() * r)
+    for (recording, part) in problem.experiment.recordings.iter().enumerate() {
+        let left = fitted.solution.residual[part.clone()].iter();
+        let own = recordings[recording].output.iter();
+        let moved = own.zip(&mended[recording].output).map(|(y, m)| y - m);
+        let residual: Vec<f64> = left
+            .zip(moved)
+            .map(|(r, moved)| fitted.sign.factor() * r + moved)
             .collect();
-        let (low, high) = range(&without_extremes(
-            &problem.experiment.output[range_of.clone()],
-        ));
+        let (low, high) = range(&without_extremes(&recordings[recording].output));
         let own = isolated(&residual, DEVIATIONS, SMALLEST * (high - low));
         found.extend(own.into_iter().map(|(sample, by)| Outlier {
             recording,

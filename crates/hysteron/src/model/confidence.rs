@@ -26,6 +26,9 @@ pub struct Confidence {
     /// cannot follow is no part of it.
     #[serde(default)]
     pub sensor: f64,
+    /// Number of sessions that the band holds: 1 for the recordings fitted, and one for each repeat.
+    #[serde(default)]
+    pub sessions: usize,
     /// Number of bootstrap replicates.
     pub replicates: usize,
     /// How well the input determines each operator, in the order of the weights.

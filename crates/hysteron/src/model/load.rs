@@ -297,6 +297,49 @@ impl Model {
         })
     }
 
+    /// The model of which the axis is shifted by `shift` more, in the input's unit, from the load
+    /// `told`. It does not depend on a load.
+    ///
+    /// If the model's curve of shifts tells a load there, it is the model at that load. What lies
+    /// beyond the curve is a shift alone.
+    ///
+    /// # Errors
+    /// As [`Model::at_load`].
+    pub(crate) fn shifted(&self, told: Option<f64>, shift: f64) -> Result<Self> {
+        let (Some(dependence), Some(told)) = (&self.load, told) else {
+            return self.moved(shift);
+        };
+        let Some(curves) = &dependence.curves else {
+            return self.at_load(told)?.moved(shift);
+        };
+        let wanted = curves.at(told)?.shift + shift;
+        let load = curves.core().of_shift(wanted).unwrap_or(told);
+        let there = curves.at(load)?;
+        self.at_load(load)?
+            .moved((wanted - there.shift) / there.scale)
+    }
+
+    /// The model with its levels moved by `shift`, for a model that depends on no load.
+    fn moved(&self, shift: f64) -> Result<Self> {
+        let mut model = self.clone();
+        if self.spacing.is_empty() {
+            let plane = self.plane();
+            let plane = Plane::new(plane.min() + shift, plane.max() + shift, plane.levels())?;
+            let weights = self.weights().to_vec();
+            let (operator, sign) = (self.operator(), self.sign());
+            model.operators = Operators::new(operator, plane, weights, self.offset(), sign)?;
+            if let Some(start) = &mut model.start {
+                start.input += shift;
+            }
+        } else {
+            // The corners move; the plane behind them stays.
+            for corner in &mut model.spacing {
+                *corner += shift;
+            }
+        }
+        Ok(model)
+    }
+
     /// The model at one load. The result does not depend on a load.
     ///
     /// # Errors

@@ -147,7 +147,7 @@ impl State {
 
     /// Brings the operators to a load, and lends the model at that load; `None` for a model without
     /// a load. The caller gives it back.
-    pub(super) fn place(&mut self, model: &Model, load: Option<f64>) -> Result<Option<Box<Mixed>>> {
+    pub(crate) fn place(&mut self, model: &Model, load: Option<f64>) -> Result<Option<Box<Mixed>>> {
         let (dependence, load) = match (&model.load, load) {
             (None, None) => return Ok(None),
             (None, Some(_)) => return Err(no_load()),

@@ -25,20 +25,16 @@ impl Criterion {
         }
     }
 
-    /// Whether `value` is clearly better than `other`.
-    pub(crate) fn is_worth(self, value: f64, other: f64) -> bool {
+    /// Whether `value` is better than `other` by this share of the error, or, in percent, by this
+    /// much in the logarithm of the evidence.
+    pub(crate) fn is_worth(self, value: f64, other: f64, share: f64) -> bool {
         match self {
             _ if other.is_infinite() => value.is_finite(),
-            Self::LeftOut => value < (1.0 - WORTH) * other,
-            Self::Evidence => value < other - WORTH_EVIDENCE,
+            Self::LeftOut => value < (1.0 - share) * other,
+            Self::Evidence => value < other - 100.0 * share,
         }
     }
 }
-
-/// A better candidate has to reduce the error by this share, or raise the logarithm of the evidence
-/// by this much.
-const WORTH: f64 = 0.01;
-const WORTH_EVIDENCE: f64 = 1.0;
 
 /// How good one candidate is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -75,14 +71,10 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// Whether the choice is clearly better than another one for the same recordings: by 1 % of the
-    /// error left out, or by 1 in the logarithm of the evidence.
-    pub(crate) fn is_better_than(&self, other: &Self) -> bool {
-        let value = |of: &Self| {
-            let values = of.scores.iter().map(|score| of.criterion.value(score));
-            values.fold(f64::INFINITY, f64::min)
-        };
-        self.criterion.is_worth(value(self), value(other))
+    /// What the criterion says of the candidate that was chosen: the smaller, the better.
+    pub(crate) fn value(&self) -> f64 {
+        let values = self.scores.iter().map(|score| self.criterion.value(score));
+        values.fold(f64::INFINITY, f64::min)
     }
 
     /// The errors as a table: the numbers of levels tried and the strengths along the diagonal

@@ -6,8 +6,8 @@
 //! made monotone: each value becomes the mean of the largest value so far and the smallest value
 //! still to come (on a rising branch).
 
-use super::noise::resolution;
 use crate::series::Turning;
+use crate::series::noise::resolution;
 use hysteron_core::Direction;
 
 /// Makes `values` monotone between reversals of more than `dead_band`, in place. No value moves by
@@ -61,7 +61,7 @@ pub(super) fn reversals(values: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::test_series::gaussian;
+    use crate::series::test_series::gaussian;
 
     #[test]
     fn a_noisy_triangle_keeps_its_own_reversals_only() {

@@ -1,19 +1,17 @@
 //! Preparation: turns a recording as measured into one that a model can be identified from.
 //!
-//! `spikes` and `sign` repair single samples. `resample` makes equal time steps. `noise` estimates
-//! the noise and `smooth` the low-pass that removes it. `lag` undoes a sensor's lag. `band` removes
+//! `sign` repairs single samples. `resample` makes equal time steps. `smooth` is
+//! the low-pass that removes the noise. `lag` undoes a sensor's lag. `band` removes
 //! false reversals of the input. `rate` tests whether the material depends on rate. `report`
 //! records what was done.
 
 mod band;
 mod lag;
-mod noise;
 mod rate;
 mod report;
 mod resample;
 mod sign;
 mod smooth;
-mod spikes;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod test_series;
@@ -21,17 +19,16 @@ mod test_series;
 #[allow(clippy::unwrap_used)]
 mod tests;
 
-pub use noise::noise;
 pub use rate::{RateDependence, rate_dependence};
 pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, Spikes};
-pub(crate) use spikes::isolated;
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
 use crate::series::filter::low_pass;
-use crate::series::range;
+use crate::series::noise::noise;
+use crate::series::{range, spikes};
 
 /// What a step of the preparation does.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,9 +1,9 @@
 //! Resamples a recording to equal time steps.
 
-use super::noise::median_of;
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::noise::median_of;
 
 /// Steps that differ from the median by at most this share of it count as equal. A filter is not
 /// affected.

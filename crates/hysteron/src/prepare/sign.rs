@@ -6,7 +6,7 @@
 //! as much as a jump that is certainly not noise. This is a shortest path with two states per
 //! sample (Viterbi 1967).
 
-use super::noise::{median_of, noise};
+use crate::series::noise::{median_of, noise};
 use crate::series::range;
 
 /// Signs are lost near zero: only readings up to this share of the range are changed.
@@ -72,7 +72,7 @@ pub(super) fn restore(values: &mut [f64]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::test_series::gaussian;
+    use crate::series::test_series::gaussian;
 
     fn cooling_and_heating() -> Vec<f64> {
         (0..2000)

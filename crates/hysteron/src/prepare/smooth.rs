@@ -58,7 +58,7 @@ pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::prepare::test_series::gaussian;
+    use crate::series::test_series::gaussian;
 
     #[test]
     fn what_is_taken_away_is_the_noise() {

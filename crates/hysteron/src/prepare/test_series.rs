@@ -1,21 +1,10 @@
 //! Series with known truth, for tests.
 
 use crate::recording::Recording;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-
-/// White Gaussian noise of standard deviation 1.
-pub(super) fn gaussian(seed: u64, count: usize) -> Vec<f64> {
-    StandardNormal
-        .sample_iter(ChaCha8Rng::seed_from_u64(seed))
-        .take(count)
-        .collect()
-}
 
 /// The readings of a first-order sensor that starts settled; exact for a truth that is linear
 /// between samples.
-pub(super) fn behind_sensor(truth: &[f64], step: f64, tau: f64) -> Vec<f64> {
+pub(crate) fn behind_sensor(truth: &[f64], step: f64, tau: f64) -> Vec<f64> {
     let keep = (-step / tau).exp();
     let mut last = truth[0];
     let mut lagging = truth[0];
@@ -30,7 +19,7 @@ pub(super) fn behind_sensor(truth: &[f64], step: f64, tau: f64) -> Vec<f64> {
 
 /// A rate-independent actuator (ten play operators in parallel) through the same loops, first fast
 /// and then at a quarter of the speed.
-pub(super) fn two_rates(step: f64) -> Recording {
+pub(crate) fn two_rates(step: f64) -> Recording {
     let targets = [80.0, 25.0, 60.0, 35.0, 75.0, 20.0];
     let mut input = vec![20.0_f64];
     for rate in [2.0, 0.5] {

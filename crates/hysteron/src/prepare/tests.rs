@@ -1,7 +1,8 @@
 //! Tests of all steps together.
 
-use super::test_series::{gaussian, two_rates};
 use super::*;
+use crate::prepare::test_series::two_rates;
+use crate::series::test_series::gaussian;
 
 fn with_noise(recording: &Recording, input: f64, output: f64) -> Recording {
     let add = |values: &[f64], sigma: f64, seed: u64| -> Vec<f64> {

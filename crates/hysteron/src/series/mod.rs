@@ -1,11 +1,17 @@
 //! Functions over slices of numbers, without any model.
 //!
 //! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
-//! filter. `errors` compares two series. `spread` gives range, mean and standard deviation.
+//! filter. `errors` compares two series. `noise` estimates white noise, and
+//! `spikes` finds isolated readings. `spread` gives range, mean and standard deviation.
 
 mod errors;
 pub mod filter;
+pub(crate) mod noise;
+pub(crate) mod spikes;
 mod spread;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+pub(crate) mod test_series;
 mod turning;
 
 pub use errors::Errors;

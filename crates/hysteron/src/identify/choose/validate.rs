@@ -21,6 +21,9 @@ const FOLDS: usize = 10;
 /// of whole ones.
 const ENOUGH_BRANCHES: usize = 6;
 
+/// More levels have to be better by this share, see [`Criterion::is_worth`].
+const WORTH: f64 = 0.01;
+
 /// The candidates to choose from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidates {
@@ -132,7 +135,7 @@ pub(crate) fn choose(
                 known.values().copied().fold(f64::INFINITY, f64::min)
             }
         };
-        no_better = match criterion.is_worth(value, best_value) {
+        no_better = match criterion.is_worth(value, best_value, WORTH) {
             true => 0,
             false => no_better + 1,
         };

@@ -61,7 +61,7 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
 }
 
 /// The value that [`SHARE`] of the values do not exceed.
-fn quantile(mut values: Vec<f64>) -> f64 {
+pub(super) fn quantile(mut values: Vec<f64>) -> f64 {
     let place = ((values.len() as f64 * SHARE).ceil() as usize).clamp(1, values.len()) - 1;
     *values.select_nth_unstable_by(place, f64::total_cmp).1
 }

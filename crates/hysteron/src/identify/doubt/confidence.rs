@@ -10,8 +10,8 @@ use crate::identify::weights::solve::{NormalEquations, Penalised, not_definite};
 use crate::identify::weights::sparse::Initial;
 use crate::model::Confidence;
 use crate::model::Start;
-use crate::prepare::noise;
 use crate::progress::Progress;
+use crate::series::noise::noise;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -86,6 +86,7 @@ pub(crate) fn of(
         condition,
         noise: width,
         sensor,
+        sessions: 1,
         replicates: options.bootstrap,
         excitation: Unresolved::of(&inputs, *problem.regressor.plane(), options.operator, start)?
             .classes(&inputs)?,

@@ -4,3 +4,4 @@ pub(super) mod bootstrap;
 mod calibrate;
 pub(super) mod confidence;
 pub(super) mod excitation;
+pub(super) mod sessions;

@@ -14,8 +14,8 @@ use crate::error::Result;
 use crate::identify::choose::Open;
 use crate::identify::history::find_start;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
-use crate::identify::weights::fit::fit_weights;
-use crate::model::{Found, Model, Plane, Start, Surroundings};
+use crate::identify::weights::fit::fit_weights_without;
+use crate::model::{Found, Model, Outlier, Plane, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::{Errors, range};
@@ -24,20 +24,22 @@ use serde_json::json;
 use std::borrow::Cow;
 
 /// What a fit identifies besides the weights.
-pub(crate) struct Asked {
+pub(crate) struct Asked<'a> {
     /// A thermal body.
     pub(crate) body: bool,
     /// What is left to the data.
     pub(crate) open: Open,
     /// Whether the number of replicates follows from the levels.
     pub(crate) auto_bootstrap: bool,
+    /// Samples without weight.
+    pub(crate) outliers: &'a [Outlier],
 }
 
 /// Identifies stages and weights.
 pub(crate) fn fit(
     recordings: &[Recording],
     options: &FitOptions,
-    asked: Asked,
+    asked: Asked<'_>,
     progress: Progress<'_>,
 ) -> Result<Model> {
     let mut found = Found::default();
@@ -85,7 +87,8 @@ pub(crate) fn fit(
         found.after = after;
     }
     let changed = !found.after.is_none();
-    let mut model = fit_weights(&seen, &options, progress)?.with_stages(found)?;
+    let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
+    let mut model = model.with_stages(found)?;
     if options.start == Start::Unknown && recordings.len() == 1 && model.load.is_none() {
         model = with_found_start(model, &recordings[0], &mut notes)?;
     }

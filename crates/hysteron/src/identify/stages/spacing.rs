@@ -20,7 +20,8 @@ const POWERS: [f64; 3] = [0.5, 0.7, 1.0];
 /// The input axis is divided into this many bins for each level.
 const BINS: usize = 50;
 
-/// Other spacings have to fit better than equal distances by this share.
+/// Other spacings have to be better than equal distances by this share: they make a model that
+/// fewer tools understand.
 const WORTH: f64 = 0.05;
 
 /// Levels that are not at equal distances.
@@ -60,7 +61,9 @@ pub(super) fn find(
         };
         let (again, found) = open.choose(&recordings, &options, progress)?;
         if let Some(found) = &found
-            && !found.is_better_than(uniform)
+            && !found
+                .criterion
+                .is_worth(found.value(), uniform.value(), WORTH)
         {
             return Ok(None);
         }

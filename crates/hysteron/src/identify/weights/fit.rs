@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::identify::doubt::confidence;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::model::{FitSummary, LoadDependence, LoadPart, Model};
+use crate::model::{FitSummary, LoadDependence, LoadPart, Model, Outlier};
 use crate::progress::Progress;
 use crate::recording::{Origin, Recording};
 use crate::series::Errors;
@@ -16,8 +16,30 @@ pub(crate) fn fit_weights(
     options: &FitOptions,
     progress: Progress<'_>,
 ) -> Result<Model> {
+    fit_weights_without(recordings, options, &[], progress)
+}
+
+/// Fits again with the output of each outlier put where the model is, so that it has no influence.
+/// A few times are enough: what one sample moves is a small share of its distance.
+const AGAIN: usize = 4;
+
+/// As [`fit_weights`], with no weight for the `outliers`.
+pub(crate) fn fit_weights_without(
+    recordings: &[Recording],
+    options: &FitOptions,
+    outliers: &[Outlier],
+    progress: Progress<'_>,
+) -> Result<Model> {
     let mut problem = Problem::new(recordings, options)?;
-    let fitted = problem.solve(None, progress)?;
+    let mut fitted = problem.solve(None, progress)?;
+    for _ in 0..if outliers.is_empty() { 0 } else { AGAIN } {
+        for outlier in outliers {
+            let place = problem.experiment.recordings[outlier.recording].start + outlier.sample;
+            let residual = fitted.solution.residual[place];
+            problem.experiment.output[place] -= fitted.sign.factor() * residual;
+        }
+        fitted = problem.solve(None, progress)?;
+    }
     let plane = *problem.regressor.plane();
     let sign = fitted.sign;
     let parts = problem.load_parts(&fitted.solution.x, &fitted.solution.free, sign);

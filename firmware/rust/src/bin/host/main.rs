@@ -5,6 +5,9 @@ mod check;
 #[path = "../../data.rs"]
 mod data;
 mod report;
+#[path = "../../staged.rs"]
+#[allow(dead_code)]
+mod staged;
 mod tables;
 
 use std::path::Path;
@@ -20,12 +23,19 @@ fn main() -> Result<(), String> {
         return Err(USAGE.into());
     };
     let data = data::all(Path::new(vectors));
+    let staged = staged::all(Path::new(vectors));
     match (*what, rest) {
-        ("tables", [folder]) => tables::write(&data, Path::new(folder)),
-        ("check", [digits]) => check::digits(&data, &read(digits)?, false),
-        ("check", [digits, "plain"]) => check::digits(&data, &read(digits)?, true),
+        ("tables", [folder]) => {
+            tables::write(&data, Path::new(folder))?;
+            tables::write_staged(&staged, Path::new(folder))
+        }
+        ("check", [digits]) => check::digits(&data, Some(&staged.1), &read(digits)?),
+        ("check", [digits, "plain"]) => check::digits(&data, None, &read(digits)?),
         ("report", [page, measures]) => {
-            print!("{}", report::page(&data, &read(page)?, &read(measures)?)?);
+            print!(
+                "{}",
+                report::page(&data, &staged.1, &read(page)?, &read(measures)?)?
+            );
             Ok(())
         }
         _ => Err(USAGE.into()),

@@ -2,6 +2,7 @@
 
 use crate::check::operator;
 use crate::data::{FORWARD, LEVELS, Model, Run};
+use crate::staged::{MEASURED, STAGED_LEVELS, StagedRun};
 use hysteron_core::{Direction, Plane, Target, Turn, operator_count, table_len, turn_capacity};
 
 type Data = (Vec<Model>, Vec<Run>);
@@ -17,7 +18,12 @@ const ROUTES: [(&str, &str); 3] = [
 const AIMS: [(&str, f64); 2] = [("forward", 10.0), ("inverse", 20.0)];
 const AIM_LEVELS: usize = 20;
 
-pub fn page(data: &Data, page: &str, measures: &str) -> Result<String, String> {
+pub fn page(
+    data: &Data,
+    staged: &[StagedRun],
+    page: &str,
+    measures: &str,
+) -> Result<String, String> {
     let rows = measures
         .lines()
         .map(|line| line.split('\t').collect())
@@ -25,9 +31,11 @@ pub fn page(data: &Data, page: &str, measures: &str) -> Result<String, String> {
     let measures = Measures(rows);
     let (_, runs) = data;
     let steps: usize = runs.iter().map(|run| run.steps.len()).sum();
-    let vectors = runs.iter().filter(|run| run.expected.is_some()).count();
+    let steps = steps + staged.iter().map(|run| run.steps.len()).sum::<usize>();
+    let vectors = runs.iter().filter(|run| run.expected.is_some()).count()
+        + staged.iter().filter(|run| run.expected.is_some()).count();
     let mut text = page
-        .replace("{{runs}}", &runs.len().to_string())
+        .replace("{{runs}}", &(runs.len() + staged.len()).to_string())
         .replace("{{vectors}}", &vectors.to_string())
         .replace("{{steps}}", &steps.to_string());
     for (name, table) in [
@@ -36,6 +44,8 @@ pub fn page(data: &Data, page: &str, measures: &str) -> Result<String, String> {
         ("inverse", measures.instructions("inverse")?),
         ("worst", measures.worst(data)?),
         ("memory", measures.memory()?),
+        ("stages", measures.stages()?),
+        ("stage_memory", measures.stage_memory()?),
     ] {
         text = text.replace(&format!("{{{{{name}}}}}"), table.trim_end());
     }
@@ -131,6 +141,67 @@ impl<'a> Measures<'a> {
                         plain / rust
                     );
                 }
+            }
+        }
+        Ok(text)
+    }
+
+    /// Instructions of the steps of models with stages, beside those of the operators alone.
+    fn stages(&self) -> Result<String, String> {
+        let mut text = String::from(
+            "| number | stages | forward, mean | worst | inverse, mean | worst | Rust core: forward, mean | inverse, mean |\n\
+             | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        );
+        for (real, _) in REALS {
+            for what in ["none"].into_iter().chain(MEASURED) {
+                let model = match what {
+                    "none" => format!("bench_{STAGED_LEVELS}"),
+                    stage => format!("stage_{stage}"),
+                };
+                let of = |route: &str, kind: &str| -> Result<(f64, f64), String> {
+                    let run = format!("{model}: {kind}, walk");
+                    let start = [route, "steps", real, &run, kind];
+                    let mean = self.number(&start, 1)? / self.number(&start, 0)?;
+                    Ok((mean, self.number(&start, 2)?))
+                };
+                let (forward, inverse) = (of("c", "forward")?, of("c", "inverse")?);
+                let (rust, back) = (of("rust", "forward")?, of("rust", "inverse")?);
+                text += &format!(
+                    "| {real} | {what} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} |\n",
+                    forward.0, forward.1, inverse.0, inverse.1, rust.0, back.0
+                );
+            }
+        }
+        Ok(text)
+    }
+
+    /// Bytes of models with stages in exported C, beside those of the operators alone.
+    fn stage_memory(&self) -> Result<String, String> {
+        let mut text = String::from(
+            "| number | stages | flash: forward | forward and inverse | of it constants | RAM: state | of it stages | stack: forward | inverse |\n\
+             | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        );
+        let k = STAGED_LEVELS.to_string();
+        for (real, _) in REALS {
+            for what in ["none"].into_iter().chain(MEASURED) {
+                let (model, size) = match what {
+                    "none" => (format!("bench_{k}"), k.as_str()),
+                    stage => (format!("stage_{stage}"), stage),
+                };
+                let flash = |part| self.number(&["c", "size", real, size, part], 0);
+                let nothing = self.number(&["c", "size", real, &k, "0"], 0)?;
+                let (forward, both) = (flash("1")? - nothing, flash("2")? - nothing);
+                let constants = flash("constants")?;
+                let run = |kind: &str| format!("{model}: {kind}, walk");
+                let ram = |place| self.number(&["c", "ram", real, &run("forward")], place);
+                let (stages, operators) = (ram(0)?, ram(1)?);
+                let stack = |kind| self.number(&["c", "stack", real, &run(kind)], 0);
+                text += &format!(
+                    "| {real} | {what} | {forward:.0} | {both:.0} | {constants:.0} | {:.0} | {stages:.0} | {:.0} | {:.0} |\n",
+                    stages + operators,
+                    stack("forward")?,
+                    stack("inverse")?
+                );
             }
         }
         Ok(text)

@@ -1,6 +1,7 @@
 //! Writes the runs for C, as `rust/build.rs` does for Rust, and a model file for each model.
 
 use crate::data::{Model, Run};
+use crate::staged::{StagedModel, StagedRun};
 use std::fmt::{Debug, Write};
 use std::path::Path;
 
@@ -58,6 +59,56 @@ pub fn write((models, runs): &(Vec<Model>, Vec<Run>), folder: &Path) -> Result<(
     );
     file("runs.c".into(), text)?;
     file("weights.h".into(), weights)
+}
+
+/// The same for models with stages: `staged.c`, a model file each, and in `staged.txt` the name and
+/// the options of `hysteron export c` for each.
+pub fn write_staged(
+    (models, runs): &(Vec<StagedModel>, Vec<StagedRun>),
+    folder: &Path,
+) -> Result<(), String> {
+    let file = |name: String, text: String| {
+        std::fs::write(folder.join(&name), text).map_err(|why| format!("{name}: {why}"))
+    };
+    let (mut headers, mut options) = (String::new(), String::new());
+    for m in models {
+        let name = &m.model.name;
+        headers += &format!("#include \"{name}.h\"\n");
+        options += name;
+        if let Some(dt) = m.dt {
+            options += &format!(" --dt {dt:?}");
+        }
+        options.push('\n');
+        file(format!("{name}.json"), m.model.json.to_string())?;
+    }
+    let (mut constants, mut table) = (String::new(), String::new());
+    for (n, run) in runs.iter().enumerate() {
+        let model = &models[run.model].model;
+        let kinds: Vec<i8> = run.steps.iter().map(|step| step.0).collect();
+        let values: Vec<f64> = run.steps.iter().map(|step| step.1).collect();
+        let loads: Vec<f64> = run.steps.iter().map(|step| step.2).collect();
+        constants += &format!(
+            "static const signed char kinds_{n}[] = {{{}}};\nstatic const hys_real values_{n}[] = {{{}}};\n\
+             static const hys_real loads_{n}[] = {{{}}};\n",
+            list(&kinds),
+            list(&values),
+            list(&loads)
+        );
+        table += &format!(
+            "    {{{:?}, &{}, {}, {:?}, {}, kinds_{n}, values_{n}, loads_{n}}},\n",
+            run.name,
+            model.name,
+            model.levels,
+            run.tolerance,
+            kinds.len()
+        );
+    }
+    let text = format!(
+        "#include \"run.h\"\n{headers}\n{constants}\nconst staged_run staged_runs[] = {{\n{table}}};\n\
+         const size_t staged_run_count = sizeof staged_runs / sizeof *staged_runs;\n"
+    );
+    file("staged.c".into(), text)?;
+    file("staged.txt".into(), options)
 }
 
 pub fn is_measured(model: &Model) -> bool {

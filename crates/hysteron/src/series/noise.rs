@@ -47,13 +47,13 @@ pub fn noise(values: &[f64]) -> f64 {
 }
 
 /// A robust standard deviation: the median distance from zero, scaled for Gaussian noise.
-pub(super) fn deviation_of(residuals: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn deviation_of(residuals: impl Iterator<Item = f64>) -> f64 {
     SIGMA_PER_MEDIAN * median_of(residuals.map(f64::abs).collect())
 }
 
 /// The smallest distance between two different values: the resolution of a reading with a fixed
 /// step. 0 if there is only one value.
-pub(super) fn resolution(values: &[f64]) -> f64 {
+pub(crate) fn resolution(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.dedup();
@@ -62,7 +62,7 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
 }
 
 /// The median, with the mean of the two middle values for an even count; 0 for no values.
-pub(super) fn median_of(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median_of(mut values: Vec<f64>) -> f64 {
     let Some(middle) = values.len().checked_sub(1).map(|last| last.div_ceil(2)) else {
         return 0.0;
     };
@@ -80,7 +80,7 @@ pub(super) fn median_of(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::test_series::gaussian;
+    use crate::series::test_series::gaussian;
 
     #[test]
     fn the_noise_on_a_slow_signal_is_found() {

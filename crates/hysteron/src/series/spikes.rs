@@ -6,7 +6,7 @@
 //! 1968). A spike must also be beyond the samples on both sides of it, which a step or a turning
 //! point of the signal is not.
 
-use super::noise::{deviation_of, median_of, noise};
+use crate::series::noise::{deviation_of, median_of, noise};
 use crate::series::range;
 
 /// Number of neighbours on either side. Eight in all are enough to outvote three wrong samples in a
@@ -15,7 +15,7 @@ const REACH: usize = 4;
 
 /// Number of deviations from which on a sample is a spike. Hampel's 3 would remove one sample in
 /// 400 of Gaussian noise, 4 removes one in 16,000.
-pub(super) const DEVIATIONS: f64 = 4.0;
+pub(crate) const DEVIATIONS: f64 = 4.0;
 
 /// A spike below this share of the range is not removed. It is less than half the distance between
 /// the levels of a plane of 20.
@@ -23,7 +23,7 @@ const SMALLEST: f64 = 0.02;
 
 /// Replaces spikes of more than `deviations` by linear interpolation between their neighbours, in
 /// place. Returns the indices of the samples replaced.
-pub(super) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
+pub(crate) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     let (low, high) = range(values);
     remove_above(values, deviations, SMALLEST * (high - low))
 }
@@ -111,7 +111,7 @@ fn against_neighbours(window: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepare::test_series::gaussian;
+    use crate::series::test_series::gaussian;
 
     fn noisy_triangle() -> Vec<f64> {
         let triangle = (0..1000).map(|n| (f64::from(n % 200) - 100.0).abs());

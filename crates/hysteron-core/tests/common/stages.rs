@@ -1,0 +1,150 @@
+//! Random stages around the operators.
+
+use hysteron_core::{Axis, Body, Creep, Load, Plane, Real, Stages};
+use rand::RngExt;
+use rand::rngs::StdRng;
+
+/// Random constants of all stages. Each is there in half of the cases.
+#[derive(Debug, Clone)]
+pub struct Constants {
+    pub body: Option<[f64; 4]>,
+    pub loads: Vec<f64>,
+    pub shifts: Vec<f64>,
+    pub scales: Vec<f64>,
+    pub gains: Vec<f64>,
+    pub offsets: Vec<f64>,
+    pub spacing: Vec<f64>,
+    pub coefficients: Vec<f64>,
+    pub taus: Vec<f64>,
+    pub lag: f64,
+    pub offset: f64,
+    pub falling: bool,
+}
+
+pub fn ascending(rng: &mut StdRng, count: usize, from: f64, span: f64) -> Vec<f64> {
+    let steps: Vec<f64> = (0..count).map(|_| rng.random_range(0.2..1.0)).collect();
+    let total: f64 = steps.iter().sum();
+    let mut at = from;
+    let knot = |step: &f64| {
+        at += span * step / total;
+        at
+    };
+    steps.iter().map(knot).collect()
+}
+
+impl Constants {
+    pub fn random(rng: &mut StdRng, plane: &Plane<f64>) -> Self {
+        let span = plane.max() - plane.bottom();
+        let count = if rng.random() {
+            rng.random_range(1..5)
+        } else {
+            0
+        };
+        let creeps = if rng.random() {
+            rng.random_range(1..=4)
+        } else {
+            0
+        };
+        let mut numbers = |count: usize, low: f64, high: f64| -> Vec<f64> {
+            (0..count).map(|_| rng.random_range(low..high)).collect()
+        };
+        let shifts = numbers(count, -0.2 * span, 0.2 * span);
+        let scales = numbers(count, 0.7, 1.4);
+        let gains = numbers(count, 0.3, 3.0);
+        let offsets = numbers(count, -4.0, 4.0);
+        let coefficients = numbers(creeps, 0.0, 0.2);
+        let taus = numbers(creeps, 0.05, 20.0);
+        let body = numbers(4, 0.3, 3.0);
+        let offset = numbers(1, -5.0, 5.0)[0];
+        let lag = numbers(1, 0.01, 1.0)[0];
+        let (spaced, scaled, gained) = (rng.random(), rng.random(), rng.random());
+        let corners = plane.levels() + 1;
+        Self {
+            body: rng
+                .random::<bool>()
+                .then(|| [plane.bottom(), span * body[1], body[2], body[3]]),
+            loads: ascending(rng, count, -3.0, 10.0),
+            shifts,
+            scales: if scaled { scales } else { Vec::new() },
+            gains: if gained { gains } else { Vec::new() },
+            offsets: if gained { offsets } else { Vec::new() },
+            spacing: match spaced {
+                true => ascending(rng, corners, plane.bottom(), span),
+                false => Vec::new(),
+            },
+            coefficients,
+            taus,
+            lag: if rng.random() { lag } else { 0.0 },
+            offset,
+            falling: rng.random(),
+        }
+    }
+
+    pub fn map<T: Real>(&self, number: impl Fn(f64) -> T) -> Owned<T> {
+        let all = |values: &[f64]| values.iter().map(|v| number(*v)).collect();
+        Owned {
+            body: self
+                .body
+                .map(|[ambient, gain, tau_heating, tau_cooling]| Body {
+                    ambient: number(ambient),
+                    gain: number(gain),
+                    tau_heating: number(tau_heating),
+                    tau_cooling: number(tau_cooling),
+                }),
+            lists: [
+                &self.loads,
+                &self.shifts,
+                &self.scales,
+                &self.gains,
+                &self.offsets,
+                &self.spacing,
+                &self.coefficients,
+                &self.taus,
+            ]
+            .map(|list| all(list)),
+            lag: number(self.lag),
+            offset: number(self.offset),
+            falling: self.falling,
+        }
+    }
+}
+
+pub struct Owned<T> {
+    pub body: Option<Body<T>>,
+    pub lists: [Vec<T>; 8],
+    pub lag: T,
+    pub offset: T,
+    pub falling: bool,
+}
+
+impl<T: Real> Owned<T> {
+    pub fn stages(&self) -> Stages<'_, T> {
+        let [
+            loads,
+            shifts,
+            scales,
+            gains,
+            offsets,
+            spacing,
+            coefficients,
+            taus,
+        ] = &self.lists;
+        Stages {
+            body: self.body,
+            axis: Axis {
+                load: Load {
+                    loads,
+                    shifts,
+                    scales,
+                    gains,
+                    offsets,
+                },
+                spacing,
+            },
+            creep: Creep { coefficients, taus },
+            lag: self.lag,
+            offset: self.offset,
+            falling: self.falling,
+        }
+    }
+}

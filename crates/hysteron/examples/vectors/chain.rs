@@ -1,0 +1,292 @@
+//! Expected numbers of a model with stages, from the plain formula of each stage. Where a stage has
+//! to be inverted, its formula is searched by bisection.
+
+use super::plain::{self, Search, Wanted};
+use hysteron::{Model, Operator, Result, Sign};
+
+/// What is given for one sample: drive or target, time since the sample before, load.
+#[derive(Clone, Copy)]
+pub struct Sample {
+    pub value: f64,
+    pub dt: f64,
+    pub load: f64,
+}
+
+/// What is wanted in one sample of an inverse.
+pub struct Aim {
+    pub sample: Sample,
+    pub heading: i8,
+    pub tolerance: f64,
+    pub drive_range: (f64, f64),
+    pub horizon: f64,
+}
+
+/// What body, creep and lag remember.
+#[derive(Clone)]
+struct Memory {
+    temperature: f64,
+    crept: Vec<f64>,
+    lagged: f64,
+}
+
+/// The curves at one load.
+struct Loaded {
+    scale: f64,
+    shift: f64,
+    gain: f64,
+    offset: f64,
+}
+
+/// A model, and its operators alone: their output is `Σ μ γ`.
+pub struct Chain<'m> {
+    model: &'m Model,
+    operators: Model,
+    memory: Option<Memory>,
+}
+
+impl<'m> Chain<'m> {
+    pub fn new(model: &'m Model) -> Result<Self> {
+        let (operator, plane) = (model.operator(), *model.plane());
+        let weights = model.weights().to_vec();
+        Ok(Self {
+            model,
+            operators: Model::new(operator, plane, weights, 0.0, Sign::Positive)?,
+            memory: None,
+        })
+    }
+
+    /// The outputs for samples of the drive, from the first one on.
+    pub fn forward(mut self, samples: &[Sample]) -> Result<Vec<f64>> {
+        let mut temperatures = Vec::new();
+        let mut last = None;
+        for sample in samples {
+            let temperature = self.heated(last, sample.value, sample.dt);
+            last = Some(temperature);
+            temperatures.push(temperature);
+        }
+        let seen = temperatures.iter().zip(samples);
+        let seen: Vec<f64> = seen
+            .map(|(&temperature, sample)| self.seen(&self.loaded(sample.load), temperature))
+            .collect();
+        let sums = plain::forward(&self.operators, &seen)?;
+        let outputs = samples.iter().zip(temperatures).zip(sums);
+        let outputs = outputs.map(|((sample, temperature), sum)| {
+            let loaded = self.loaded(sample.load);
+            let (settled, crept) = self.settled(loaded.gain * sum, sample.dt);
+            self.memory = Some(Memory {
+                temperature,
+                crept,
+                lagged: settled,
+            });
+            self.outward(&loaded, settled)
+        });
+        Ok(outputs.collect())
+    }
+
+    /// Drive and status for each sample: −1 below reach at rest, 1 above, 3 not in this sample.
+    pub fn inverse(mut self, aims: &[Aim]) -> Result<Vec<(f64, i8)>> {
+        let operators = self.operators.clone();
+        let mut search = Search::new(&operators)?;
+        aims.iter().map(|aim| self.step(&mut search, aim)).collect()
+    }
+
+    fn step(&mut self, search: &mut Search<'_>, aim: &Aim) -> Result<(f64, i8)> {
+        let Sample {
+            value: target,
+            dt,
+            load,
+        } = aim.sample;
+        let loaded = self.loaded(load);
+        let sign = self.model.sign().factor();
+        let wanted = sign * (target - loaded.offset - self.model.offset());
+        let settled = |sum: f64| self.settled(loaded.gain * sum, dt).0;
+        let slope = settled(1.0) - settled(0.0);
+        let (off, on) = self.operators.output_range();
+        let seen = if slope > 0.0 {
+            let sum = root(settled, wanted);
+            // Where the sum is what it was but for rounding, it is just that.
+            let apart = (sum - search.output()).abs();
+            let target = if apart <= SAME * (on - off) {
+                search.output()
+            } else {
+                sum
+            };
+            let wanted = Wanted {
+                target,
+                heading: sign as i8 * aim.heading,
+                tolerance: aim.tolerance / slope,
+            };
+            search.find(&wanted)?.0
+        } else {
+            // A lag in a step without length: the output cannot move.
+            search.input()
+        };
+        let temperature = root(|temperature| self.seen(&loaded, temperature), seen);
+        let drive = self.drive(aim, temperature);
+
+        let last = self.memory.as_ref().map(|memory| memory.temperature);
+        let temperature = self.heated(last, drive, dt);
+        search.travel(self.seen(&loaded, temperature))?;
+        let (settled, crept) = self.settled(loaded.gain * search.output(), dt);
+        let gain = loaded.gain * self.gain_at_rest();
+        self.memory = Some(Memory {
+            temperature,
+            crept,
+            lagged: settled,
+        });
+        let ends = [off, on].map(|sum| self.outward(&loaded, gain * sum));
+        let (least, greatest) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let same = SAME * (greatest - least);
+        let reach = aim.tolerance.max(same);
+        let status = if (self.outward(&loaded, settled) - target).abs() <= aim.tolerance + same {
+            0
+        } else if target > greatest + reach {
+            1
+        } else if target < least - reach {
+            -1
+        } else {
+            3
+        };
+        Ok((drive, status))
+    }
+
+    /// The drive for a temperature, as far as the range of the drive goes.
+    fn drive(&self, aim: &Aim, temperature: f64) -> f64 {
+        let (low, high) = aim.drive_range;
+        let last = self.memory.as_ref().map(|memory| memory.temperature);
+        let dt = aim.sample.dt.max(aim.horizon);
+        if self.model.thermal.is_none() {
+            return temperature.clamp(low, high);
+        }
+        let heated = |drive| self.heated(last, drive, dt);
+        if heated(high) <= temperature && heated(low) < temperature {
+            high
+        } else if heated(low) >= temperature {
+            low
+        } else {
+            between(heated, temperature, low, high)
+        }
+    }
+
+    /// The temperature after `dt` with the drive held; at rest before the first sample. The input
+    /// itself without a body.
+    fn heated(&self, last: Option<f64>, drive: f64, dt: f64) -> f64 {
+        let Some(body) = self.model.thermal else {
+            return drive;
+        };
+        let rest = body.ambient + body.gain * drive;
+        match last {
+            None => rest,
+            Some(last) if rest > last => rest + (last - rest) * (-dt / body.tau_heating).exp(),
+            Some(last) => rest + (last - rest) * (-dt / body.tau_cooling).exp(),
+        }
+    }
+
+    fn loaded(&self, load: f64) -> Loaded {
+        let curves = self
+            .model
+            .load
+            .as_ref()
+            .and_then(|load| load.curves.as_ref());
+        let of = |values: fn(&hysteron::LoadCurves) -> &Vec<f64>, none: f64| match curves {
+            Some(curves) if !values(curves).is_empty() => {
+                let loads = &curves.loads;
+                let load = load.clamp(loads[0], loads[loads.len() - 1]);
+                line(loads, values(curves), load)
+            }
+            _ => none,
+        };
+        Loaded {
+            scale: of(|curves| &curves.scales, 1.0),
+            shift: of(|curves| &curves.shifts, 0.0),
+            gain: of(|curves| &curves.gains, 1.0),
+            offset: of(|curves| &curves.offsets, 0.0),
+        }
+    }
+
+    /// What the operators see of a temperature.
+    fn seen(&self, loaded: &Loaded, temperature: f64) -> f64 {
+        let effective = loaded.scale * temperature - loaded.shift;
+        let corners = self.model.spacing();
+        let plane = self.model.plane();
+        let levels: Vec<f64> = (0..corners.len()).map(|k| plane.level(k)).collect();
+        match corners {
+            [] => effective,
+            _ => line(corners, &levels, effective),
+        }
+    }
+
+    /// Creep and lag: the output for the operators' `h`, and the outputs of the creep terms.
+    fn settled(&self, h: f64, dt: f64) -> (f64, Vec<f64>) {
+        let faded = |last: Option<f64>, now: f64, tau: f64| match last {
+            Some(last) if tau > 0.0 => now + (last - now) * (-dt / tau).exp(),
+            _ => now,
+        };
+        let memory = self.memory.as_ref();
+        let terms = self.model.creep();
+        let crept: Vec<f64> = (terms.iter().enumerate())
+            .map(|(k, term)| faded(memory.map(|memory| memory.crept[k]), h, term.tau))
+            .collect();
+        let crawl = terms.iter().zip(&crept);
+        let sum = h + crawl
+            .map(|(term, crept)| term.coefficient * crept)
+            .sum::<f64>();
+        let lagged = faded(memory.map(|memory| memory.lagged), sum, self.model.lag());
+        // At the first sample the lag has rested at `h`, and nothing of that is left.
+        (lagged, crept)
+    }
+
+    fn gain_at_rest(&self) -> f64 {
+        let terms = self.model.creep();
+        1.0 + terms.iter().map(|term| term.coefficient).sum::<f64>()
+    }
+
+    fn outward(&self, loaded: &Loaded, sum: f64) -> f64 {
+        loaded.offset + self.model.offset() + self.model.sign().factor() * sum
+    }
+}
+
+/// Outputs closer than this share of the range are the same: rounding, with room for the search.
+const SAME: f64 = 1e-11;
+
+/// The size of the output at most, for tolerances.
+pub fn size(model: &Model) -> f64 {
+    let total: f64 = model.weights().iter().sum();
+    let sure = if model.operator() == Operator::Mkp {
+        1.0
+    } else {
+        2.0
+    };
+    sure * total + model.offset().abs()
+}
+
+/// The piecewise linear function through these points. Beyond the ends it goes on straight.
+fn line(xs: &[f64], ys: &[f64], x: f64) -> f64 {
+    if xs.len() == 1 {
+        return ys[0];
+    }
+    let mut k = 0;
+    while k + 2 < xs.len() && x > xs[k + 1] {
+        k += 1;
+    }
+    ys[k] + (x - xs[k]) * (ys[k + 1] - ys[k]) / (xs[k + 1] - xs[k])
+}
+
+/// Where a rising function has this value.
+fn root(function: impl Fn(f64) -> f64, value: f64) -> f64 {
+    between(function, value, -1e6, 1e6)
+}
+
+fn between(function: impl Fn(f64) -> f64, value: f64, mut low: f64, mut high: f64) -> f64 {
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle == low || middle == high {
+            return high;
+        }
+        if function(middle) >= value {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The method `load` over a recording: an estimate of the shift, sample by sample.
+
+use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation};
+use crate::error::Result;
+use crate::model::{Model, Surroundings};
+use crate::progress::{Progress, SAMPLES_BETWEEN};
+use crate::recording::Recording;
+
+/// What the method `load` found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShiftFound {
+    /// The shift of the axis before each sample was learned from, in the input's unit: of the
+    /// temperature, for a model with a thermal body.
+    pub shifts: Vec<f64>,
+    /// The load that each shift tells. `None` if the model's shift says nothing of a load.
+    pub loads: Option<Vec<f64>>,
+    /// The shift of the model that was written.
+    pub shift: f64,
+    /// Its standard deviation, as the filter believes it.
+    pub deviation: f64,
+    /// The load that this shift tells.
+    pub load: Option<f64>,
+    /// The load that the shift departs from.
+    pub from: Option<f64>,
+}
+
+pub(super) fn adapt(
+    model: &Model,
+    recording: &Recording,
+    options: &AdaptOptions,
+    progress: Progress<'_>,
+) -> Result<Adapted> {
+    let learned_by = options.resolve(model, recording)?;
+    let mut adaptive = AdaptiveLoad::new(model, options.load, learned_by.shift()?)?;
+    let offline = match adaptive.told() {
+        Some(load) => model.at_load(load)?,
+        None => model.clone(),
+    };
+    let (from_on, fixed) = fixed(&offline, recording, options.start)?;
+    if from_on {
+        adaptive.saturate();
+    }
+    let count = recording.len();
+    let probation = on_probation(learned_by, count);
+    let around = Surroundings {
+        load: None,
+        ..Surroundings::of(model, recording)
+    };
+    let (mut learned, mut shifts, mut loads) = (Vec::new(), Vec::new(), Vec::new());
+    let mut last = adaptive.clone();
+    for (n, sample) in around.samples(model, &recording.input)? {
+        if n % SAMPLES_BETWEEN == 0 {
+            progress.tell("adaptation", n as f64 / count as f64)?;
+        }
+        if n + probation == count {
+            last = adaptive.clone();
+        }
+        shifts.push(adaptive.shift());
+        loads.extend(adaptive.load());
+        learned.push(adaptive.step(sample, recording.output[n])?);
+    }
+    if probation == 0 {
+        last = adaptive;
+    }
+    progress.tell("adaptation", 1.0)?;
+    let found = super::ShiftFound {
+        loads: (loads.len() == count).then_some(loads),
+        shifts,
+        shift: last.shift(),
+        deviation: last.deviation(),
+        load: last.load(),
+        from: last.told(),
+    };
+    Learned {
+        offline,
+        last: last.model()?,
+        learned,
+        fixed,
+        from_on,
+        probation,
+        shift: Some(found),
+        options: learned_by,
+    }
+    .judged(recording, options)
+}

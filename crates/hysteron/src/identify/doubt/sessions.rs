@@ -1,0 +1,48 @@
+//! Widens the band to what changes between sessions: other recordings of the same actuator.
+
+use crate::error::Result;
+use crate::identify::doubt::calibrate::quantile;
+use crate::identify::history::find_start;
+use crate::model::{INTERVAL, Model, Surroundings};
+use crate::recording::Recording;
+
+/// Widens the band of a model with confidence so that it holds 95 % of the samples of the
+/// `repeats`, too. Weights and offset stay as they are. The start of each repeat is estimated from
+/// its beginning.
+///
+/// # Errors
+/// As [`crate::evaluate_from`].
+pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
+    let Some(band) = model.band()? else {
+        return Ok(());
+    };
+    let noise = confidence(model).map_or(0.0, |found| found.noise);
+    let mut missing = Vec::new();
+    for repeat in repeats {
+        let (start, _) = find_start(model, repeat)?;
+        let begin = model.restore(&start.turning_points, start.input)?;
+        let around = Surroundings::of(model, repeat);
+        let mut output = vec![0.0; repeat.len()];
+        model.run_in(&mut begin.clone(), &repeat.input, around, &mut output)?;
+        let half = band.run(&begin, &model.seen(&repeat.input, around)?)?;
+        let errors = repeat.output.iter().zip(&output).map(|(y, h)| y - h);
+        // What the errors need beyond the variance of the weights.
+        missing.extend(errors.zip(half).map(|(error, half)| {
+            let [error, half] = [error, half].map(|size| (size / INTERVAL).powi(2));
+            error - (half - noise * noise)
+        }));
+    }
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let needed = quantile(missing).max(0.0).sqrt();
+    if let Some(found) = confidence(model) {
+        found.noise = found.noise.max(needed);
+        found.sessions += repeats.len();
+    }
+    Ok(())
+}
+
+fn confidence(model: &mut Model) -> Option<&mut crate::model::Confidence> {
+    model.fit.as_mut().and_then(|fit| fit.confidence.as_mut())
+}

@@ -1,0 +1,202 @@
+//! Models with stages, and their runs: those of the test vectors that have a fixed time step, and
+//! those that are measured.
+
+use crate::data::{
+    FORWARD, Model, Random, SAMPLES, bench_model, files, model, number, numbers, short,
+};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The stages that are measured, each alone, and all of them.
+pub const MEASURED: [&str; 6] = ["body", "load", "spacing", "creep", "lag", "all"];
+/// The levels of the models that are measured.
+pub const STAGED_LEVELS: usize = 20;
+/// The time step of the runs that are measured, in seconds.
+const DT: f64 = 0.125;
+
+pub struct StagedModel {
+    pub model: Model,
+    /// Ambient temperature, gain, time constants of heating and cooling.
+    pub body: Option<[f64; 4]>,
+    /// Loads, shifts, scales, gains, offsets.
+    pub curves: [Vec<f64>; 5],
+    pub spacing: Vec<f64>,
+    /// Coefficients and time constants.
+    pub creep: [Vec<f64>; 2],
+    pub lag: f64,
+    /// The range of the drive, where it is limited.
+    pub drive: Option<(f64, f64)>,
+    /// The time step; `None` for a model that does not depend on time.
+    pub dt: Option<f64>,
+}
+
+pub struct StagedRun {
+    pub name: String,
+    pub model: usize,
+    pub tolerance: f64,
+    /// Kind, value and load of each step.
+    pub steps: Vec<(i8, f64, f64)>,
+    /// As for a run without stages.
+    pub expected: Option<(Vec<f64>, Vec<i8>, f64)>,
+}
+
+pub fn all(vectors: &Path) -> (Vec<StagedModel>, Vec<StagedRun>) {
+    let (mut models, mut runs) = (Vec::new(), Vec::new());
+    for (name, file) in files(vectors, 2) {
+        let before = runs.len();
+        let all = file["runs"].as_array().expect("runs").iter();
+        let mut dt = None;
+        for run in all.filter(|run| fixed(run).is_some()) {
+            dt = fixed(run);
+            runs.push(vector(&name, models.len(), &file, run));
+        }
+        assert!(
+            runs.len() > before,
+            "{name} has no run with a fixed time step"
+        );
+        models.push(staged(&name.replace('-', "_"), file["model"].clone(), dt));
+    }
+    for what in MEASURED {
+        let staged = measured(what);
+        runs.extend(measured_runs(&staged, models.len()));
+        models.push(staged);
+    }
+    (models, runs)
+}
+
+/// The time step of a run after its first sample; `None` where it changes, or where the drive has
+/// other limits than the model's.
+fn fixed(run: &Value) -> Option<f64> {
+    let dt = numbers(&run["dt"]);
+    let step = dt.get(1).copied().unwrap_or(DT);
+    let same = dt.iter().skip(1).all(|dt| *dt == step);
+    (same && run["drive_range"].is_null()).then_some(step)
+}
+
+fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
+    let thermal = &json["thermal"];
+    let body = ["ambient", "gain", "tau_heating", "tau_cooling"];
+    let curves = &json["load"]["curves"];
+    let terms: Vec<&Value> = json["creep"].as_array().into_iter().flatten().collect();
+    let creep = ["coefficient", "tau"];
+    let lag = json["lag"].as_f64().unwrap_or(0.0);
+    let timed = !thermal.is_null() || !terms.is_empty() || lag > 0.0;
+    let drive = &json["drive"];
+    StagedModel {
+        body: (!thermal.is_null()).then(|| body.map(|what| number(&thermal[what]))),
+        curves: ["loads", "shifts", "scales", "gains", "offsets"]
+            .map(|curve| numbers(&curves[curve])),
+        spacing: numbers(&json["spacing"]),
+        creep: creep.map(|what| terms.iter().map(|term| number(&term[what])).collect()),
+        lag,
+        drive: (!drive.is_null()).then(|| (number(&drive["min"]), number(&drive["max"]))),
+        dt: dt.filter(|_| timed),
+        model: model(name, json),
+    }
+}
+
+fn vector(name: &str, model: usize, file: &Value, run: &Value) -> StagedRun {
+    let forward = file["kind"] == "forward";
+    let (values, results) = if forward {
+        ("input", "output")
+    } else {
+        ("target", "input")
+    };
+    let values = numbers(&run[values]);
+    let load = numbers(&run["load"]);
+    let heading = numbers(&run["heading"]);
+    let step = |(n, value)| {
+        let kind = heading.get(n).map_or(FORWARD, |heading| *heading as i8);
+        (kind, value, load.get(n).copied().unwrap_or(0.0))
+    };
+    let status = match forward {
+        true => vec![0; values.len()],
+        false => numbers(&run["status"]).iter().map(|&s| s as i8).collect(),
+    };
+    StagedRun {
+        name: format!("{name}: {}", run["name"].as_str().expect("a name")),
+        model,
+        tolerance: run["tolerance"].as_f64().unwrap_or(0.0),
+        steps: values.into_iter().enumerate().map(step).collect(),
+        expected: Some((
+            numbers(&run[results]),
+            status,
+            number(&file["tolerance"][results]),
+        )),
+    }
+}
+
+/// The model that is measured without stages, with one of them or with all.
+fn measured(what: &str) -> StagedModel {
+    let plain = bench_model(STAGED_LEVELS);
+    let mut json = plain.json;
+    json["version"] = 2.into();
+    let there = |stage: &str| what == stage || what == "all";
+    if there("body") {
+        json["thermal"] = json!({
+            "kind": "first-order", "ambient": 10.0, "gain": 80.0,
+            "tau_heating": 0.125, "tau_cooling": 0.1875,
+        });
+        json["drive"] = json!({"min": 0.0, "max": 1.0});
+    }
+    if there("load") {
+        json["load"] = json!({
+            "name": "stress", "min": 0.0, "max": 200.0,
+            "parts": [{"offset": 0.0, "weights": plain.weights}],
+            "curves": {
+                "loads": [0.0, 50.0, 100.0, 200.0], "shifts": [0.0, 4.0, 6.0, 12.0],
+                "scales": [1.0, 1.0625, 1.0625, 1.0], "gains": [1.0, 1.25, 1.5, 1.5],
+                "offsets": [0.0, 0.5, 0.25, 0.0],
+            },
+        });
+    }
+    if there("spacing") {
+        let corner = |k: usize| {
+            let x = k as f64 / STAGED_LEVELS as f64 - 0.5;
+            short(48.0 + 62.0 * (x + 4.0 * x * x * x) / 2.0)
+        };
+        json["spacing"] = (0..=STAGED_LEVELS).map(corner).collect();
+    }
+    if there("creep") {
+        json["creep"] = json!([
+            {"coefficient": 0.0625, "tau": 0.5}, {"coefficient": 0.03125, "tau": 8.0},
+        ]);
+    }
+    if there("lag") {
+        json["lag"] = 0.0625.into();
+    }
+    staged(&format!("stage_{what}"), json, Some(DT))
+}
+
+/// A random walk of the drive and one of the target, as for a model without stages. The load
+/// changes at each sample.
+fn measured_runs(staged: &StagedModel, number: usize) -> Vec<StagedRun> {
+    let total: f64 = staged.model.weights.iter().sum();
+    let (low, high) = match (&staged.drive, staged.spacing.as_slice()) {
+        (Some(range), _) => *range,
+        (None, [low, .., high]) => (*low, *high),
+        _ => (staged.model.min, staged.model.max),
+    };
+    let mut random = Random(7);
+    let mut place: f64 = 0.5;
+    let walk: Vec<(f64, f64)> = (0..SAMPLES)
+        .map(|_| {
+            place = (place + (random.next() - 0.5) * 0.5).clamp(0.0, 1.0);
+            (place, short(200.0 * random.next()))
+        })
+        .collect();
+    let run = |name: &str, kind: i8, low: f64, high: f64| StagedRun {
+        name: format!("{}: {name}", staged.model.name),
+        model: number,
+        tolerance: 0.0,
+        steps: walk
+            .iter()
+            .map(|(share, load)| (kind, short(low + share * (high - low)), *load))
+            .collect(),
+        expected: None,
+    };
+    vec![
+        run("forward, walk", FORWARD, low, high),
+        run("inverse, walk", 0, 0.0, total),
+    ]
+}
