@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """A plain identification to compare with: dense regressor from the definition, and SciPy's NNLS.
 
-Reads one JSON object {"min", "max", "levels", "input", "output", "fold"} from standard input.
-`fold` (a number for each sample, or null) tells which samples are left out together.
+Reads one JSON object {"min", "max", "levels", "input", "output", "fold", "test"} from standard
+input. `fold` (a number for each sample, or null) tells which samples are left out together. `test`
+is the input of another recording, or null.
 
 Prints one JSON object: errors in the output's unit, the squared error at the optimum of a fit of
-everything, and the seconds that the regressor and that fit took. Needs NumPy and SciPy.
+everything, the seconds that the regressor and that fit took, and with `test` the output predicted
+for it. Needs NumPy and SciPy.
 """
 import json
 import sys
@@ -46,7 +48,8 @@ def main():
     job = json.load(sys.stdin)
     y = np.asarray(job["output"])
     start = time.perf_counter()
-    phi = regressor(job["min"], job["max"], job["levels"], job["input"])
+    plane = lambda samples: regressor(job["min"], job["max"], job["levels"], samples)
+    phi = plane(job["input"])
     built = time.perf_counter()
     model = fit(phi, y)
     done = time.perf_counter()
@@ -55,6 +58,8 @@ def main():
         "seconds_regressor": built - start,
         "seconds_fit": done - built,
     }
+    if job.get("test") is not None:
+        result["predicted"] = model(plane(job["test"])).tolist()
     if job.get("fold") is not None:
         fold = np.asarray(job["fold"])
         training, predicted = 0.0, np.empty_like(y)

@@ -36,10 +36,19 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         folder.commit()?;
         say(format_args!("the report is {}", paths[0].display()));
     }
+    let fit = model.fit.as_ref();
+    let fitted = fit.is_some_and(|fit| fit.was_fitted_to(&recording));
     if args.json.json {
-        return print(&to_json(&evaluation).to_string());
+        let mut object = to_json(&evaluation);
+        object["was_fitted"] = json!(fitted);
+        return print(&object.to_string());
     }
-    print(&to_text(&evaluation, &recording))
+    let mut result = to_text(&evaluation, &recording);
+    if fitted {
+        result += "\nthis is the recording that the model was fitted to: the errors say how well it \
+                   fits, not how well it predicts";
+    }
+    print(&result)
 }
 
 /// The JSON of an evaluation: `forward` and `inverse` with the same four measures each.
@@ -78,15 +87,7 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
     let mut rows = vec![text::row(["", "RMSE", "largest", "% of range", "samples"])];
     let mut line = |name: &str, errors: Option<&Errors>, quantity: &Quantity| {
         if let Some(errors) = errors {
-            rows.push(vec![
-                name.to_owned(),
-                text::with_unit(errors.rmse, quantity),
-                text::with_unit(errors.max_abs, quantity),
-                errors
-                    .nrmse_percent
-                    .map_or("–".into(), |percent| format!("{percent:.2}")),
-                errors.samples.to_string(),
-            ]);
+            rows.push(text::errors(name, errors, quantity));
         }
     };
     line("forward", Some(&evaluation.forward), output);

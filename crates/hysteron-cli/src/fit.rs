@@ -1,10 +1,10 @@
 //! `hysteron fit`
 
 use crate::terminal::{Result, print, say};
-use crate::{args, prepare, progress, recording, text};
+use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, LoadLaw, Model,
-    Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
+    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, LoadLaw,
+    Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
     Validation,
 };
 use serde_json::json;
@@ -19,27 +19,23 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let inputs = args.data.iter().chain(&args.repeat);
+    let held_out = args.hold_out.iter().filter_map(|what| match what {
+        args::HoldOut::File(file) => Some(file),
+        args::HoldOut::Part(_) => None,
+    });
+    let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let mut prepared = Vec::new();
     for data in &args.data {
-        let mut recording = recording::read(data, columns, &args.repair)?;
-        let units = [
-            (&args.input_unit, &mut recording.input_quantity),
-            (&args.output_unit, &mut recording.output_quantity),
-        ];
-        for (unit, quantity) in units {
-            if unit.is_some() {
-                quantity.unit.clone_from(unit);
-            }
-        }
-        prepared.push(prepare::before_fit(recording, &args.prepare)?);
+        prepared.push(read(args, data, columns)?);
     }
     let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
     let repeats = args.repeat.iter();
     let repeats = repeats.map(|file| recording::read(file, columns, &args.repair));
-    let model = identify(args, &recordings, repeats.collect::<Result<_>>()?)?;
+    let repeats = repeats.collect::<Result<_>>()?;
+    let what = hold_out::What::of(args, |file| Ok(read(args, file, columns)?.0))?;
+    let (model, held_out) = identify(args, &recordings, repeats, &what)?;
     file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
@@ -49,14 +45,47 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
             clipped = inputs;
         }
     }
+    if let Some(held_out) = &held_out {
+        hold_out::warn(held_out);
+    }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
-        (Some(fit), true) => print(&to_json(args, &model, fit, clipped, &prepared).to_string()),
-        (Some(fit), false) => print(&to_text(args, &model, fit)),
+        (Some(fit), true) => {
+            let mut object = to_json(args, &model, fit, clipped, &prepared);
+            if let Some(held_out) = &held_out {
+                object["hold_out"] = json!(held_out);
+            }
+            print(&object.to_string())
+        }
+        (Some(fit), false) => {
+            let held_out = held_out.map(|held_out| hold_out::to_text(&held_out, &model));
+            let lines = [Some(to_text(args, &model, fit)), held_out];
+            print(&lines.into_iter().flatten().collect::<Vec<_>>().join("\n"))
+        }
     }
 }
 
-fn identify(args: &args::Fit, recordings: &[Recording], repeats: Vec<Recording>) -> Result<Model> {
+/// A recording with the units asked for, and prepared.
+fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Prepared> {
+    let mut recording = recording::read(data, columns, &args.repair)?;
+    let units = [
+        (&args.input_unit, &mut recording.input_quantity),
+        (&args.output_unit, &mut recording.output_quantity),
+    ];
+    for (unit, quantity) in units {
+        if unit.is_some() {
+            quantity.unit.clone_from(unit);
+        }
+    }
+    prepare::before_fit(recording, &args.prepare)
+}
+
+fn identify(
+    args: &args::Fit,
+    recordings: &[Recording],
+    repeats: Vec<Recording>,
+    what: &hold_out::What,
+) -> Result<(Model, Option<HeldOut>)> {
     let levels = match args.levels {
         args::Levels::Auto => Choice::Auto,
         args::Levels::Fixed(levels) => Choice::Fixed(levels),
@@ -116,9 +145,9 @@ fn identify(args: &args::Fit, recordings: &[Recording], repeats: Vec<Recording>)
         .thermal(args.thermal.is_some())
         .repeats(repeats)
         .progress(Progress::new(&told));
-    let model = fit.run(recordings)?;
+    let found = hold_out::fit(&fit, recordings, what)?;
     bar.finish_and_clear();
-    Ok(model)
+    Ok(found)
 }
 
 type Prepared = (Recording, Option<Preparation>, Option<RateDependence>);

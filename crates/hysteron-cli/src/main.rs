@@ -2,11 +2,13 @@
 
 mod adapt;
 mod args;
+mod compare;
 mod demo;
 mod design;
 mod evaluate;
 mod export;
 mod fit;
+mod hold_out;
 mod inspect;
 mod prepare;
 mod progress;
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => table::simulate(&args),
         Command::Invert(args) => table::invert(&args),
         Command::Evaluate(args) => evaluate::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Adapt(args) => adapt::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Design(args) => design::run(&args),

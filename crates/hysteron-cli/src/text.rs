@@ -1,6 +1,6 @@
 //! Numbers and tables as text.
 
-use hysteron::{Excitation, FitSummary, Model, Quantity};
+use hysteron::{Errors, Excitation, FitSummary, Model, Quantity};
 
 /// A number with four significant digits.
 pub(crate) fn number(value: f64) -> String {
@@ -43,6 +43,18 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
 /// Cells of a table row.
 pub(crate) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
     cells.iter().map(|cell| (*cell).to_owned()).collect()
+}
+
+/// A table row of errors: RMSE, largest, percent of the range, samples.
+pub(crate) fn errors(name: &str, errors: &Errors, quantity: &Quantity) -> Vec<String> {
+    let percent = errors.nrmse_percent;
+    vec![
+        name.to_owned(),
+        with_unit(errors.rmse, quantity),
+        with_unit(errors.max_abs, quantity),
+        percent.map_or("–".into(), |percent| format!("{percent:.2}")),
+        errors.samples.to_string(),
+    ]
 }
 
 /// What the data say of the weights, and what not.

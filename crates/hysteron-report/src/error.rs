@@ -22,6 +22,9 @@ pub enum ReportError {
     /// A comparison without a run.
     #[error("no run to show: a report needs the trace of at least one controller")]
     NoRun,
+    /// A comparison without a model.
+    #[error("no model to show: a report needs at least one")]
+    NoModel,
     /// A run without samples.
     #[error("the run of {run} has no samples: nothing can be shown of it")]
     EmptyRun {

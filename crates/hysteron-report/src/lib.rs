@@ -6,17 +6,20 @@
 //! nothing beside it. [`Report::svg`] draws a single figure.
 //!
 //! [`TrackReport::write`] does the same for control loops: one run of each controller over the same
-//! reference.
+//! reference. [`ModelsReport::write`] puts the residuals of several models beside each other.
 //!
 //! The figures stay legible in grey: curves differ in line style and lightness, never in colour
 //! alone.
 
+mod clock;
 mod decimate;
 mod draw;
 mod error;
 mod evaluation;
 mod frame;
+mod models;
 mod number;
+mod panels;
 mod plane;
 mod png;
 mod quantity;
@@ -25,4 +28,5 @@ mod track;
 
 pub use error::ReportError;
 pub use evaluation::{Figure, Report, excitation_map};
+pub use models::{ModelsReport, NamedForward};
 pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};

@@ -80,17 +80,7 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 /// As [`evaluate`].
 pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
     recording.check()?;
-    let mut estimated_from = None;
-    let begin = match start {
-        Start::Fitted => model.start(),
-        Start::Off => model.off(),
-        Start::On => model.saturated(),
-        Start::Unknown => {
-            let (found, samples) = find_start(model, recording)?;
-            estimated_from = Some(samples);
-            model.restore(&found.turning_points, found.input)?
-        }
-    };
+    let (begin, estimated_from) = begin(model, recording, start)?;
     let around = Surroundings::of(model, recording);
     let mut output_model = vec![0.0; recording.len()];
     let clipped = model.run_in(
@@ -114,6 +104,24 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         clipped: clipped.low + clipped.high,
         estimated_from,
         inverse,
+    })
+}
+
+/// The state in which the model begins, and the number of samples from which it was estimated.
+pub(crate) fn begin(
+    model: &Model,
+    recording: &Recording,
+    start: Start,
+) -> Result<(State, Option<usize>)> {
+    Ok(match start {
+        Start::Fitted => (model.start(), None),
+        Start::Off => (model.off(), None),
+        Start::On => (model.saturated(), None),
+        Start::Unknown => {
+            let (found, samples) = find_start(model, recording)?;
+            let state = model.restore(&found.turning_points, found.input)?;
+            (state, Some(samples))
+        }
     })
 }
 
@@ -179,7 +187,7 @@ fn moving(output: &[f64], noise: f64, still: f64) -> Vec<bool> {
 }
 
 /// Errors over all samples. A recording has at least one sample.
-fn compare(measured: &[f64], modelled: &[f64]) -> Errors {
+pub(crate) fn compare(measured: &[f64], modelled: &[f64]) -> Errors {
     Errors::between(measured, modelled, |_| true).unwrap_or(Errors {
         rmse: 0.0,
         max_abs: 0.0,

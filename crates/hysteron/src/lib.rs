@@ -9,7 +9,8 @@
 //! - Identify a model with [`Fit`].
 //! - Simulate a whole input with [`Model::simulate`], or one sample at a time with [`Model::step`].
 //! - Compensate the hysteresis with [`Model::inverse`].
-//! - Measure the errors with [`evaluate`].
+//! - Measure the errors with [`evaluate`], and on samples that were not fitted with
+//!   [`fit_holding_out`], beside simple predictors ([`Rival`]).
 //! - Where the plant changes, let the model learn: from a recording with [`adapt()`], or sample by
 //!   sample with [`Adaptive`].
 //! - Build control loops from models and inverses with [`control`].
@@ -26,6 +27,8 @@ mod data;
 mod design;
 mod error;
 mod evaluate;
+mod forward;
+mod hold_out;
 mod identify;
 mod inspect;
 mod model;
@@ -34,6 +37,7 @@ mod prepare;
 mod progress;
 mod recording;
 mod remedy;
+mod rivals;
 mod series;
 
 pub use adapt::{
@@ -50,6 +54,8 @@ pub use data::{
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
+pub use forward::{Forward, forward};
+pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
     Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
@@ -74,8 +80,9 @@ pub use prepare::{
     Spikes, Step, prepare, rate_dependence,
 };
 pub use progress::Progress;
-pub use recording::{Origin, Quantity, Recording, Source};
+pub use recording::{HoldOut, Origin, Quantity, Recording, Source, Split};
 pub use remedy::{Remedy, Setting, SettingValue};
+pub use rivals::{Rival, RivalKind};
 pub use series::noise::noise;
 pub use series::{
     Errors, Headings, NOISE, Turning, branches, filter, headings, mean_and_deviation, range,

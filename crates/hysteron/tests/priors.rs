@@ -141,6 +141,7 @@ fn one_bad_reading_is_named_and_has_no_weight() {
     assert!(good.fit.as_ref().unwrap().outliers.is_empty());
     let last = clean.len() - 1;
     let places = [0, 1, last - 1, last];
+    let mut sum = 0.0;
     for round in 0..24 {
         let place = *places
             .get(round)
@@ -156,7 +157,10 @@ fn one_bad_reading_is_named_and_has_no_weight() {
         // part of that.
         let off = (named[0].by - size).abs() / span(&clean);
         assert!(off < 0.02, "round {round}, sample {place}: {off}");
-        let (before, after) = (rmse(&good, &test), rmse(&found, &test));
-        assert!(after < 1.05 * before, "round {round}: {after} of {before}");
+        // What the reading itself would have told is lost: near a turning point that is most.
+        let worse = rmse(&found, &test) / rmse(&good, &test);
+        assert!(worse < 1.15, "round {round}: {worse}");
+        sum += worse;
     }
+    assert!(sum / 24.0 < 1.02, "on average {}", sum / 24.0);
 }

@@ -83,6 +83,11 @@ pub(crate) struct Fit {
     /// to it. The band is widened to what changes between sessions
     #[arg(long, value_name = "FILE")]
     pub(crate) repeat: Vec<PathBuf>,
+    /// What takes no part in the fit, and tests it beside a straight line and interpolation:
+    /// `branches:20%` (a share up to 33 %, spread over the recording), `rows:A-B` (counted from 1,
+    /// after the preparation), or another recording. A FILE may be given several times
+    #[arg(long, value_name = "WHAT|FILE", value_parser = parse_hold_out)]
+    pub(crate) hold_out: Vec<HoldOut>,
     /// Lowest and highest level [default: so that the active range is that of the input]
     #[arg(long, value_name = "MIN,MAX", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,

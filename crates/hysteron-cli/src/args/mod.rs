@@ -61,6 +61,11 @@ pub(crate) enum Command {
         \x20 hysteron evaluate spring.json run2.csv --input temperature \
         --output displacement --report report")]
     Evaluate(Evaluate),
+    /// Put models beside each other on recordings: errors, and a report of their residuals
+    #[command(after_help = "Example:\n\
+        \x20 hysteron compare few.json many.json run2.csv --input temperature \
+        --output displacement --report compared")]
+    Compare(Compare),
     /// Let a model learn from a recording, sample by sample, and write the adapted one
     #[command(after_help = "Example:\n\
         \x20 hysteron adapt spring.json run3.csv --input temperature \
@@ -282,6 +287,38 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     pub(crate) repair: Repair,
     /// Write a page and its figures (SVG, PNG) into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+#[derive(Args)]
+pub(crate) struct Compare {
+    /// Models (*.json) and recordings, in any order
+    #[arg(required = true, num_args = 2.., value_name = "MODEL|DATA")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Column of the input
+    #[arg(long, value_name = "COL")]
+    pub(crate) input: String,
+    /// Column of the output
+    #[arg(long, value_name = "COL")]
+    pub(crate) output: String,
+    /// Column of time, in seconds or with its unit in its name, for the report's figures and for
+    /// models that need it
+    #[arg(long, value_name = "COL")]
+    pub(crate) time: Option<String>,
+    /// State of the operators before the first sample
+    #[arg(long, value_enum, default_value = "fitted")]
+    pub(crate) start: Start,
+    #[command(flatten)]
+    pub(crate) load: Load,
+    #[command(flatten)]
+    pub(crate) repair: Repair,
+    /// Write a page of the residuals over time, over the input and as histograms into this folder;
+    /// for several recordings a folder for each
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]

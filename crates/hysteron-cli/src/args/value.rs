@@ -120,6 +120,37 @@ pub(super) fn parse_degree(text: &str) -> Result<Degree, String> {
     }
 }
 
+/// What is held out of a fit.
+#[derive(Clone)]
+pub(crate) enum HoldOut {
+    /// A part of each recording.
+    Part(hysteron::HoldOut),
+    /// Another recording.
+    File(std::path::PathBuf),
+}
+
+pub(super) fn parse_hold_out(text: &str) -> Result<HoldOut, String> {
+    let part = match text.split_once(':') {
+        Some(("branches", share)) => {
+            let number = share.trim().trim_end_matches('%').trim_end().parse::<f64>();
+            let percent = number
+                .ok()
+                .filter(|percent| (0.0..=100.0).contains(percent));
+            let percent = percent.ok_or("a share is needed, such as `branches:20%`")?;
+            hysteron::HoldOut::Branches(percent / 100.0)
+        }
+        Some(("rows", rows)) => {
+            let ends = rows.split_once('-');
+            let ends =
+                ends.and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+            let (first, last) = ends.ok_or("two row numbers are needed, such as `rows:100-200`")?;
+            hysteron::HoldOut::Rows(first..=last)
+        }
+        _ => return Ok(HoldOut::File(text.into())),
+    };
+    Ok(HoldOut::Part(part))
+}
+
 impl RunStart {
     /// The state that a model starts from.
     pub(crate) fn state(self, model: &hysteron::Model) -> hysteron::State {

@@ -1,12 +1,14 @@
 //! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
 //! `cargo run --release -p hysteron-measure --bin recordings -- ../shared/data`
 
+#[path = "../genuine/mod.rs"]
+mod genuine;
 #[path = "../scipy/mod.rs"]
 mod scipy;
 
 use hysteron::{
-    Candidates, Columns, FitOptions, LeftOut, Operator, Progress, Recording, Repair, Start,
-    TableReader, left_out, plane_of,
+    Candidates, Columns, FitOptions, LeftOut, Operator, Progress, Recording, Start, TableReader,
+    left_out, plane_of,
 };
 use std::error::Error;
 use std::path::Path;
@@ -61,8 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         match (find(&INPUTS), find(&OUTPUTS)) {
             (Some(input), Some(output)) => {
                 let columns = Columns::new(input, output);
-                let (recording, _) = Recording::read(&path, columns, Repair::Refuse)?;
-                row(name, recording)?;
+                row(name, genuine::read(&path, columns)?)?;
             }
             _ => println!("| {name} | no known columns | | | | | | | |"),
         }

@@ -18,14 +18,38 @@ pub struct Found {
     pub seconds_fit: f64,
     pub training_rmse: f64,
     pub left_out_rmse: f64,
+    pub predicted: Vec<f64>,
 }
 
 /// `None` where Python or SciPy is not installed.
+#[allow(dead_code)]
 pub fn run(
     recording: &Recording,
     plane: Plane,
     fold: Option<&[usize]>,
 ) -> Result<Option<Found>, Box<dyn Error>> {
+    ask(json!({
+        "min": plane.min(), "max": plane.max(), "levels": plane.levels(),
+        "input": recording.input, "output": recording.output, "fold": fold,
+    }))
+}
+
+/// The output for another input, from a fit to the recording; `None` where Python or SciPy is not
+/// installed.
+#[allow(dead_code)]
+pub fn predict(
+    recording: &Recording,
+    plane: Plane,
+    test: &[f64],
+) -> Result<Option<Vec<f64>>, Box<dyn Error>> {
+    let found = ask(json!({
+        "min": plane.min(), "max": plane.max(), "levels": plane.levels(),
+        "input": recording.input, "output": recording.output, "test": test,
+    }))?;
+    Ok(found.map(|found| found.predicted))
+}
+
+fn ask(job: serde_json::Value) -> Result<Option<Found>, Box<dyn Error>> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
     let installed = Command::new(&python)
         .args(["-c", "import scipy"])
@@ -41,10 +65,6 @@ pub fn run(
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()?;
-    let job = json!({
-        "min": plane.min(), "max": plane.max(), "levels": plane.levels(),
-        "input": recording.input, "output": recording.output, "fold": fold,
-    });
     let mut stdin = child.stdin.take().ok_or("no pipe")?;
     stdin.write_all(job.to_string().as_bytes())?;
     drop(stdin);

@@ -1,5 +1,6 @@
 //! What every figure and caption reads: the report's parts in the words and units that are shown.
 
+use crate::clock::clock;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::report::Report;
 use crate::evaluation::source::Source;
@@ -32,17 +33,7 @@ impl<'a> View<'a> {
             evaluation,
         } = report;
         let source = Source::new(model);
-        let samples = recording.input.len();
-        let (time, name, unit) = match recording.time.as_deref() {
-            Some(time) if time.len() == samples => {
-                (Cow::Borrowed(time), "time", Some("s".to_owned()))
-            }
-            _ => (
-                Cow::Owned((0..samples).map(|k| k as f64).collect()),
-                "sample number",
-                None,
-            ),
-        };
+        let (time, time_label) = clock(recording);
         Self {
             heading,
             recording,
@@ -51,10 +42,7 @@ impl<'a> View<'a> {
             input: Labelled::first([&recording.input_quantity, source.input()], "input"),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             time,
-            time_label: Labelled {
-                name: name.to_owned(),
-                unit,
-            },
+            time_label,
         }
     }
 

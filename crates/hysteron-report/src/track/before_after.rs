@@ -2,7 +2,6 @@
 //! went.
 
 use super::figure::Figure;
-use super::stack::{HEADING, Heading, head};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
@@ -10,6 +9,7 @@ use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
 use crate::draw::sheet::{Key, MARGIN};
 use crate::draw::style::LABEL;
+use crate::panels::{HEADING, Heading, head};
 use crate::plane::{Half, axes};
 use crate::stack::Figures;
 

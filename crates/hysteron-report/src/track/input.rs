@@ -2,7 +2,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use super::stack::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
@@ -12,6 +11,7 @@ use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
 use crate::draw::text;
+use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use crate::stack::Figures;
 use hysteron::control::{LoopStatus, Trace};
 
@@ -104,7 +104,7 @@ fn figure(
     };
     let (panels, mut bottom) = stack(
         &mut sheet,
-        view,
+        view.report.events,
         &headings,
         [&view.time_axis, &y],
         height(runs.len()),
@@ -114,7 +114,7 @@ fn figure(
         let time = &run.trace.time;
         panel.curve(&mut sheet.canvas, time, beneath, &REFERENCE);
         panel.curve(&mut sheet.canvas, time, above, &FOLLOWER);
-        event_lines(&mut sheet, view, panel);
+        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
         for (n, (word, _, colour, flag)) in flags.iter().enumerate() {
             let area = Rect {
                 y: panel.area.bottom() + 5.0 + ROW * n as f64,

@@ -9,7 +9,6 @@ mod page;
 mod report;
 mod reversal;
 mod series;
-mod stack;
 mod view;
 mod weights_time;
 

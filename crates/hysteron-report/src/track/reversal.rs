@@ -3,13 +3,13 @@
 use super::figure::Figure;
 use super::report::TrackReport;
 use super::series::{beyond, named, robust};
-use super::stack::{WIDTH, height, stack};
 use super::view::View;
 use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::sheet::Key;
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
 use crate::number::difference;
+use crate::panels::{WIDTH, height, stack};
 use crate::stack::Figures;
 use hysteron_sim::track::{ReversalLag, reversal_lags};
 
@@ -98,7 +98,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let panels_height = height(runs.len());
     let (panels, bottom) = stack(
         &mut sheet,
-        view,
+        view.report.events,
         &headings,
         [&x, &y],
         panels_height,

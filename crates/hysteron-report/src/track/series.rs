@@ -2,7 +2,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use super::stack::{Heading, WIDTH, event_lines, height, stack};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::panel::Panel;
@@ -11,6 +10,7 @@ use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{BEYOND, FOLLOWER, REFERENCE, ZERO};
 use crate::number::difference;
+use crate::panels::{Heading, WIDTH, event_lines, height, stack};
 use crate::stack::Figures;
 
 /// The part of all values that must be seen; what lies far beyond is cut off.
@@ -45,7 +45,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
     let headings: Vec<Heading> = runs.iter().map(|run| named(run, String::new())).collect();
     let (panels, bottom) = stack(
         &mut sheet,
-        view,
+        view.report.events,
         &headings,
         [&view.time_axis, &y],
         height(runs.len()),
@@ -55,7 +55,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
         panel.curve(&mut sheet.canvas, &trace.time, &trace.reference, &REFERENCE);
         panel.curve(&mut sheet.canvas, &trace.time, &trace.output, &FOLLOWER);
         beyond(&mut sheet, panel, &trace.time, &trace.output, span);
-        event_lines(&mut sheet, view, panel);
+        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
     }
     view.finish(Figure::Tracking, sheet, bottom)
 }
@@ -96,7 +96,7 @@ fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64
         .collect();
     let (panels, bottom) = stack(
         &mut sheet,
-        view,
+        view.report.events,
         &headings,
         [&view.time_axis, &y],
         height(runs.len()),
@@ -106,7 +106,7 @@ fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64
         panel.level(&mut sheet.canvas, 0.0, &ZERO);
         panel.curve(&mut sheet.canvas, &run.trace.time, values, &FOLLOWER);
         beyond(&mut sheet, panel, &run.trace.time, values, span);
-        event_lines(&mut sheet, view, panel);
+        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
     }
     view.finish(figure, sheet, bottom)
 }

@@ -3,7 +3,6 @@
 
 use super::figure::Figure;
 use super::report::NamedTrace;
-use super::stack::{HEADING, Heading, WIDTH, event_lines, head};
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Rect, Short, rect_data};
@@ -12,6 +11,7 @@ use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
 use crate::draw::sheet::{Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, MODELLED, ZERO};
+use crate::panels::{HEADING, Heading, WIDTH, event_lines, head};
 use crate::plane::MINUS;
 use crate::stack::Figures;
 use hysteron::Plane;
@@ -135,7 +135,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
             labels,
         );
         map(&mut sheet, &panel, run.trace, change, span);
-        event_lines(&mut sheet, view, &panel);
+        event_lines(&mut sheet, view.report.events, &view.time_axis, &panel);
         let bar = Rect {
             x: area.right() + BESIDE,
             width: BAR,
@@ -162,7 +162,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         panel.level(&mut sheet.canvas, 0.0, &ZERO);
         panel.curve(&mut sheet.canvas, &change.time, &change.sum, &FOLLOWER);
         panel.curve(&mut sheet.canvas, &change.time, &change.offset, &MODELLED);
-        event_lines(&mut sheet, view, &panel);
+        event_lines(&mut sheet, view.report.events, &view.time_axis, &panel);
         bottom = below.bottom();
         area.y = bottom + 8.0;
     }

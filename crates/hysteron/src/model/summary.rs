@@ -2,6 +2,7 @@
 
 use crate::model::confidence::Confidence;
 use crate::model::smooth::Smooth;
+use crate::recording::Recording;
 use serde::{Deserialize, Serialize};
 
 /// How the weights are found.
@@ -93,4 +94,14 @@ pub struct FitSummary {
     /// All other entries of the model file under `fit`.
     #[serde(flatten)]
     pub other: std::collections::BTreeMap<String, serde_json::Value>,
+}
+
+impl FitSummary {
+    /// Whether the recording comes from the file that was fitted, by the digest of that file. If
+    /// several files were fitted, only the first one is known in this way.
+    #[must_use]
+    pub fn was_fitted_to(&self, recording: &Recording) -> bool {
+        let digest = recording.source.as_ref().map(|source| &source.sha256);
+        digest.is_some() && self.sha256.as_ref() == digest
+    }
 }

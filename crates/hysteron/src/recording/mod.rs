@@ -1,11 +1,13 @@
 //! Recordings: the input and the output of one experiment, with time and load if they are known.
 //!
 //! This file defines [`Recording`] and the [`Quantity`] of each series. `gaps` finds gaps in the
-//! time.
+//! time. `split` parts a recording into what is fitted and what is held out.
 
 mod gaps;
+mod split;
 
 pub(crate) use gaps::gaps;
+pub use split::{HoldOut, Split};
 
 use crate::error::{Error, Result};
 use crate::series::range;

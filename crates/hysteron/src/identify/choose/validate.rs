@@ -24,6 +24,13 @@ const ENOUGH_BRANCHES: usize = 6;
 /// More levels have to be better by this share, see [`Criterion::is_worth`].
 const WORTH: f64 = 0.01;
 
+/// So many levels are always tried: noise can hide for a few steps that more of them help.
+const FEWEST: usize = 28;
+
+/// More columns are not tried, because they would take long: 40 levels have 820, and those with an
+/// unknown start up to twice as many.
+const MOST_COLUMNS: usize = 900;
+
 /// The candidates to choose from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidates {
@@ -51,8 +58,8 @@ impl Candidates {
 /// choice.
 ///
 /// With six branches or more the criterion is the error on branches left out. Otherwise it is the
-/// evidence, see [`Criterion`]. More levels are tried until two numbers in a row have not been
-/// better by 1 % (by 1 in the logarithm of the evidence). If the starts of several recordings are
+/// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row have
+/// not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several recordings are
 /// unknown, only two patterns of starts are tried: all off and all on.
 ///
 /// # Errors
@@ -105,7 +112,11 @@ pub(crate) fn choose(
             "choice of levels",
             n as f64 / candidates.levels.len() as f64,
         )?;
-        let level = Level::new(at(levels, &options)?, sign, &folds, progress)?;
+        let problem = at(levels, &options)?;
+        if n > 0 && problem.regressor.columns().len() > MOST_COLUMNS {
+            break;
+        }
+        let level = Level::new(problem, sign, &folds, progress)?;
         let mut starts = level.starts();
         let mut rate = |smooth: Smooth| -> Result<f64> {
             let mut score = Score {
@@ -140,7 +151,7 @@ pub(crate) fn choose(
             false => no_better + 1,
         };
         best_value = best_value.min(value);
-        if no_better == 2 {
+        if no_better >= 2 && levels >= FEWEST {
             break;
         }
     }

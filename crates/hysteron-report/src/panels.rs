@@ -1,6 +1,5 @@
-//! Panels one above the other over the same axes: one for each controller.
+//! Panels one above the other over the same axes: one for each controller, or for each model.
 
-use super::view::View;
 use crate::draw::axis::Axis;
 use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, y_label};
@@ -9,23 +8,23 @@ use crate::draw::style::{FAINT, GUIDE, LABEL, TICK};
 use crate::draw::text;
 
 /// Width of a figure over time.
-pub(super) const WIDTH: f64 = 760.0;
+pub(crate) const WIDTH: f64 = 760.0;
 /// Space above a panel for its heading.
-pub(super) const HEADING: f64 = 25.0;
+pub(crate) const HEADING: f64 = 25.0;
 /// Height of a row of words above the panels.
 const WORDS: f64 = 16.0;
 /// Rows of words above the panels, at most.
 const ROWS: usize = 3;
 
 /// What stands above a panel.
-pub(super) struct Heading {
-    pub(super) name: String,
+pub(crate) struct Heading {
+    pub(crate) name: String,
     /// At the right, in less weight.
-    pub(super) remark: String,
+    pub(crate) remark: String,
 }
 
 /// Height of each of `count` panels: the more, the lower.
-pub(super) fn height(count: usize) -> f64 {
+pub(crate) fn height(count: usize) -> f64 {
     match count {
         1 => 260.0,
         2..=4 => 130.0,
@@ -35,11 +34,11 @@ pub(super) fn height(count: usize) -> f64 {
 }
 
 /// Draws a panel for each of `headings`, with `below` pixels left free under each and `beside` to
-/// its left at least, the events of the report across all, and one label for the `y` axis that they
+/// its left at least, the words of `events` above all, and one label for the `y` axis that they
 /// share. Returns the panels and the height of the figure.
-pub(super) fn stack(
+pub(crate) fn stack(
     sheet: &mut Sheet,
-    view: &View<'_>,
+    events: &[(f64, String)],
     headings: &[Heading],
     [x, y]: [&Axis; 2],
     height: f64,
@@ -52,7 +51,7 @@ pub(super) fn stack(
         width: WIDTH - MARGIN - left,
         height,
     };
-    area.y = events(sheet, view, x, area);
+    area.y = words_of(sheet, events, x, area);
     let first = area.y + HEADING;
     let mut panels = Vec::new();
     for (n, heading) in headings.iter().enumerate() {
@@ -78,7 +77,7 @@ pub(super) fn stack(
 }
 
 /// Name and remark above `area`.
-pub(super) fn head(sheet: &mut Sheet, heading: &Heading, area: Rect) {
+pub(crate) fn head(sheet: &mut Sheet, heading: &Heading, area: Rect) {
     let baseline = area.y - 6.0;
     let taken = text::width(&heading.remark, TICK) + 12.0;
     let name = text::fit(&heading.name, LABEL, area.width - taken);
@@ -104,10 +103,10 @@ fn place(x: &Axis, area: Rect, time: f64) -> Option<f64> {
 
 /// The words of the events, in rows where they would overlap. Words that find no place in them are
 /// left to the page. Returns where the panels can begin.
-fn events(sheet: &mut Sheet, view: &View<'_>, x: &Axis, area: Rect) -> f64 {
+fn words_of(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, area: Rect) -> f64 {
     let mut taken: [Vec<[f64; 2]>; ROWS] = Default::default();
     let mut used = 0;
-    for (time, words) in view.report.events {
+    for (time, words) in events {
         let Some(at) = place(x, area, *time) else {
             continue;
         };
@@ -133,9 +132,8 @@ fn events(sheet: &mut Sheet, view: &View<'_>, x: &Axis, area: Rect) -> f64 {
 }
 
 /// Lines at the events, over the data.
-pub(super) fn event_lines(sheet: &mut Sheet, view: &View<'_>, panel: &Panel) {
-    let x = &view.time_axis;
-    for (time, _) in view.report.events {
+pub(crate) fn event_lines(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, panel: &Panel) {
+    for (time, _) in events {
         if let Some(at) = place(x, panel.area, *time) {
             let (top, bottom) = (panel.area.y, panel.area.bottom());
             sheet.canvas.line([at, top], [at, bottom], &GUIDE);

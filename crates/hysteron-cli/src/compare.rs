@@ -1,0 +1,133 @@
+//! `hysteron compare`
+
+use crate::terminal::{Result, print, say};
+use crate::{args, recording, remedy, text};
+use hysteron::{AtomicFolder, Columns, Forward, Model, Recording};
+use hysteron_report::{ModelsReport, NamedForward};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// The models' errors on one recording.
+struct Compared<'a> {
+    data: &'a Path,
+    recording: Recording,
+    /// One for each model.
+    runs: Vec<Forward>,
+}
+
+pub(crate) fn run(args: &args::Compare) -> Result<()> {
+    let is_model = |file: &&PathBuf| file.extension().is_some_and(|e| e == "json");
+    let (files, data): (Vec<&PathBuf>, Vec<&PathBuf>) = args.files.iter().partition(is_model);
+    if files.is_empty() || data.is_empty() {
+        return Err("compare needs models (*.json) and recordings".into());
+    }
+    let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).collect();
+    let folder = args.report.as_ref().map(|report| {
+        let folder = AtomicFolder::create(args.force.target(report, &inputs), None)?;
+        folder.claim(["index.html"])?;
+        Ok::<_, hysteron::Error>(folder)
+    });
+    let folder = folder.transpose()?;
+    let mut load = None;
+    let mut models = Vec::new();
+    for file in &files {
+        let (model, column) = args.load.apply(Model::read(file)?)?;
+        load = column;
+        models.push(model);
+    }
+    let columns = Columns {
+        input: &args.input,
+        output: &args.output,
+        time: args.time.as_deref(),
+        load: load.as_deref(),
+    };
+    let mut compared = Vec::new();
+    for data in data {
+        let recording = recording::read(data, columns, &args.repair)?;
+        let mut runs = Vec::new();
+        for (file, model) in files.iter().zip(&models) {
+            let run = hysteron::forward(model, &recording, args.start.into());
+            let named = |error| format!("{}: {}", file.display(), remedy::text_of(&error));
+            runs.push(run.map_err(named)?);
+        }
+        compared.push(Compared {
+            data,
+            recording,
+            runs,
+        });
+    }
+    let names: Vec<String> = files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    if let Some(folder) = folder {
+        let page = report(folder, &compared, &names)?;
+        say(format_args!("the report is {}", page.display()));
+    }
+    match args.json.json {
+        true => print(&to_json(&compared, &names).to_string()),
+        false => print(&to_text(&compared, &names)),
+    }
+}
+
+/// Writes a page for each recording; returns the first one.
+fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> Result<PathBuf> {
+    let mut pages = Vec::new();
+    for (n, compared) in all.iter().enumerate() {
+        let named = names.iter().zip(&compared.runs);
+        let models: Vec<NamedForward<'_>> = named
+            .map(|(name, forward)| NamedForward { name, forward })
+            .collect();
+        let title = format!("Models on {}", compared.data.display());
+        let report = ModelsReport {
+            title: &title,
+            recording: &compared.recording,
+            models: &models,
+        };
+        // A single recording has its page at the top.
+        let within = match all.len() {
+            1 => PathBuf::new(),
+            _ => PathBuf::from(format!("recording-{}", n + 1)),
+        };
+        pages.push(report.write_into(&mut folder, &within)?.remove(0));
+    }
+    folder.commit()?;
+    Ok(pages.remove(0))
+}
+
+fn to_json(all: &[Compared<'_>], names: &[String]) -> serde_json::Value {
+    let recordings = all.iter().map(|compared| {
+        let models = names.iter().zip(&compared.runs).map(|(name, run)| {
+            let mut object = json!(run.errors);
+            object["model"] = json!(name);
+            object["was_fitted"] = json!(run.was_fitted);
+            object
+        });
+        json!({"recording": compared.data, "models": models.collect::<Vec<_>>()})
+    });
+    json!({"recordings": recordings.collect::<Vec<_>>()})
+}
+
+/// A table for each recording; the best model first.
+fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
+    let table = |compared: &Compared<'_>| {
+        let data = compared.data.display().to_string();
+        let mut rows = vec![text::row([
+            &data,
+            "RMSE",
+            "largest",
+            "% of range",
+            "samples",
+        ])];
+        let mut runs: Vec<(&String, &Forward)> = names.iter().zip(&compared.runs).collect();
+        runs.sort_by(|a, b| a.1.errors.rmse.total_cmp(&b.1.errors.rmse));
+        for (name, run) in runs {
+            let quantity = &compared.recording.output_quantity;
+            let mut row = text::errors(name, &run.errors, quantity);
+            row.extend(run.was_fitted.then(|| "fitted to this recording".into()));
+            rows.push(row);
+        }
+        text::table(&rows)
+    };
+    all.iter().map(table).collect::<Vec<_>>().join("\n\n")
+}

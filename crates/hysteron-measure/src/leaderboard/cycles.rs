@@ -1,0 +1,30 @@
+//! Thermal cycles of one recording.
+
+use super::Result;
+use hysteron::{Direction, PrepareOptions, Progress, Recording, Step, Turning, prepare};
+
+/// Cycles from one highest input to the next. Lost signs and spikes are repaired before.
+pub fn cycles(raw: &Recording) -> Result<Vec<Recording>> {
+    let steps = PrepareOptions {
+        spikes: Step::Auto,
+        resample: Step::Off,
+        low_pass: Step::Off,
+        lag: Step::Off,
+        dead_band: Step::Off,
+    };
+    let (whole, _) = prepare(raw, &steps, Progress::NONE)?;
+    let ((low, high), _) = whole.ranges();
+    let cold = |t: &f64| *t < whole.input[0] - 0.02 * (high - low);
+    let begin = whole.input.iter().position(cold).unwrap_or(0);
+    let mut turning = Turning::new(0.2 * (high - low));
+    let mut bounds = vec![begin];
+    for &t in &whole.input {
+        if let Some((n, Direction::Falling)) = turning.push(t)
+            && n > begin
+        {
+            bounds.push(n);
+        }
+    }
+    let part = |b: &[usize]| whole.only(|n| (b[0]..b[1]).contains(&n));
+    Ok(bounds.windows(2).filter_map(part).collect())
+}

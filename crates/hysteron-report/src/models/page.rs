@@ -1,0 +1,52 @@
+//! The page of models beside each other.
+
+use super::view::{Figure, View};
+use crate::frame;
+use crate::number::{count, percent, significant};
+use crate::stack::Figures;
+use maud::{Markup, html};
+
+/// The page around the figures in `drawn`.
+pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+    let lead = html! {
+        "Models of " (view.output.name) " over " (view.input.name) ", on one recording of "
+        (count(view.report.recording.input.len())) " samples."
+    };
+    let simulated =
+        "Simulated: this recording comes from a simulated plant, not from a measurement.";
+    let body = html! {
+        (table(view))
+        @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
+    };
+    let simulated = view.simulated().then_some(simulated);
+    frame::html(view.report.title, lead, simulated, body)
+}
+
+fn table(view: &View<'_>) -> Markup {
+    let unit = match &view.output.unit {
+        Some(unit) => format!(" [{unit}]"),
+        None => String::new(),
+    };
+    html! {
+        div.wide { table {
+            thead { tr {
+                th scope="col" { "Model" }
+                th scope="col" { "RMSE" (unit) }
+                th scope="col" { "max" (unit) }
+                th scope="col" { "RMSE of range" }
+            } }
+            tbody { @for model in view.report.models {
+                @let errors = &model.forward.errors;
+                tr {
+                    th scope="row" {
+                        (model.name)
+                        @if model.forward.was_fitted { " (fitted to this recording)" }
+                    }
+                    td { (significant(errors.rmse, 3)) }
+                    td { (significant(errors.max_abs, 3)) }
+                    td { (errors.nrmse_percent.map_or("–".to_owned(), percent)) }
+                }
+            } }
+        } }
+    }
+}

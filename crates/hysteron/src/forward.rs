@@ -1,0 +1,52 @@
+//! Several models on the same recording, forward only.
+
+use crate::error::Result;
+use crate::evaluate::{begin, compare};
+use crate::model::{Model, Start, Surroundings};
+use crate::recording::Recording;
+use crate::series::Errors;
+
+/// A model that ran over the input of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forward {
+    /// Modelled output, one value per sample.
+    pub output_model: Vec<f64>,
+    /// Modelled against measured output.
+    pub errors: Errors,
+    /// Whether this is the recording that the model was fitted to. Then the errors say how well the
+    /// model fits, not how well it predicts.
+    pub was_fitted: bool,
+}
+
+/// Runs a model over the input of a recording, without the tests of its inverse that
+/// [`crate::evaluate`] makes. The `start` is as for [`crate::evaluate_from`].
+///
+/// ```
+/// use hysteron::{Fit, Recording, Start, forward};
+/// let input: Vec<f64> = (0..200).map(|n| (1.0 - (f64::from(n) * 0.1).cos()) * 30.0).collect();
+/// let recording = Recording::new(input.clone(), input.iter().map(|x| x * x).collect())?;
+/// let error = |levels| -> hysteron::Result<f64> {
+///     let model = Fit::new().levels(levels).bootstrap(0).run(&recording)?;
+///     Ok(forward(&model, &recording, Start::Fitted)?.errors.rmse)
+/// };
+/// assert!(error(20)? < 0.2 * error(4)?);
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`crate::evaluate_from`].
+pub fn forward(model: &Model, recording: &Recording, start: Start) -> Result<Forward> {
+    recording.check()?;
+    let (mut state, _) = begin(model, recording, start)?;
+    let mut output_model = vec![0.0; recording.len()];
+    let around = Surroundings::of(model, recording);
+    model.run_in(&mut state, &recording.input, around, &mut output_model)?;
+    Ok(Forward {
+        errors: compare(&recording.output, &output_model),
+        was_fitted: model
+            .fit
+            .as_ref()
+            .is_some_and(|fit| fit.was_fitted_to(recording)),
+        output_model,
+    })
+}

@@ -1,0 +1,191 @@
+//! Fits a model while part of the data is held out, and tests it there beside simple rivals.
+
+use crate::error::{Error, Result};
+use crate::identify::{Fit, find_start};
+use crate::model::{Model, Start, State, Surroundings};
+use crate::recording::{HoldOut, Recording, Split};
+use crate::rivals::{Rival, RivalKind};
+use crate::series::Errors;
+use serde::Serialize;
+
+/// The rivals beside every model.
+const RIVALS: [RivalKind; 2] = [RivalKind::Line, RivalKind::Interpolation];
+
+/// The errors over samples that took no part in a fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HeldOut {
+    /// Errors of the model.
+    pub model: Errors,
+    /// Errors of simple predictors, fitted to the same samples as the model.
+    pub rivals: Vec<RivalErrors>,
+}
+
+/// The errors of one simple predictor.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RivalErrors {
+    /// Its name, see [`RivalKind::name`].
+    pub name: &'static str,
+    /// Its errors over the same samples.
+    #[serde(flatten)]
+    pub errors: Errors,
+}
+
+impl HeldOut {
+    /// The rivals with a smaller error than the model. Such a model has learned little.
+    pub fn better(&self) -> impl Iterator<Item = &RivalErrors> {
+        let model = self.model.rmse;
+        self.rivals.iter().filter(move |r| r.errors.rmse < model)
+    }
+
+    /// Writes the result into the record of the fit, as `hold_out`. The model file keeps it.
+    pub fn record_in(&self, model: &mut Model) {
+        if let (Some(fit), Ok(value)) = (&mut model.fit, serde_json::to_value(self)) {
+            fit.other.insert("hold_out".into(), value);
+        }
+    }
+}
+
+/// Fits a model to what is not held out, and tests it on the rest. What is held out takes no part
+/// in the fit, nor in what the fit chooses. The result is also written into the record of the fit,
+/// as `hold_out`.
+///
+/// The model runs over the whole input, and is compared where the output was held out. A percentage
+/// is of the range of the whole output.
+///
+/// If rows at the beginning or in the middle are held out, the state of the operators after them is
+/// not known. Then the start is [`Start::Unknown`], whatever `fit` says.
+///
+/// ```
+/// use hysteron::{Fit, HoldOut, Recording, fit_holding_out};
+/// let input: Vec<f64> = (0..600).map(|n| (1.0 - (f64::from(n) * 0.05).cos()) * 30.0).collect();
+/// let mut y = 0.0_f64;
+/// let output = input.iter().map(|x| { y = y.clamp(x - 20.0, *x); y }).collect();
+/// let recording = Recording::new(input, output)?;
+/// let fit = Fit::new().levels(12).bootstrap(0);
+/// let (_, held_out) = fit_holding_out(&fit, &recording, &HoldOut::Branches(0.2))?;
+/// assert!(held_out.model.nrmse_percent.is_some_and(|percent| percent < 1.0));
+/// assert!(held_out.rivals[0].errors.rmse > 5.0 * held_out.model.rmse); // a straight line
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// - As [`Fit::run`] and [`Recording::split`].
+/// - [`Error::Fit`] for rows of several recordings; for a model with a thermal body, creep or a lag
+///   if anything else is held out than rows at the end, because such a model needs every sample.
+pub fn fit_holding_out(
+    fit: &Fit<'_>,
+    recordings: &(impl AsRef<[Recording]> + ?Sized),
+    what: &HoldOut,
+) -> Result<(Model, HeldOut)> {
+    let recordings = recordings.as_ref();
+    if matches!(what, HoldOut::Rows(_)) && recordings.len() > 1 {
+        return Err(Error::Fit(format!(
+            "rows can be held out of one recording, and there are {}",
+            recordings.len()
+        )));
+    }
+    let splits: Vec<Split> = recordings
+        .iter()
+        .map(|recording| recording.split(what))
+        .collect::<Result<_>>()?;
+    let training: Vec<Recording> = splits.iter().flat_map(|s| s.training.clone()).collect();
+    let begins_inside = splits.iter().any(|split| split.begins_inside);
+    let fit = match begins_inside {
+        true => fit.clone().start(Start::Unknown),
+        false => fit.clone(),
+    };
+    let mut model = fit.run(&training)?;
+    let needs_time = model.thermal.is_some() || !model.creep().is_empty() || model.lag() > 0.0;
+    if needs_time && !splits.iter().all(|split| split.is_head) {
+        return Err(Error::Fit(
+            "a thermal body, creep and a lag need every sample before a row: hold out rows at the \
+             end, or another recording"
+                .into(),
+        ));
+    }
+    let (mut measured, mut modelled, mut held) = (Vec::new(), Vec::new(), Vec::new());
+    for (recording, split) in recordings.iter().zip(splits) {
+        let mut state = begin(&model, &split)?;
+        let mut output = vec![0.0; recording.len()];
+        let around = Surroundings::of(&model, recording);
+        model.run_in(&mut state, &recording.input, around, &mut output)?;
+        measured.extend_from_slice(&recording.output);
+        modelled.extend(output);
+        held.extend(split.held_out);
+    }
+    let report = compare(&training, recordings, &measured, &modelled, |n| held[n])?;
+    report.record_in(&mut model);
+    Ok((model, report))
+}
+
+/// Tests a model on recordings that took no part in its fit, beside rivals fitted to the recordings
+/// that did. The model starts where its fit did, see [`Start::Fitted`].
+///
+/// # Errors
+/// As [`crate::evaluate_from`]; [`Error::Fit`] if there is no recording.
+pub fn held_out(
+    model: &Model,
+    fitted: &(impl AsRef<[Recording]> + ?Sized),
+    held_out: &(impl AsRef<[Recording]> + ?Sized),
+) -> Result<HeldOut> {
+    let recordings = held_out.as_ref();
+    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
+    for recording in recordings {
+        recording.check()?;
+        let mut output = vec![0.0; recording.len()];
+        let around = Surroundings::of(model, recording);
+        model.run_in(&mut as_fitted(model), &recording.input, around, &mut output)?;
+        measured.extend_from_slice(&recording.output);
+        modelled.extend(output);
+    }
+    compare(fitted.as_ref(), recordings, &measured, &modelled, |_| true)
+}
+
+/// Where the model starts on the whole recording. An unknown start is found from the outputs at the
+/// beginning that were fitted.
+fn begin(model: &Model, split: &Split) -> Result<State> {
+    let unknown = model
+        .fit
+        .as_ref()
+        .is_some_and(|fit| fit.start == Start::Unknown);
+    match split.training.first() {
+        _ if !unknown => Ok(as_fitted(model)),
+        Some(head) if !split.held_out[0] => {
+            let (found, _) = find_start(model, head)?;
+            model.restore(&found.turning_points, found.input)
+        }
+        _ => Ok(model.off()),
+    }
+}
+
+fn as_fitted(model: &Model) -> State {
+    match model.fit.as_ref().map(|fit| fit.start) {
+        Some(Start::On) => model.saturated(),
+        _ => model.start(),
+    }
+}
+
+fn compare(
+    training: &[Recording],
+    recordings: &[Recording],
+    measured: &[f64],
+    modelled: &[f64],
+    which: impl Fn(usize) -> bool,
+) -> Result<HeldOut> {
+    let nothing = || Error::Fit("nothing was held out".into());
+    let model = Errors::between(measured, modelled, &which).ok_or_else(nothing)?;
+    let rival = |kind: RivalKind| {
+        let rival = Rival::fit(kind, training)?;
+        let mut predicted = Vec::with_capacity(measured.len());
+        for recording in recordings {
+            predicted.extend(rival.predict(recording)?);
+        }
+        let errors = Errors::between(measured, &predicted, &which).ok_or_else(nothing)?;
+        Ok(RivalErrors {
+            name: kind.name(),
+            errors,
+        })
+    };
+    let rivals = RIVALS.into_iter().map(rival).collect::<Result<_>>()?;
+    Ok(HeldOut { model, rivals })
+}

@@ -1,0 +1,177 @@
+//! Parts a recording: what is fitted, and what is held out to test the fit.
+
+use crate::error::{Error, Result};
+use crate::recording::Recording;
+use crate::series::{branches, usual_tolerance};
+use std::ops::RangeInclusive;
+
+/// The largest share of the branches that can be held out. Beyond it, neighbours would be left out
+/// together, and the turning point between them with both.
+const MOST: f64 = 1.0 / 3.0;
+
+/// Branches with fewer samples than this are not held out.
+const SHORTEST: usize = 3;
+
+/// The part of a recording that is held out.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HoldOut {
+    /// This share of the branches, above 0 and up to a third. They are spread over the recording,
+    /// in turn rising and falling. The first branch is not among them.
+    Branches(f64),
+    /// These rows, counted from 1.
+    Rows(RangeInclusive<usize>),
+}
+
+/// A recording in two parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Split {
+    /// What is left to be fitted. There are two recordings if rows from the middle are held out.
+    pub training: Vec<Recording>,
+    /// For each sample of the whole recording, whether it is held out.
+    pub held_out: Vec<bool>,
+    /// Whether a recording in `training` begins after rows that were held out. The state of the
+    /// operators is not known there.
+    pub begins_inside: bool,
+    /// Whether `training` is the beginning of the recording without a gap.
+    pub is_head: bool,
+}
+
+impl Recording {
+    /// Parts the recording. No output that is held out is in the training part.
+    ///
+    /// A branch is held out without the turning point at its end, because the next branch begins
+    /// there. So the operators remember the same with and without that branch: its input is
+    /// monotone, apart from reversals up to [`usual_tolerance`].
+    ///
+    /// ```
+    /// use hysteron::{HoldOut, Recording};
+    /// let input: Vec<f64> = [0, 1, 2, 3, 2, 1, 0, 1, 2, 3].map(f64::from).to_vec();
+    /// let recording = Recording::new(input.clone(), input)?;
+    /// let split = recording.split(&HoldOut::Branches(0.3))?;
+    /// // From 3 down to 0. The samples at both ends are turning points, and stay.
+    /// assert_eq!(split.training[0].input, [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+    /// let split = recording.split(&HoldOut::Rows(8..=10))?;
+    /// assert_eq!(split.training[0].len(), 7);
+    /// assert!(split.held_out[7..].iter().all(|held_out| *held_out));
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Fit`] for a share or rows out of range, for rows that leave nothing, or if there
+    /// are fewer than three branches.
+    pub fn split(&self, what: &HoldOut) -> Result<Split> {
+        self.check()?;
+        match what {
+            HoldOut::Branches(share) => self.split_branches(*share),
+            HoldOut::Rows(rows) => self.split_rows(rows),
+        }
+    }
+
+    /// Only the samples for which `kept` is true; `None` if there are none.
+    #[must_use]
+    pub fn only(&self, kept: impl Fn(usize) -> bool) -> Option<Self> {
+        let samples: Vec<usize> = (0..self.len()).filter(|n| kept(*n)).collect();
+        let pick = |series: &Vec<f64>| samples.iter().map(|n| series[*n]).collect::<Vec<f64>>();
+        (!samples.is_empty()).then(|| Self {
+            time: self.time.as_ref().map(pick),
+            input: pick(&self.input),
+            output: pick(&self.output),
+            load: self.load.as_ref().map(pick),
+            input_quantity: self.input_quantity.clone(),
+            output_quantity: self.output_quantity.clone(),
+            load_quantity: self.load_quantity.clone(),
+            origin: self.origin,
+            source: self.source.clone(),
+        })
+    }
+
+    fn split_branches(&self, share: f64) -> Result<Split> {
+        if !(share > 0.0 && share <= MOST + 1e-9) {
+            return Err(Error::Fit(format!(
+                "{} % of the branches cannot be held out: take more than 0 and up to 33 %",
+                100.0 * share
+            )));
+        }
+        let branch = branches(&self.input, usual_tolerance(&self.input));
+        let all = spans(&branch);
+        let can_be: Vec<usize> = (1..all.len())
+            .filter(|b| all[*b].len() >= SHORTEST)
+            .collect();
+        if all.len() < 3 || can_be.is_empty() {
+            return Err(Error::Fit(format!(
+                "the recording has {} branches: three or more are needed to hold one out; hold out \
+                 rows or another recording",
+                all.len()
+            )));
+        }
+        let mut held_out = vec![false; self.len()];
+        for b in spread(&can_be, share, all.len()) {
+            let last = b + 1 == all.len();
+            let end = all[b].end - usize::from(!last);
+            held_out[all[b].start..end].fill(true);
+        }
+        let training = self.only(|n| !held_out[n]).into_iter().collect();
+        Ok(Split {
+            training,
+            is_head: false,
+            begins_inside: false,
+            held_out,
+        })
+    }
+
+    fn split_rows(&self, rows: &RangeInclusive<usize>) -> Result<Split> {
+        let (first, last) = (*rows.start(), *rows.end());
+        if first < 1 || last < first || last > self.len() || last - first + 1 == self.len() {
+            return Err(Error::Fit(format!(
+                "rows {first} to {last} cannot be held out: the recording has rows 1 to {}, and \
+                 some have to be left",
+                self.len()
+            )));
+        }
+        let held_out: Vec<bool> = (1..=self.len()).map(|row| rows.contains(&row)).collect();
+        let before = self.only(|n| n + 1 < first);
+        let after = self.only(|n| n + 1 > last);
+        Ok(Split {
+            begins_inside: after.is_some(),
+            is_head: after.is_none(),
+            training: before.into_iter().chain(after).collect(),
+            held_out,
+        })
+    }
+}
+
+/// The samples of each branch.
+fn spans(branch: &[usize]) -> Vec<std::ops::Range<usize>> {
+    let mut from = 0;
+    let by_branch = branch.chunk_by(|a, b| a == b);
+    by_branch
+        .map(|same| {
+            let span = from..from + same.len();
+            from = span.end;
+            span
+        })
+        .collect()
+}
+
+/// Branches spread over those that can be held out, no two of them neighbours. Neighbouring
+/// branches differ in direction, so numbers in turn even and odd are directions in turn.
+fn spread(can_be: &[usize], share: f64, all: usize) -> Vec<usize> {
+    let most = can_be.len().div_ceil(3);
+    let count = ((share * all as f64).round() as usize).clamp(1, most);
+    let stride = can_be.len() as f64 / count as f64;
+    let mut found: Vec<usize> = Vec::new();
+    for k in 0..count {
+        let place = ((k as f64 + 0.5) * stride) as usize;
+        let other = |b: &usize| found.last().is_none_or(|last| (b - last) % 2 == 1);
+        let apart = |b: &usize| found.last().is_none_or(|last| *b > last + 1);
+        let from_here = || {
+            can_be[place.min(can_be.len() - 1)..]
+                .iter()
+                .take(2)
+                .copied()
+        };
+        let choice = from_here().find(|b| apart(b) && other(b));
+        found.extend(choice.or_else(|| from_here().find(apart)));
+    }
+    found
+}
