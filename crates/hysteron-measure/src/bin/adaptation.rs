@@ -87,7 +87,11 @@ fn unchanged() -> Result<()> {
         ..adapting(Learner::Refit)
     };
     let each = LEARNERS.map(|(name, learner)| (name, adapting(learner)));
-    for (name, options) in each.into_iter().chain([("refit, 4 cycles", longer)]) {
+    let others = [
+        ("load", adapting(Learner::Load)),
+        ("refit, 4 cycles", longer),
+    ];
+    for (name, options) in each.into_iter().chain(others) {
         let adapted = adapt(&demo.model, &demo.prepared[1], &options, Progress::NONE)?;
         let late = adapted.late.ok_or("no sample judges")?;
         let written = if adapted.worse { "no" } else { "yes" };
