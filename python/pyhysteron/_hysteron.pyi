@@ -156,8 +156,11 @@ class Adaptive:
         cls,
         model: Model,
         *,
-        method: Literal["gradient", "increments", "least-squares", "drift"] = "gradient",
+        method: Literal["refit", "drift", "least-squares", "gradient", "increments"] = "refit",
         start: Literal["off", "on"] = "off",
+        window: str | None = None,
+        every: int | None = None,
+        ridge: float | None = None,
         gain: float | None = None,
         span: float | None = None,
         forgetting: float | None = None,
@@ -190,6 +193,7 @@ class Adaptive:
     def freeze(self, frozen: bool = True) -> None: ...
     def keep(self) -> None: ...
     def model(self) -> Model: ...
+    def refit(self) -> None: ...
     def reset(self, *, on: bool = False) -> None: ...
     def roll_back(self) -> None: ...
     def run(self, input: ArrayLike, measured: ArrayLike) -> LearningTable: ...
@@ -717,8 +721,11 @@ def adapt(
     output: ArrayLike | None = None,
     *,
     time: _Times | None = None,
-    method: Literal["drift", "least-squares", "gradient", "increments"] = "drift",
+    method: Literal["refit", "drift", "least-squares", "gradient", "increments"] = "refit",
     start: Literal["off", "on", "unknown"] = "off",
+    window: str | None = None,
+    every: int | None = None,
+    ridge: float | None = None,
     gain: float | None = None,
     span: float | None = None,
     forgetting: float | None = None,

@@ -10,7 +10,7 @@ from common import together
 import pyhysteron
 
 LEVELS = 8
-METHODS = ["gradient", "increments", "least-squares", "drift"]
+METHODS = ["refit", "gradient", "increments", "least-squares", "drift"]
 TEMPERATURE = 50 - 40 * np.cos(0.05 * np.arange(2000)) * np.cos(0.003 * np.arange(2000))
 
 
@@ -122,6 +122,19 @@ def test_guards():
     assert adaptive.offset == before and adaptive.output == pytest.approx(adaptive.model().output_range[1])
 
 
+def test_a_refit_has_the_last_samples(sign):
+    measured = model(1.4, sign).simulate(TEMPERATURE)
+    for window in ["cycles:2", "samples:300"]:
+        adaptive = pyhysteron.Adaptive(model(1.0, sign), window=window, every=10**6, ridge=1e-6)
+        errors = adaptive.run(TEMPERATURE, measured)["error"]
+        # Nothing is learned on the way; the offset is added in another order.
+        left = measured - model(1.0, sign).simulate(TEMPERATURE)
+        assert np.allclose(errors, left, rtol=0, atol=1e-12)
+        adaptive.refit()
+        # The plant is in the class of the model; the ridge is small.
+        assert abs(adaptive.output - measured[-1]) < 1e-3
+
+
 def test_copies_go_their_own_ways():
     one = pyhysteron.Adaptive(model())
     for other in [one.copy(), copy.copy(one), copy.deepcopy(one)]:
@@ -140,27 +153,32 @@ def test_it_cannot_be_pickled_but_its_model_can():
 @pytest.mark.parametrize(
     ("options", "error", "text"),
     [
-        ({"gain": 2.0}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
-        ({"gain": float("nan")}, pyhysteron.CoreError, "`gain` must be"),
+        ({"method": "gradient", "gain": 2.0}, pyhysteron.CoreError, "`gain` must be above 0 and below 2"),
+        ({"method": "gradient", "gain": float("nan")}, pyhysteron.CoreError, "`gain` must be"),
         ({"method": "increments", "span": 9}, pyhysteron.CoreError, "`span` must be from 1/8 to 8"),
         ({"method": "least-squares", "forgetting": 1.5}, pyhysteron.CoreError, "`forgetting` must be above 0 and up to 1"),
         ({"method": "least-squares", "noise": 0}, pyhysteron.CoreError, "`noise` must be above 0"),
         ({"method": "least-squares", "spread": -1}, pyhysteron.CoreError, "`spread` must be above 0"),
         ({"method": "least-squares", "correlation": -1}, pyhysteron.CoreError, "`correlation` must be a finite number from 0 on"),
-        ({"offset_share": -1}, pyhysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
-        ({"dead_zone": -1}, pyhysteron.CoreError, "`dead_zone` must be"),
-        ({"leakage": 1.1}, pyhysteron.CoreError, "`leakage` must be from 0 to 1"),
+        ({"method": "gradient", "offset_share": -1}, pyhysteron.CoreError, "`offset_share` must be a finite number from 0 on"),
+        ({"method": "gradient", "dead_zone": -1}, pyhysteron.CoreError, "`dead_zone` must be"),
+        ({"method": "gradient", "leakage": 1.1}, pyhysteron.CoreError, "`leakage` must be from 0 to 1"),
         ({"movement": float("inf")}, pyhysteron.CoreError, "`movement` must be"),
-        ({"trial": 0}, pyhysteron.CoreError, "`trial` must be 1 or more"),
+        ({"method": "gradient", "trial": 0}, pyhysteron.CoreError, "`trial` must be 1 or more"),
         ({"gate": 1}, pyhysteron.CoreError, "`gate` must be a finite number from 2 on, or 0"),
         ({"burst": 0}, pyhysteron.CoreError, "`burst` must be 1 or more"),
         ({"burst": -1}, ValueError, "`burst` is -1: a whole number"),
-        ({"trial": -1}, ValueError, "`trial` is -1: a whole number"),
+        ({"method": "gradient", "trial": -1}, ValueError, "`trial` is -1: a whole number"),
+        ({"ridge": 0}, pyhysteron.FitError, "`ridge` must be above 0 and up to 1"),
+        ({"every": 0}, pyhysteron.FitError, "`every` must be 1 or more"),
+        ({"window": "days:3"}, pyhysteron.FitError, "`window` is `days:3`: it must be cycles:1 to"),
+        ({"window": 3}, TypeError, "`window` is 3: a text is needed"),
+        ({"trial": 3}, pyhysteron.FitError, "`trial` means nothing to this method"),
         ({"noise": 1.0}, pyhysteron.FitError, "`noise` means nothing to this method"),
-        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'gradient'"),
+        ({"method": "newton"}, ValueError, "`method` is 'newton': one of 'refit'"),
         ({"start": "unknown"}, ValueError, "`start` is 'unknown': one of 'off', 'on'"),
         ({"gian": 0.3}, TypeError, "there is no argument `gian`"),
-        ({"gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),
+        ({"method": "gradient", "gain": "much"}, TypeError, "`gain` is 'much': a number is needed"),
     ],
 )
 def test_options_that_are_refused(options, error, text):
@@ -190,7 +208,7 @@ def test_samples_that_are_refused():
 
 
 def test_threads_may_share_one():
-    adaptive = pyhysteron.Adaptive(model(), gain=0.1)
+    adaptive = pyhysteron.Adaptive(model(), method="gradient", gain=0.1)
     measured = model(1.4).simulate(TEMPERATURE)
 
     def work(kind):

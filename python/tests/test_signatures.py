@@ -19,6 +19,7 @@ METHODS = {
     "span": "increments",
     "correlation": "least-squares",
     **dict.fromkeys(["forgetting", "noise", "spread"], "drift"),
+    **dict.fromkeys(["window", "every", "ridge"], "refit"),
 }
 
 
@@ -95,7 +96,7 @@ def test_of_the_options_of_an_estimator(call):
         method = METHODS.get(name, "gradient")
         call(*arguments, method=method, **{name: None})
         if name != "load":
-            call(*arguments, method=method, **{name: 2 if name == "gate" else 1})
+            call(*arguments, method=method, **{name: {"gate": 2, "window": "cycles:2"}.get(name, 1)})
 
 
 @pytest.mark.parametrize("plant", [pyhysteron.SpringPlant, pyhysteron.PreisachPlant])

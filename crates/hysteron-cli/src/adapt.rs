@@ -2,7 +2,9 @@
 
 use crate::terminal::{Result, print};
 use crate::{args, recording, text};
-use hysteron::{Adapted, Columns, Compared, Errors, Model, ShiftFound, TableWriter};
+use hysteron::{
+    Adapted, Columns, Compared, Errors, EstimatorOptions, Model, ShiftFound, TableWriter,
+};
 use serde_json::{Value, json};
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
@@ -52,21 +54,27 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
         true => print(&to_json(args, &adapted, refused).to_string())?,
         false => print(&to_text(args, &adapted, &model, refused))?,
     }
-    match adapted.late {
-        Some(late) if refused => Err(worse(args, &adapted, &late).into()),
-        _ => Ok(()),
+    match refused {
+        true => Err(worse(args, &adapted).into()),
+        false => Ok(()),
     }
 }
 
-fn worse(args: &args::Adapt, adapted: &Adapted, late: &Compared) -> String {
+fn worse(args: &args::Adapt, adapted: &Adapted) -> String {
     let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
+    let found = match adapted.late {
+        Some(late) => format!(
+            "over the last third it erred by {} (RMSE) before it learned, the model left alone by \
+             {}",
+            error(late.adapting),
+            error(late.fixed)
+        ),
+        None => "no reading of the last third judges it".into(),
+    };
     format!(
-        "{}: the model is not written, for it ended worse: over the last third it erred by {} \
-         (RMSE) before it learned, the model left alone by {}: see the column `outcome` of \
-         --table, try another --method, or keep the model as it is; --force writes it",
+        "{}: the model is not written, for it ended no better: {found}: see the column `outcome` \
+         of --table, try another --method, or keep the model as it is; --force writes it",
         args.out.display(),
-        error(late.adapting),
-        error(late.fixed)
     )
 }
 
@@ -141,22 +149,27 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) 
     line("last weights, over all of it again", &again);
     let counts = &adapted.counts;
     let drift = &adapted.drift;
-    let mut lines = vec![
-        format!(
-            "{}: learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
-             readings rejected, {} times rolled back",
-            match refused {
-                true => "not written".into(),
-                false => args.out.display().to_string(),
-            },
+    let told = match adapted.options {
+        EstimatorOptions::Refit(refit) => format!(
+            "{} refits on the way and one at the end, over {}; {} samples taken, {} at rest, {} \
+             readings rejected",
             counts.learned,
-            counts.waiting,
+            refit.window,
+            counts.learned + counts.waiting,
             counts.at_rest,
-            counts.rejected,
-            counts.rolled_back
+            counts.rejected
         ),
-        text::table(&rows),
-    ];
+        EstimatorOptions::Weights(_) | EstimatorOptions::Shift(_) => format!(
+            "learned from {} samples, {} within the dead zone or unfinished, {} at rest, {} \
+             readings rejected, {} times rolled back",
+            counts.learned, counts.waiting, counts.at_rest, counts.rejected, counts.rolled_back
+        ),
+    };
+    let target = match refused {
+        true => "not written".into(),
+        false => args.out.display().to_string(),
+    };
+    let mut lines = vec![format!("{target}: {told}"), text::table(&rows)];
     if let Some(found) = &adapted.shift {
         lines.push(shift(found, model));
     } else {
@@ -180,7 +193,11 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) 
     if counts.outside > 0 {
         lines.push(format!("{} inputs outside the plane", counts.outside));
     }
-    if counts.learned == 0 {
+    let shifted = adapted
+        .shift
+        .as_ref()
+        .is_some_and(|found| found.shift != 0.0);
+    if drift.moved == 0.0 && drift.offset.0 == drift.offset.1 && !shifted {
         lines.push("nothing was learned: the model is the one that it was".into());
     }
     lines.join("\n")

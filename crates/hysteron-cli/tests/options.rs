@@ -154,10 +154,11 @@ fn estimators_have_one_default_each() {
         let of_library = library.iter().find(|other| other.name == name);
         let of_library =
             of_library.unwrap_or_else(|| panic!("AdaptOptions has no row for `{name}`"));
-        // Two defaults are words, and each surface has its own.
+        // Three defaults are words, and surfaces have their own.
         let word = match name {
             "dead_zone" => Some("twice"),
             "load" => Some("middle of its range"),
+            "every" => Some("eighth of the window"),
             _ => None,
         };
         // What does not fit into the table stands above the field.
@@ -178,7 +179,7 @@ fn estimators_have_one_default_each() {
         );
 
         match name {
-            "learner" => assert!(PYTHON_ADAPT.contains("method='drift'")),
+            "learner" => assert!(PYTHON_ADAPT.contains("method='refit'")),
             "start" => assert!(PYTHON_ADAPT.contains("start='off'")),
             "dead_zone" => assert!(PYTHON_ADAPT.contains("dead zone is twice")),
             _ => {
@@ -190,7 +191,9 @@ fn estimators_have_one_default_each() {
 
         let field = of_field(SCENARIOS, "AdaptationOptions", name);
         match name {
-            "learner" | "start" | "load" => assert!(field.is_none(), "{name}: see docs/options.md"),
+            "learner" | "start" | "load" | "window" | "every" | "ridge" => {
+                assert!(field.is_none(), "{name}: see docs/options.md")
+            }
             // No recording tells the noise.
             "dead_zone" => assert_eq!(numbers(&after_default(&field.unwrap())), [0.0]),
             _ => {

@@ -2,6 +2,7 @@
 
 use crate::choices::{learner, named, no_argument, start_of};
 use crate::convert::{result, to_python};
+use crate::error::Raise;
 use crate::inputs::recording_of;
 use crate::integer::Integer;
 use crate::learning::outcomes;
@@ -71,8 +72,8 @@ impl Adapted {
 /// time : array_like, shape (n,), optional
 ///     As in `Recording`. Needed for a model that depends on time, otherwise only checked for going
 ///     back.
-/// method : {'drift', 'least-squares', 'gradient', 'increments', 'load'}
-///     The estimator; see `Adaptive`. 'drift' errs least on measured recordings. 'load' follows the
+/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments', 'load'}
+///     What learns; see `Adaptive`. 'refit' errs least on measured recordings. 'load' follows the
 ///     shift of the input axis alone, by a load that nobody measures, and runs any model; then the
 ///     table also has 'shift_model', in the input's unit, and 'load_model', if the model's shift
 ///     tells a load.
@@ -81,7 +82,7 @@ impl Adapted {
 ///     smaller error of the model as it is.
 /// progress : callable, bool or None
 ///     As for `fit`. Ctrl-C ends the work in any case.
-/// gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
+/// window, every, ridge, gain, span, forgetting, noise, spread, correlation, offset_share, dead_zone, leakage, movement, trial, gate, burst, load : optional
 ///     As for `Adaptive`. Defaults follow from model and recording. The noise is that of the
 ///     output, and at least 2 % (with 'drift' and 'load' 5 %) of the larger of the ranges of output and
 ///     model. The dead zone is twice the output's noise.
@@ -109,8 +110,8 @@ impl Adapted {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (model, recording, output=None, *, time=None, method="drift", start="off", progress=None, **options),
-    text_signature = "(model, recording, output=None, *, time=None, method='drift', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
+    signature = (model, recording, output=None, *, time=None, method="refit", start="off", progress=None, **options),
+    text_signature = "(model, recording, output=None, *, time=None, method='refit', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None, progress=None)"
 )]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn adapt<'py>(
@@ -160,9 +161,12 @@ pub(crate) fn adapt<'py>(
     })
 }
 
-const OPTIONS: [&str; 16] = [
+const OPTIONS: [&str; 19] = [
     "method",
     "start",
+    "window",
+    "every",
+    "ridge",
     "gain",
     "span",
     "forgetting",
@@ -193,13 +197,23 @@ pub(crate) fn adapt_options(
     };
     for (name, value) in keywords.into_iter().flatten() {
         let name: String = name.extract()?;
-        let counts = [("trial", &mut options.trial), ("burst", &mut options.burst)];
+        if name == "window" {
+            let window: Option<String> = named(&name, "a text", &value)?;
+            options.window = window.map(|text| text.parse()).transpose().raise()?;
+            continue;
+        }
+        let counts = [
+            ("every", &mut options.every),
+            ("trial", &mut options.trial),
+            ("burst", &mut options.burst),
+        ];
         if let Some((_, slot)) = counts.into_iter().find(|(slot, _)| *slot == name) {
             let count: Option<Integer> = value.extract()?;
             *slot = count.map(|count| count.of(&name)).transpose()?;
             continue;
         }
         let slots = [
+            ("ridge", &mut options.ridge),
             ("gain", &mut options.gain),
             ("span", &mut options.span),
             ("forgetting", &mut options.forgetting),

@@ -25,12 +25,22 @@ use pyo3::types::PyDict;
 /// ----------
 /// model : Model
 ///     The off-line model. It stays as it is.
-/// method : {'gradient', 'increments', 'least-squares', 'drift'}
+/// method : {'refit', 'drift', 'least-squares', 'gradient', 'increments'}
+///     'refit': all weights, by least squares over the last cycle of the input, again and again.
 ///     'gradient': all weights, by the normalised gradient. 'increments': the same on increments.
 ///     'least-squares': all weights, by recursive least squares. 'drift': coefficients of a few
 ///     patterns in which weights change under load and drift, by least squares.
 /// start : {'off', 'on'}
 ///     State of the operators.
+/// window : str, optional
+///     'refit': the samples to fit to, 'cycles:2' for the last two cycles of the input, 'samples:500'
+///     for the last 500 samples. By default 'cycles:1'.
+/// every : int, optional
+///     'refit': samples between two refits, 1 or more. By default a refit follows at each turning
+///     point of the input, and where an eighth of the window is new.
+/// ridge : float, optional
+///     'refit': strength of the ridge that holds the weights where they are, relative to the
+///     window's matrix, above 0 and up to 1. By default 0.1.
 /// gain : float, optional
 ///     Gradient methods: the share of a sample's error to remove, above 0 and below 2. By default
 ///     0.3.
@@ -70,7 +80,7 @@ use pyo3::types::PyDict;
 ///     After this many consecutive readings beyond the gate that agree, the plant has jumped and
 ///     they are learned from. 1 or more, by default 8.
 /// load : float, optional
-///     'drift' with a model that depends on a load: the load at the start. By default the middle
+///     'refit' and 'drift' with a model that depends on a load: the load at the start. By default the middle
 ///     of its range.
 ///
 /// Raises
@@ -81,7 +91,7 @@ use pyo3::types::PyDict;
 ///     For a model that depends on time. `adapt` learns its weights from a recording.
 /// FitError
 ///     For an option that the method does not use, a model with unequal levels, a model that
-///     depends on a load (with another method than 'drift'), and too many levels for the memory
+///     depends on a load (with another method than 'refit' or 'drift'), and too many levels for the memory
 ///     of the method.
 ///
 /// Examples
@@ -119,8 +129,8 @@ impl Adaptive {
 impl Adaptive {
     #[new]
     #[pyo3(
-        signature = (model, *, method="gradient", start="off", **options),
-        text_signature = "(model, *, method='gradient', start='off', gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None)"
+        signature = (model, *, method="refit", start="off", **options),
+        text_signature = "(model, *, method='refit', start='off', window=None, every=None, ridge=None, gain=None, span=None, forgetting=None, noise=None, spread=None, correlation=None, offset_share=None, dead_zone=None, leakage=None, movement=None, trial=None, gate=None, burst=None, load=None)"
     )]
     fn new(
         py: Python<'_>,
@@ -382,6 +392,23 @@ impl Adaptive {
             false => adaptive.reset(),
         };
         self.inner.with(py, reset).raise()
+    }
+
+    /// Refit now, with what has come since the last refit. Other methods have learned all of it.
+    ///
+    /// Call it before what was learned is used for long: at the end of a cycle, or before `model`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> adaptive = pyhysteron.Adaptive(pyhysteron.Model([1.0, 2.0, 4.0], (0, 1)), every=100)
+    /// >>> _ = adaptive.step(0.5, 4.5)
+    /// >>> adaptive.output
+    /// 4.0
+    /// >>> adaptive.refit()
+    /// >>> adaptive.output
+    /// 4.5
+    fn refit(&self, py: Python<'_>) -> PyResult<()> {
+        self.inner.with(py, |adaptive| adaptive.refit()).raise()
     }
 
     /// While frozen, `step` moves and nothing is learned.

@@ -46,9 +46,10 @@ pub(crate) fn operator_name(operator: Operator) -> &'static str {
     name_of(operator, &OPERATORS)
 }
 
-/// The method of an estimator.
+/// The method of an adaptation.
 pub(crate) fn learner(name: &str) -> PyResult<Learner> {
     let learners = [
+        ("refit", Learner::Refit),
         ("gradient", Learner::Gradient),
         ("increments", Learner::Increments),
         ("least-squares", Learner::LeastSquares),

@@ -42,7 +42,7 @@ mod series;
 
 pub use adapt::{
     AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
-    Learner, OutcomeCounts, ShiftFound, adapt,
+    Learner, OutcomeCounts, Refit, ShiftFound, Window, adapt,
 };
 #[cfg(feature = "data")]
 pub use data::{

@@ -5,11 +5,13 @@ mod common;
 
 use common::shared;
 use hysteron::{
-    AdaptOptions, Adaptive, Columns, DriftBasis, FirstOrder, Fit, FitOptions, Learner, Model,
-    Operator, Plane, Progress, Recording, Repair, Sign, Start, adapt,
+    AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, FirstOrder, Fit, FitOptions,
+    Learner, Model, Operator, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start,
+    Step, Turning, Window, adapt, plane_of, prepare,
 };
 
-const LEARNERS: [Learner; 4] = [
+const LEARNERS: [Learner; 5] = [
+    Learner::Refit,
     Learner::Gradient,
     Learner::Increments,
     Learner::LeastSquares,
@@ -68,6 +70,7 @@ fn every_learner_follows_a_plant_with_another_stroke() {
         );
         assert!(last.adapting.rmse < first.adapting.rmse, "{learner:?}");
         assert!(adapted.counts.learned > 0 && adapted.counts.rolled_back == 0);
+        assert!(!adapted.worse, "{learner:?}");
         let (before, after) = adapted.drift.weights;
         assert!(after > 1.2 * before, "{learner:?}: {before} to {after}");
     }
@@ -165,11 +168,14 @@ fn a_load_is_found_from_the_output_alone() {
         load: None,
         ..at(0.9)
     };
-    let adapted = adapt(&model, &target, &by(Learner::Drift), Progress::NONE).unwrap();
-    let last = adapted.thirds[2];
-    // The two parts hold the plant up to the fit's error, well below a hundredth.
-    assert!(last.adapting.rmse < 0.05 * last.fixed.rmse, "{last:?}");
-    assert!(adapted.model.load.is_none());
+    for learner in [Learner::Drift, Learner::Refit] {
+        let adapted = adapt(&model, &target, &by(learner), Progress::NONE).unwrap();
+        let last = adapted.thirds[2];
+        // The two parts hold the plant up to the fit's error, well below a hundredth; a refit has
+        // all weights, and the model in the middle to begin with.
+        assert!(last.adapting.rmse < 0.05 * last.fixed.rmse, "{last:?}");
+        assert!(adapted.model.load.is_none());
+    }
     let refused = adapt(&model, &target, &by(Learner::LeastSquares), Progress::NONE).unwrap_err();
     assert!(
         refused.to_string().contains("depends on the load"),
@@ -247,6 +253,194 @@ fn frozen_it_stays_and_what_was_kept_comes_back() {
     let free = adaptive.model().unwrap().simulate(&all).unwrap();
     // Rounding of sums of 78 weights.
     assert!((adaptive.output() - free[all.len() - 1]).abs() < 1e-9);
+}
+
+/// Of every operator, also of those whose weights count from −1 to 1.
+#[test]
+fn a_refit_has_a_plant_of_its_kind_after_a_cycle() {
+    for operator in [Operator::Mkp, Operator::Kp, Operator::Relay] {
+        for sign in [Sign::Positive, Sign::Negative] {
+            let of = |stroke: f64, offset: f64| {
+                let plane = Plane::new(20.0, 80.0, 12).unwrap();
+                let weights = wire(stroke, 0).weights().to_vec();
+                Model::new(operator, plane, weights, offset, sign).unwrap()
+            };
+            let (model, plant) = (of(1.0, 5.0), of(1.7, 2.0));
+            let mut adaptive = by(Learner::Refit).adaptive(&model).unwrap();
+            let recording = {
+                let output = plant.simulate(&input()).unwrap();
+                Recording::new(input(), output).unwrap()
+            };
+            let learned = adaptive
+                .run(&recording.input, &recording.output, Progress::NONE)
+                .unwrap();
+            let (low, high) = recording.ranges().1;
+            for learning in &learned[1250..] {
+                // The ridge gives way step by step, over ten cycles with four refits and more.
+                assert!(
+                    learning.error.abs() < 0.005 * (high - low),
+                    "{operator:?} {sign:?}: {learning:?}"
+                );
+            }
+            // What it predicts is what its model says.
+            adaptive.refit().unwrap();
+            let free = adaptive.model().unwrap().simulate(&input()).unwrap();
+            assert!((adaptive.output() - free[free.len() - 1]).abs() < 1e-9);
+        }
+    }
+}
+
+/// The input stays in the lower half. Operators that switch on above it never move.
+#[test]
+fn operators_that_the_window_does_not_move_keep_their_weights() {
+    let (model, plant) = (wire(1.0, 0), wire(1.6, 0));
+    let low: Vec<f64> = input().iter().map(|t| 20.0 + 0.5 * (t - 16.0)).collect();
+    let highest = low.iter().fold(f64::MIN, |most, t| most.max(*t));
+    let output = plant.simulate(&low).unwrap();
+    let mut adaptive = by(Learner::Refit).adaptive(&model).unwrap();
+    adaptive.run(&low, &output, Progress::NONE).unwrap();
+    let step = 60.0 / 11.0;
+    let mut rested = 0;
+    let operators = hysteron::operators(12).zip(model.weights().iter().zip(adaptive.weights()));
+    for ((_, j), (before, after)) in operators {
+        if 20.0 + (j as f64 - 2.0) * step >= highest {
+            rested += 1;
+            // Rounding of a weight's own share of the ridge.
+            assert!((before - after).abs() < 1e-9, "row {j}: {before} {after}");
+        }
+    }
+    assert!(rested > 20);
+}
+
+#[test]
+fn a_refit_returns_to_what_was_kept_and_does_not_learn_it_again() {
+    let (model, other) = (wire(1.0, 0), recorded(&wire(1.6, 0), Start::Off));
+    let mut adaptive = by(Learner::Refit).adaptive(&model).unwrap();
+    adaptive.freeze(true);
+    let run = |adaptive: &mut Adaptive| {
+        adaptive
+            .run(&other.input, &other.output, Progress::NONE)
+            .unwrap();
+    };
+    run(&mut adaptive);
+    adaptive.refit().unwrap();
+    assert_eq!(adaptive.weights(), model.weights());
+    adaptive.freeze(false);
+    run(&mut adaptive);
+    assert_ne!(adaptive.weights(), model.weights());
+    adaptive.roll_back().unwrap();
+    adaptive.refit().unwrap();
+    assert_eq!(adaptive.weights(), model.weights());
+    assert_eq!(adaptive.offset(), model.offset());
+}
+
+#[test]
+fn options_of_a_refit_out_of_range_are_refused() {
+    let refit = by(Learner::Refit);
+    let with = |options: AdaptOptions| {
+        let refused = options.adaptive(&wire(1.0, 0)).unwrap_err();
+        refused.to_string()
+    };
+    let window = |window| AdaptOptions {
+        window: Some(window),
+        ..refit
+    };
+    for wrong in [
+        Window::Cycles(0),
+        Window::Samples(1),
+        Window::Samples(1 << 20),
+    ] {
+        assert!(with(window(wrong)).contains("window"));
+    }
+    for ridge in [0.0, -1.0, 2.0, f64::NAN] {
+        let ridge = Some(ridge);
+        assert!(with(AdaptOptions { ridge, ..refit }).contains("ridge"));
+    }
+    let every = Some(0);
+    assert!(with(AdaptOptions { every, ..refit }).contains("every"));
+    let trial = Some(9);
+    assert!(with(AdaptOptions { trial, ..refit }).contains("`trial`"));
+    for learner in &LEARNERS[1..] {
+        let ridge = Some(0.1);
+        let said = with(AdaptOptions {
+            ridge,
+            ..by(*learner)
+        });
+        assert!(said.contains("`ridge`"), "{said}");
+    }
+}
+
+/// Thermal cycles of a specimen that does not come back. A refit that was frozen at the end of a
+/// cycle errs in the next one as a model fitted to that cycle does.
+#[test]
+fn one_cycle_ahead_a_refit_is_as_good_as_a_fit_to_the_last_cycle() {
+    let [Some(path)] = shared(["sma_isobaric_cycles_1_to_4.csv"]) else {
+        return;
+    };
+    let columns = Columns::new("temperature_C", "extension_mm");
+    let raw = Recording::read(&path, columns, Repair::Refuse).unwrap().0;
+    let steps = PrepareOptions {
+        spikes: Step::Auto,
+        resample: Step::Off,
+        low_pass: Step::Off,
+        lag: Step::Off,
+        dead_band: Step::Off,
+    };
+    let (whole, _) = prepare(&raw, &steps, Progress::NONE).unwrap();
+    let (low, high) = whole.ranges().0;
+    let cold = |t: &f64| *t < whole.input[0] - 0.02 * (high - low);
+    let begin = whole.input.iter().position(cold).unwrap();
+    let mut turning = Turning::new(0.2 * (high - low));
+    let mut bounds = vec![begin];
+    for &t in &whole.input {
+        if let Some((n, Direction::Falling)) = turning.push(t) {
+            bounds.extend((n > begin).then_some(n));
+        }
+    }
+    let cycle = |n: usize| {
+        let range = bounds[n]..bounds[n + 1];
+        Recording::new(
+            whole.input[range.clone()].to_vec(),
+            whole.output[range].to_vec(),
+        )
+        .unwrap()
+    };
+    let plane = plane_of(&whole, 20).unwrap();
+    let fit = |recording: &Recording| {
+        let options = FitOptions {
+            start: Start::On,
+            range: Some((plane.min(), plane.max())),
+            ..FitOptions::default()
+        };
+        Fit::from(&options).run(recording).unwrap()
+    };
+    let first = fit(&cycle(0));
+    let options = AdaptOptions {
+        start: Start::On,
+        ..by(Learner::Refit)
+    };
+    let mut adaptive = options.adaptive_after(&first, &cycle(0)).unwrap();
+    for n in 1..bounds.len() - 2 {
+        let (last, next) = (cycle(n), cycle(n + 1));
+        adaptive
+            .run(&last.input, &last.output, Progress::NONE)
+            .unwrap();
+        adaptive.refit().unwrap();
+        let mut frozen = adaptive.clone();
+        let ahead = next.input.iter().map(|&t| frozen.simulate(t).unwrap());
+        let ahead: Vec<f64> = ahead.collect();
+        let fitted = fit(&last);
+        let mut of_fit = vec![0.0; next.len()];
+        fitted
+            .run(&mut fitted.saturated(), &next.input, &mut of_fit)
+            .unwrap();
+        let rmse = |output: &[f64]| {
+            Errors::between(&next.output, output, |_| true)
+                .unwrap()
+                .rmse
+        };
+        assert!(rmse(&ahead) <= 1.05 * rmse(&of_fit), "cycle {n}");
+    }
 }
 
 #[test]

@@ -26,10 +26,10 @@ pub(crate) struct Adapt {
     #[arg(long, value_enum, default_value = "off")]
     pub(crate) start: AdaptStart,
     /// What follows the error, and how
-    #[arg(long, value_enum, default_value = "drift")]
+    #[arg(long, value_enum, default_value = "refit")]
     pub(crate) method: Learner,
-    /// With `drift` and `load`, for a model that depends on a load: the load to start at [default:
-    /// the middle of its range]
+    /// With `refit`, `drift` and `load`, for a model that depends on a load: the load to start at
+    /// [default: the middle of its range]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true, value_parser = parse_finite)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]
@@ -54,6 +54,18 @@ pub(crate) struct Adapt {
 #[derive(Args)]
 #[command(next_help_heading = "Tuning")]
 pub(crate) struct Tuning {
+    /// refit: the samples to fit to, cycles:N for the last cycles of the input, samples:N for the
+    /// last samples [default: cycles:1]
+    #[arg(long, value_name = "WINDOW")]
+    window: Option<hysteron::Window>,
+    /// refit: samples between two refits [default: at each turning point of the input, and where an
+    /// eighth of the window is new]
+    #[arg(long, value_name = "N")]
+    every: Option<u32>,
+    /// refit: how firmly weights stay where they are, relative to the window's matrix, above 0 and
+    /// up to 1 [default: 0.1]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = parse_finite)]
+    ridge: Option<f64>,
     /// gradient, increments: share of a sample's error to remove, above 0 and below 2 [default:
     /// 0.3]
     #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = parse_finite)]
@@ -113,6 +125,9 @@ impl From<&Adapt> for hysteron::AdaptOptions {
             learner: args.method.into(),
             start: args.start.into(),
             load: args.load,
+            window: tuning.window,
+            every: tuning.every,
+            ridge: tuning.ridge,
             gain: tuning.gain,
             span: tuning.span,
             forgetting: tuning.forgetting,

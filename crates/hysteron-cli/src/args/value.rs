@@ -178,6 +178,8 @@ pub(crate) enum Policy {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Learner {
+    /// All weights, by least squares over the last cycle of the input, again and again
+    Refit,
     /// All weights, by the normalised gradient
     Gradient,
     /// All weights, by the normalised gradient on increments of the output
@@ -194,6 +196,7 @@ pub(crate) enum Learner {
 impl From<Learner> for hysteron::Learner {
     fn from(learner: Learner) -> Self {
         match learner {
+            Learner::Refit => Self::Refit,
             Learner::Gradient => Self::Gradient,
             Learner::Increments => Self::Increments,
             Learner::LeastSquares => Self::LeastSquares,

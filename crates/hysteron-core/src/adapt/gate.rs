@@ -24,7 +24,7 @@ const LEAST: usize = 1000;
 
 /// What the gate says of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub enum Verdict {
     /// No more surprising than those before.
     Usual,
     /// The last of a burst of surprising readings that agree: the plant has jumped.
@@ -33,9 +33,24 @@ pub(super) enum Verdict {
     Refused,
 }
 
-/// What the gate knows of the errors. All values are in the output's unit.
+/// Keeps what learns from outliers: it judges each reading by its surprise. All values are in the
+/// output's unit. [`crate::Adaptation`] explains the rule.
+///
+/// An [`crate::Estimator`] has its own. Anything else that learns may use one: it asks before it
+/// learns from a reading, and tells what error was left after a reading that was not refused.
+///
+/// ```
+/// use hysteron_core::{Gate, Verdict};
+/// let mut gate = Gate::new(10.0);
+/// let (limit, burst) = (12.0, 8);
+/// for error in [0.1, -0.1, 0.2] {
+///     assert_eq!(gate.judge(error, limit, burst), Verdict::Usual);
+///     gate.settle(error);
+/// }
+/// assert_eq!(gate.judge(4095.0, limit, burst), Verdict::Refused);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gate<T> {
+pub struct Gate<T> {
     /// Range of the model's output.
     range: T,
     /// Usual size of a surprise.
@@ -58,7 +73,8 @@ impl<T: Real> Gate<T> {
     }
 
     /// A gate for a model whose output has this range, before the first error.
-    pub(super) fn new(range: T) -> Self {
+    #[must_use]
+    pub fn new(range: T) -> Self {
         Self {
             range,
             scale: range / T::from_index(AT_START),
@@ -70,13 +86,13 @@ impl<T: Real> Gate<T> {
     }
 
     /// Forgets all errors, because they were those of other weights.
-    pub(super) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         *self = Self::new(self.range);
     }
 
     /// Judges a reading whose prediction has this `error`. `gate` and `burst` are the options of
     /// the same name of [`Adaptation`](super::Adaptation).
-    pub(super) fn judge(&mut self, error: T, gate: T, burst: u32) -> Verdict {
+    pub fn judge(&mut self, error: T, gate: T, burst: u32) -> Verdict {
         if gate == T::ZERO {
             return Verdict::Usual;
         }
@@ -103,7 +119,7 @@ impl<T: Real> Gate<T> {
     }
 
     /// Keeps the error that `left` after learning from an accepted reading.
-    pub(super) fn settle(&mut self, left: T) {
+    pub fn settle(&mut self, left: T) {
         self.left = if left.is_finite() { left } else { T::ZERO };
     }
 

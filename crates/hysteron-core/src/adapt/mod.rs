@@ -24,6 +24,7 @@ mod trial;
 mod vector;
 
 pub use estimator::Estimator;
+pub use gate::{Gate, Verdict};
 pub use learning::{Learning, Outcome};
 pub use memory::{estimator_len, estimator_len_of_basis};
 pub use options::{Adaptation, Method};

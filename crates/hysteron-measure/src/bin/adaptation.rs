@@ -4,8 +4,9 @@
 use hysteron::{
     AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, Fit, FitOptions, Learner,
     Model, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start, State, Step, Turning,
-    adapt, plane_of, prepare,
+    Window, adapt, plane_of, prepare,
 };
+use hysteron_sim::rig::{Experiment, Reproduction};
 use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
@@ -15,8 +16,9 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const LEVELS: usize = 20;
 /// Passes over a loop that a model is adapted to.
 const PASSES: usize = 3;
-/// Estimators of weights.
-const LEARNERS: [(&str, Learner); 4] = [
+/// Learners of weights.
+const LEARNERS: [(&str, Learner); 5] = [
+    ("refit", Learner::Refit),
     ("gradient", Learner::Gradient),
     ("increments", Learner::Increments),
     ("least squares", Learner::LeastSquares),
@@ -44,10 +46,10 @@ fn main() -> Result<()> {
     print!("\n{}", include_str!("adaptation-stress.md"));
     let mut pairs = Vec::new();
     println!(
-        "| from → to, MPa | fixed | fitted | gradient | increments | least squares | drift | least \
-         squares, forgetting 1 |"
+        "| from → to, MPa | fixed | fitted | refit | gradient | increments | least squares | drift \
+         | least squares, forgetting 1 |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (material, stresses, output) in MATERIALS {
         let loops = Loops::read(folder, material, stresses, output)?;
         for to in 1..stresses.len() {
@@ -57,10 +59,10 @@ fn main() -> Result<()> {
     }
     print!("\n{}", include_str!("adaptation-load.md"));
     println!(
-        "| from → to, MPa | middle | at its load | fitted | drift | drift, forgetting 1 | load | load \
-         found |"
+        "| from → to, MPa | middle | at its load | fitted | refit | drift | drift, forgetting 1 | load \
+         | load found |"
     );
-    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for loops in pairs {
         for to in 1..loops.stresses.len() {
             if to + 1 < loops.stresses.len() {
@@ -72,6 +74,31 @@ fn main() -> Result<()> {
         }
     }
     print!("{}", include_str!("adaptation-end.md"));
+    unchanged()
+}
+
+/// The demo's second recording, of the spring that its model is fitted to.
+fn unchanged() -> Result<()> {
+    let demo = Reproduction::run(&Experiment::default(), [1, 2])?;
+    println!("| RMSE, mm | adapting | fixed | written |");
+    println!("| --- | ---: | ---: | --- |");
+    let longer = AdaptOptions {
+        window: Some(Window::Cycles(4)),
+        ..adapting(Learner::Refit)
+    };
+    let each = LEARNERS.map(|(name, learner)| (name, adapting(learner)));
+    let others = [
+        ("load", adapting(Learner::Load)),
+        ("refit, 4 cycles", longer),
+    ];
+    for (name, options) in each.into_iter().chain(others) {
+        let adapted = adapt(&demo.model, &demo.prepared[1], &options, Progress::NONE)?;
+        let late = adapted.late.ok_or("no sample judges")?;
+        let written = if adapted.worse { "no" } else { "yes" };
+        let (adapting, fixed) = (late.adapting.rmse, late.fixed.rmse);
+        println!("| {name} | {adapting:.3} | {fixed:.3} | {written} |");
+    }
+    print!("{}", include_str!("adaptation-unchanged.md"));
     Ok(())
 }
 
@@ -169,6 +196,7 @@ fn cycles(folder: &Path) -> Result<()> {
     let mut state = first.saturated();
     run(&first, &mut state, &cycles[0].input)?;
     let (mut fixed, mut corrected, mut refitted, mut last) = (vec![], vec![], vec![], 0.0);
+    let mut persisted = vec![];
     for pair in cycles.windows(2) {
         let (before, cycle) = (&pair[0], &pair[1]);
         let output = run(&first, &mut state, &cycle.input)?;
@@ -182,8 +210,10 @@ fn cycles(folder: &Path) -> Result<()> {
         let model = fitted(before)?;
         let output = run(&model, &mut model.saturated(), &cycle.input)?;
         refitted.push(percent(&cycle.output, &output, range));
+        persisted.push(percent(&cycle.output, &persistent(before, cycle), range));
     }
     line("a whole cycle ahead: model of cycle 1, fixed", &fixed);
+    line("the output of the cycle before", &persisted);
     line("model fitted to the cycle before", &refitted);
     let mut sample_by_sample = vec![(
         "sample by sample: model of cycle 1, and its error at the sample before".to_owned(),
@@ -193,6 +223,7 @@ fn cycles(folder: &Path) -> Result<()> {
         let mut adaptive = estimator(&first, &cycles[0], learner)?;
         let (mut ahead, mut next) = (vec![], vec![]);
         for cycle in &cycles[1..] {
+            adaptive.refit()?;
             let mut frozen = adaptive.clone();
             let whole = cycle.input.iter().map(|&t| frozen.simulate(t));
             let whole: Vec<f64> = whole.collect::<hysteron::Result<_>>()?;
@@ -211,14 +242,45 @@ fn cycles(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// An estimator as [`adapt`] makes it, at the end of the recording that its model was fitted to.
-fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
-    let options = adapting(learner).adaptation(model, seen)?;
-    let mut adaptive = match learner {
-        Learner::Drift => DriftBasis::of(model, None)?.adaptive(options)?,
-        _ => Adaptive::new(model, options)?,
+/// What a cycle would be if it were the one `before`: at each input, on the way down and on the way
+/// up, the output there.
+fn persistent(before: &Recording, cycle: &Recording) -> Vec<f64> {
+    let coldest = |recording: &Recording| {
+        let places = recording.input.iter().enumerate();
+        let coldest = places.min_by(|a, b| a.1.total_cmp(b.1));
+        coldest.map_or(0, |(n, _)| n)
     };
-    adaptive.saturate()?;
+    let turn = coldest(before);
+    let branch = |range: Range<usize>| {
+        let part = part(before, range);
+        let mut points: Vec<(f64, f64)> = part.input.into_iter().zip(part.output).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    let (down, up) = (branch(0..turn + 1), branch(turn..before.len()));
+    let here = coldest(cycle);
+    let inputs = cycle.input.iter().enumerate();
+    let each = inputs.map(|(n, &t)| between(if n <= here { &down } else { &up }, t));
+    each.collect()
+}
+
+/// The value at `t` on a polygon through points in order; beyond its ends that of the end.
+fn between(points: &[(f64, f64)], t: f64) -> f64 {
+    let n = points.partition_point(|point| point.0 < t);
+    let (low, high) = (points[n.saturating_sub(1)], points[n.min(points.len() - 1)]);
+    match high.0 > low.0 {
+        true => low.1 + (high.1 - low.1) * (t - low.0) / (high.0 - low.0),
+        false => high.1,
+    }
+}
+
+/// A learner as [`adapt`] makes it, at the end of the recording that its model was fitted to.
+fn estimator(model: &Model, seen: &Recording, learner: Learner) -> Result<Adaptive> {
+    let options = AdaptOptions {
+        start: Start::On,
+        ..adapting(learner)
+    };
+    let mut adaptive = options.adaptive_after(model, seen)?;
     for &input in &seen.input {
         adaptive.simulate(input)?;
     }
@@ -325,13 +387,14 @@ impl Loops {
             Err(_) => "outside".into(),
         };
         println!(
-            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {:.0} |",
+            "| {} {} and {} → {} | {:.1} | {known} | {:.1} | {} | {} | {} | {} | {:.0} |",
             self.material,
             self.stresses[from[0]],
             self.stresses[from[1]],
             self.stresses[to],
             self.judge(&middle, to)?,
             self.judge(&Fit::from(&self.options).run(&self.loops[to])?, to)?,
+            self.adapted(&model, to, &adapting(Learner::Refit))?,
             self.adapted(&model, to, &adapting(Learner::Drift))?,
             self.adapted(&model, to, &remembering(Learner::Drift))?,
             self.adapted(&model, to, &adapting(Learner::Load))?,

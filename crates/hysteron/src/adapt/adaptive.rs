@@ -1,5 +1,6 @@
 //! A model that learns while it runs, sample by sample.
 
+use super::refit::{Refit, Refitter};
 use crate::error::{Error, Result};
 use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
@@ -35,9 +36,21 @@ pub struct Adaptive {
     state: OperatorState,
     /// State of the inverse, at the inputs that it asked for.
     wanted: OperatorState,
-    estimator: Estimator<f64, Vec<f64>>,
-    /// The basis that the parameters are coefficients of; empty if the parameters are the weights.
-    basis: Vec<Vec<f64>>,
+    learner: Learns,
+}
+
+/// What finds the weights.
+#[derive(Debug, Clone)]
+enum Learns {
+    /// From sample to sample.
+    Estimator {
+        estimator: Box<Estimator<f64, Vec<f64>>>,
+        /// The basis that the parameters are coefficients of; empty if the parameters are the
+        /// weights.
+        basis: Vec<Vec<f64>>,
+    },
+    /// By refits over a window.
+    Refitter(Box<Refitter>),
 }
 
 impl Adaptive {
@@ -51,7 +64,45 @@ impl Adaptive {
         let memory = reserved(estimator_len(model.plane().levels(), options.method))?;
         let offset = model.sign().factor() * model.offset();
         let estimator = Estimator::new(options, &mut core, model.weights(), offset, memory)?;
-        Self::over(model, core, estimator, Vec::new())
+        let estimator = Box::new(estimator);
+        let basis = Vec::new();
+        Self::over(model, core, Learns::Estimator { estimator, basis })
+    }
+
+    /// Fits all weights of `model` and its offset again and again to the last samples. It starts
+    /// with all operators off.
+    ///
+    /// A sample takes constant time, but the one with a refit takes `O(K⁶)`. docs/adaptation.md has
+    /// the times: a loop must have that time to spare.
+    ///
+    /// ```
+    /// use hysteron::{Adaptive, Model, Operator, Plane, Refit, Sign, Window};
+    /// let plane = Plane::new(20.0, 80.0, 5)?;
+    /// let (mkp, sign) = (Operator::Mkp, Sign::Positive);
+    /// let model = |weight: f64| Model::new(mkp, plane, vec![weight; 15], 0.0, sign);
+    /// let options = Refit { window: Window::Samples(200), ..Refit::default() };
+    /// let mut adaptive = Adaptive::refitting(&model(1.0)?, options)?;
+    /// let (plant, mut state) = (model(1.5)?, model(1.5)?.start());
+    /// for n in 0..1000 {
+    ///     let input = 50.0 - 40.0 * (0.05 * f64::from(n)).cos();
+    ///     adaptive.step(input, plant.step(&mut state, input)?.output)?;
+    /// }
+    /// assert!((adaptive.simulate(80.0)? - 15.0 * 1.5).abs() < 0.01);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Adaptive::new`].
+    pub fn refitting(model: &Model, options: Refit) -> Result<Self> {
+        let plane = *model.plain()?.plane();
+        check_memory(MATRICES * plane.operators().pow(2))?;
+        let weights = model.weights();
+        let table = vec![0.0; table_len(plane.levels())];
+        let core = hysteron_core::Model::new(plane, model.operator(), weights, table)?;
+        // Its inverse exists only with weights of zero or above.
+        core.inverse()?;
+        let refitter = Refitter::new(model, options)?;
+        Self::over(model, core, Learns::Refitter(Box::new(refitter)))
     }
 
     /// Adapts the coefficients of `basis` (each member `N` weights) and the offset.
@@ -77,14 +128,14 @@ impl Adaptive {
         let all = basis.concat();
         let estimator =
             Estimator::of_basis(options, &mut core, &all, coefficients, offset, memory)?;
-        Self::over(model, core, estimator, basis)
+        let estimator = Box::new(estimator);
+        Self::over(model, core, Learns::Estimator { estimator, basis })
     }
 
     fn over(
         model: &Model,
         core: hysteron_core::Model<f64, Vec<f64>>,
-        estimator: Estimator<f64, Vec<f64>>,
-        basis: Vec<Vec<f64>>,
+        learner: Learns,
     ) -> Result<Self> {
         let mut state = model.plain()?.start();
         core.rebase(&mut state)?;
@@ -93,8 +144,7 @@ impl Adaptive {
             core,
             wanted: state.clone(),
             state,
-            estimator,
-            basis,
+            learner,
         })
     }
 
@@ -104,9 +154,15 @@ impl Adaptive {
     /// [`Error::Core`] for numbers that are not finite; then nothing is changed.
     pub fn step(&mut self, input: f64, measured: f64) -> Result<Learning<f64>> {
         let factor = self.sign().factor();
-        let learning =
-            self.estimator
-                .step(&mut self.core, &mut self.state, input, factor * measured)?;
+        let raw = factor * measured;
+        let learning = match &mut self.learner {
+            Learns::Estimator { estimator, .. } => {
+                estimator.step(&mut self.core, &mut self.state, input, raw)?
+            }
+            Learns::Refitter(refitter) => {
+                refitter.step(&mut self.core, &mut self.state, input, raw)?
+            }
+        };
         Ok(Learning {
             output: factor * learning.output,
             error: factor * learning.error,
@@ -145,13 +201,16 @@ impl Adaptive {
     /// [`Error::Core`] for an input that is not finite; then nothing is changed.
     pub fn simulate(&mut self, input: f64) -> Result<f64> {
         let sum = self.core.step(&mut self.state, input)?.output;
-        Ok(self.sign().factor() * (sum + self.estimator.offset()))
+        if let Learns::Refitter(refitter) = &mut self.learner {
+            refitter.follow(&self.state);
+        }
+        Ok(self.sign().factor() * (sum + self.level()))
     }
 
     /// The output expected at the current input.
     #[must_use]
     pub fn output(&self) -> f64 {
-        self.sign().factor() * (self.core.output(&self.state) + self.estimator.offset())
+        self.sign().factor() * (self.core.output(&self.state) + self.level())
     }
 
     /// Finds the input that gives `target` with the current weights. The inverse moves there from
@@ -160,7 +219,7 @@ impl Adaptive {
     /// # Errors
     /// [`Error::Core`] for a target that is not finite; then nothing is changed.
     pub fn solve(&mut self, target: Target<f64>) -> Result<Solution<f64>> {
-        let offset = self.estimator.offset();
+        let offset = self.level();
         let core = &self.core;
         invert(core, self.offline.sign(), offset, &mut self.wanted, target)
     }
@@ -182,19 +241,23 @@ impl Adaptive {
         state: &mut OperatorState,
         target: Target<f64>,
     ) -> Result<Solution<f64>> {
-        let offset = self.estimator.offset();
+        let offset = self.level();
         invert(&self.core, self.sign(), offset, state, target)
     }
 
     /// The current weights, row by row.
     #[must_use]
     pub fn weights(&self) -> Vec<f64> {
-        let parameters = self.estimator.parameters();
-        if self.basis.is_empty() {
+        let (estimator, basis) = match &self.learner {
+            Learns::Estimator { estimator, basis } => (estimator, basis),
+            Learns::Refitter(refitter) => return refitter.weights(),
+        };
+        let parameters = estimator.parameters();
+        if basis.is_empty() {
             return parameters.to_vec();
         }
         let mut weights = vec![0.0; self.offline.weights().len()];
-        for (coefficient, member) in parameters.iter().zip(&self.basis) {
+        for (coefficient, member) in parameters.iter().zip(basis) {
             for (weight, member) in weights.iter_mut().zip(member) {
                 *weight += coefficient * member;
             }
@@ -205,7 +268,15 @@ impl Adaptive {
     /// The current output with every operator off.
     #[must_use]
     pub fn offset(&self) -> f64 {
-        self.sign().factor() * self.estimator.offset()
+        self.sign().factor() * self.level()
+    }
+
+    /// The offset without the sign.
+    fn level(&self) -> f64 {
+        match &self.learner {
+            Learns::Estimator { estimator, .. } => estimator.offset(),
+            Learns::Refitter(refitter) => refitter.offset(),
+        }
     }
 
     /// The current model, with the names of the off-line model.
@@ -237,7 +308,7 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn reset(&mut self) -> Result<()> {
-        self.estimator.realign();
+        self.realign();
         self.core.reset_off(&mut self.state)?;
         self.align();
         Ok(())
@@ -249,7 +320,7 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn saturate(&mut self) -> Result<()> {
-        self.estimator.realign();
+        self.realign();
         self.core.reset_on(&mut self.state)?;
         self.align();
         Ok(())
@@ -257,12 +328,18 @@ impl Adaptive {
 
     /// While frozen, [`Adaptive::step`] returns the expected output but does not learn.
     pub fn freeze(&mut self, frozen: bool) {
-        self.estimator.freeze(frozen);
+        match &mut self.learner {
+            Learns::Estimator { estimator, .. } => estimator.freeze(frozen),
+            Learns::Refitter(refitter) => refitter.freeze(frozen),
+        }
     }
 
     /// Stores the current weights and offset as the last good ones.
     pub fn keep(&mut self) {
-        self.estimator.keep();
+        match &mut self.learner {
+            Learns::Estimator { estimator, .. } => estimator.keep(),
+            Learns::Refitter(refitter) => refitter.keep(),
+        }
     }
 
     /// Restores the last good weights and offset: those stored last, or those that have passed a
@@ -271,8 +348,32 @@ impl Adaptive {
     /// # Errors
     /// None in practice.
     pub fn roll_back(&mut self) -> Result<()> {
-        self.estimator.roll_back(&mut self.core);
+        match &mut self.learner {
+            Learns::Estimator { estimator, .. } => estimator.roll_back(&mut self.core),
+            Learns::Refitter(refitter) => refitter.roll_back(&mut self.core)?,
+        }
         Ok(self.core.rebase(&mut self.state)?)
+    }
+
+    /// Refits now, with what has come since the last refit. A learner that learns from sample to
+    /// sample has learned all of it. Call it before what was learned is used for long: at the end
+    /// of a cycle, or before [`Adaptive::model`].
+    ///
+    /// # Errors
+    /// None in practice.
+    pub fn refit(&mut self) -> Result<()> {
+        if let Learns::Refitter(refitter) = &mut self.learner {
+            refitter.refit(&mut self.core)?;
+            self.core.rebase(&mut self.state)?;
+        }
+        Ok(())
+    }
+
+    fn realign(&mut self) {
+        match &mut self.learner {
+            Learns::Estimator { estimator, .. } => estimator.realign(),
+            Learns::Refitter(refitter) => refitter.realign(),
+        }
     }
 
     fn sign(&self) -> Sign {
@@ -297,8 +398,17 @@ fn invert(
 /// Largest memory of an estimator, in bytes.
 const MOST_BYTES: u128 = 4 << 30;
 
+/// Matrices that a refit has at one time: the sums, those of the operators, the one to solve and its
+/// factor.
+const MATRICES: usize = 4;
+
 /// The memory of an estimator.
 fn reserved(numbers: usize) -> Result<Vec<f64>> {
+    check_memory(numbers)?;
+    Ok(vec![0.0; numbers])
+}
+
+fn check_memory(numbers: usize) -> Result<()> {
     let bytes = 8 * numbers as u128;
     if bytes > MOST_BYTES {
         return Err(Error::Fit(format!(
@@ -308,7 +418,7 @@ fn reserved(numbers: usize) -> Result<Vec<f64>> {
             MOST_BYTES >> 30
         )));
     }
-    Ok(vec![0.0; numbers])
+    Ok(())
 }
 
 /// A core model with the memory that the method needs.

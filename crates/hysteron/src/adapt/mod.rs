@@ -2,22 +2,28 @@
 //!
 //! This file runs an estimator over a recording: each sample is first compared with the expected
 //! output, then learned from. `options` are its settings. `adaptive` is the model that learns
-//! sample by sample. `basis` is a basis with few coefficients for drift. `load` and `unknown_load` do
-//! the same for the shift of an unknown load. `counts` counts what was done with the samples.
+//! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
+//! drift; or by a `refit` to the samples of a `window`, from their `sums`. `load` and `unknown_load`
+//! do the same for the shift of an unknown load. `counts` counts what was done with the samples.
 
 mod adaptive;
 mod basis;
 mod counts;
 mod load;
 mod options;
+mod refit;
+mod sums;
 mod unknown_load;
+mod window;
 
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
 pub use load::AdaptiveLoad;
 pub use options::{AdaptOptions, EstimatorOptions, Learner};
+pub use refit::Refit;
 pub use unknown_load::ShiftFound;
+pub use window::Window;
 
 use crate::error::{Error, Result};
 use crate::model::{FitSummary, Model, Start, Surroundings};
@@ -37,7 +43,7 @@ pub struct Adapted {
     /// they were obtained.
     pub model: Model,
     /// Number of samples at the end that did not change the model, because no later samples can
-    /// confirm them: [`Adaptation::burst`], or 0 without a [`Adaptation::gate`].
+    /// confirm them: [`AdaptOptions::burst`], or 0 without a [`AdaptOptions::gate`].
     pub probation: usize,
     /// Output expected at each sample before the estimator learned from it.
     pub output_model: Vec<f64>,
@@ -50,11 +56,12 @@ pub struct Adapted {
     /// Errors over the first, second and last third of the samples; empty for fewer than three
     /// samples.
     pub thirds: Vec<Compared>,
-    /// Errors over the last third without the rejected readings; [`Adapted::worse`] is based on
-    /// them. `None` if there are no such samples.
+    /// Errors over the last third without the rejected readings and those on probation;
+    /// [`Adapted::worse`] is based on them. `None` if there are no such samples.
     pub late: Option<Compared>,
-    /// Whether adaptation made the model worse: on the last third its errors, taken before it
-    /// learned from each sample, are larger than those of the fixed model by more than rounding.
+    /// Whether the model that learned is no better than the model left alone: on the last third
+    /// its errors, taken before it learned from each sample, are larger than those of the fixed
+    /// model, or as large although it changed. Differences of the size of rounding do not count.
     pub worse: bool,
     /// Errors of the final weights over the whole recording, run again from its start. These
     /// weights have seen all of it.
@@ -63,7 +70,7 @@ pub struct Adapted {
     pub drift: Drift,
     /// What [`Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
-    /// The estimator's options.
+    /// The options of what learned.
     pub options: EstimatorOptions,
 }
 
@@ -78,10 +85,9 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Whether the adapting model has larger errors, by more than a part in 10⁹ of the model's
-    /// range. Smaller differences are rounding, because the two sum in different orders.
-    fn is_worse(&self, (off, on): (f64, f64)) -> bool {
-        self.adapting.rmse > self.fixed.rmse + 1e-9 * (on - off).abs()
+    /// By how much the adapting model has larger errors, as a share of the model's range.
+    fn loss(&self, (off, on): (f64, f64)) -> f64 {
+        (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
 }
 
@@ -126,7 +132,8 @@ impl Adapted {
 /// # Errors
 /// - [`Error::Recording`] for an invalid recording.
 /// - [`Error::Fit`] for a model with a thermal body, for a model that depends on a load with a
-///   learner other than [`Learner::Drift`], and for options that the learner does not use.
+///   learner other than [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`], and for
+///   options that the learner does not use.
 /// - [`Error::Core`] for options out of range and negative weights.
 /// - The error that `progress` returns.
 pub fn adapt(
@@ -143,18 +150,19 @@ pub fn adapt(
         return adapt_within(model, recording, options, progress);
     }
     refuse_unusable(model)?;
-    let adaptation = options.adaptation(model, recording)?;
-    let mut adaptive = options.estimator(model, adaptation)?;
+    let learned_by = options.resolve(model, recording)?;
+    let mut adaptive = options.learner(model, learned_by)?;
     let offline = adaptive.offline().clone();
     let (from_on, fixed) = fixed(&offline, recording, options.start)?;
     if from_on {
         adaptive.saturate()?;
     }
     let count = recording.len();
-    let probation = on_probation(adaptation.gate, adaptation.burst, count);
+    let probation = on_probation(learned_by, count);
     let (input, late_input) = recording.input.split_at(count - probation);
     let (output, late_output) = recording.output.split_at(count - probation);
     let mut learned = adaptive.run(input, output, progress)?;
+    adaptive.refit()?;
     let last = adaptive.model()?;
     let told = |what: &'static str, _: f64| progress.tell(what, 1.0);
     learned.extend(adaptive.run(late_input, late_output, Progress::new(&told))?);
@@ -166,7 +174,7 @@ pub fn adapt(
         from_on,
         probation,
         shift: None,
-        options: EstimatorOptions::Weights(adaptation),
+        options: learned_by,
     }
     .judged(recording, options)
 }
@@ -210,7 +218,8 @@ impl Learned {
             .map(|k| compare(&|n| third(k).contains(&n)))
             .collect::<Option<_>>()
             .unwrap_or_default();
-        let late = compare(&|n| third(2).contains(&n) && outcomes[n] != Outcome::Rejected);
+        let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
+        let late = compare(&|n| third(2).contains(&n) && judges(n));
         let again = run_from(&last, self.from_on, recording)?;
         let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
         last.fit = Some(summary(
@@ -221,8 +230,11 @@ impl Learned {
             self.options.described(),
             (&again, counts),
         ));
+        let drift = Drift::between(&offline, &last);
+        let changed = drift.is_change(&offline) || shifted(self.shift.as_ref(), &offline);
         Ok(Adapted {
-            drift: Drift::between(&offline, &last),
+            worse: is_worse(late.as_ref(), changed, offline.output_range()),
+            drift,
             model: last,
             probation: self.probation,
             output_model,
@@ -231,7 +243,6 @@ impl Learned {
             whole,
             thirds,
             late,
-            worse: late.is_some_and(|late| late.is_worse(offline.output_range())),
             again,
             shift: self.shift,
             options: self.options,
@@ -261,10 +272,10 @@ fn adapt_within(
 }
 
 /// How many of `count` samples are at the end and on probation.
-fn on_probation(gate: f64, burst: u32, count: usize) -> usize {
-    match gate > 0.0 {
-        true => count.min(burst as usize),
-        false => 0,
+fn on_probation(options: EstimatorOptions, count: usize) -> usize {
+    match options.gate() {
+        (gate, burst) if gate > 0.0 => count.min(burst as usize),
+        _ => 0,
     }
 }
 
@@ -365,6 +376,7 @@ impl EstimatorOptions {
     fn described(&self) -> serde_json::Value {
         match self {
             Self::Weights(adaptation) => described(adaptation),
+            Self::Refit(refit) => json!(refit),
             Self::Shift(options) => json!({
                 "noise": options.noise,
                 "spread": options.spread,
@@ -408,7 +420,33 @@ fn described(options: &Adaptation<f64>) -> serde_json::Value {
     object
 }
 
+/// Differences below this share are rounding, because two ways to sum have different orders.
+const ROUNDING: f64 = 1e-9;
+
+/// [`Adapted::worse`].
+fn is_worse(late: Option<&Compared>, changed: bool, range: (f64, f64)) -> bool {
+    match late.map(|late| late.loss(range)) {
+        Some(loss) => loss > ROUNDING || changed && loss >= -ROUNDING,
+        // Nothing says that it is better.
+        None => changed,
+    }
+}
+
+/// Whether the axis of the `offline` model has moved.
+fn shifted(found: Option<&ShiftFound>, offline: &Model) -> bool {
+    let plane = offline.plane();
+    let least = ROUNDING * (plane.max() - plane.min());
+    found.is_some_and(|found| found.shift.abs() > least)
+}
+
 impl Drift {
+    /// Whether the weights or the offset differ from those of the `offline` model.
+    fn is_change(&self, offline: &Model) -> bool {
+        let (off, on) = offline.output_range();
+        let moved = (self.offset.1 - self.offset.0).abs() / (on - off).abs();
+        self.moved > ROUNDING || moved > ROUNDING
+    }
+
     fn between(before: &Model, after: &Model) -> Self {
         let sum = |model: &Model| model.weights().iter().sum::<f64>();
         let pairs = before.weights().iter().zip(after.weights());

@@ -3,6 +3,8 @@
 use crate::adapt::adaptive::Adaptive;
 use crate::adapt::basis::DriftBasis;
 use crate::adapt::load::AdaptiveLoad;
+use crate::adapt::refit::Refit;
+use crate::adapt::window::Window;
 use crate::error::{Error, Result};
 use crate::model::{Model, Start};
 use crate::recording::Recording;
@@ -40,19 +42,23 @@ pub enum Learner {
     Increments,
     /// All weights by recursive least squares.
     LeastSquares,
-    /// The coefficients of [`crate::DriftBasis`] by recursive least squares. With the defaults it
-    /// has the smallest errors on measured recordings.
-    #[default]
+    /// The coefficients of [`crate::DriftBasis`] by recursive least squares.
     Drift,
+    /// All weights by least squares over the last cycle of the input, again and again. With the
+    /// defaults it has the smallest errors on measured recordings.
+    #[default]
+    Refit,
     /// The shift of the operators' axis alone, by a Kalman filter: a load that nobody measures.
     Load,
 }
 
-/// The options that an estimator ran with.
+/// The options that a learner runs with, all of them known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EstimatorOptions {
-    /// Those of an estimator of weights or coefficients.
+    /// Those of an estimator of weights or coefficients, from sample to sample.
     Weights(Adaptation<f64>),
+    /// Those of a windowed refit.
+    Refit(Refit),
     /// Those of the estimator of the shift.
     Shift(ShiftOptions<f64>),
 }
@@ -63,9 +69,12 @@ pub enum EstimatorOptions {
 ///
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
-/// | `learner` | drift | see [`Learner`] | parameters and method |
+/// | `learner` | refit | see [`Learner`] | parameters and method |
 /// | `start` | off | off, on, unknown | state before the first sample |
-/// | `load` | middle of its range | the model's range | load to start at (drift, load) |
+/// | `load` | middle of its range | the model's range | load to start at (refit, drift, load) |
+/// | `window` | cycles:1 | see [`Window`] | samples that a refit uses |
+/// | `every` | see the field | 1 or more | samples between two refits |
+/// | `ridge` | 0.1 | above 0, up to 1 | holds weights where they are (refit) |
 /// | `gain` | 0.3 | above 0, below 2 | gain (gradient methods) |
 /// | `span` | 1 | 1/8 to 8 | levels between updates (increments) |
 /// | `forgetting` | weights: 0.999, coefficients: 0.9999 | up to 1 | forgetting (least squares) |
@@ -86,9 +95,17 @@ pub struct AdaptOptions {
     /// State of the operators before the first sample. Unknown: off or on, whichever gives the
     /// unadapted model the smaller errors.
     pub start: Start,
-    /// Load that the coefficients or the shift start at, for [`Learner::Drift`] and
-    /// [`Learner::Load`] with a model that depends on a load.
+    /// Load to start at, for [`Learner::Refit`], [`Learner::Drift`] and [`Learner::Load`] with a
+    /// model that depends on a load.
     pub load: Option<f64>,
+    /// The samples that a refit uses.
+    pub window: Option<Window>,
+    /// Samples between two refits. Default: at each turning point of the input, and where an eighth
+    /// of the window is new.
+    pub every: Option<u32>,
+    /// Strength of the ridge that holds the weights of a refit where they are, relative to the mean
+    /// diagonal element of the window's matrix.
+    pub ridge: Option<f64>,
     /// Gain of the gradient methods: share of a sample's error that one update removes.
     pub gain: Option<f64>,
     /// Levels between two updates from increments.
@@ -125,26 +142,35 @@ pub struct AdaptOptions {
 }
 
 impl AdaptOptions {
-    /// The estimator's options for `model` on `recording`.
+    /// The options of the learner for `model` on `recording`.
     ///
     /// # Errors
     /// [`Error::Fit`] for a field that is set but that the learner does not use. Values out of
-    /// range are refused when an estimator is made.
-    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
+    /// range are refused when a learner is made.
+    pub fn resolve(&self, model: &Model, recording: &Recording) -> Result<EstimatorOptions> {
         let output = &recording.output;
         self.resolved(model, noise(output), usual_range(output))
     }
 
-    /// The estimator's options for `model` before any measurement. `Y` is the model's range, and
-    /// the output is assumed to have no noise.
+    /// The options of an estimator for `model` on `recording`.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::resolve`]; [`Error::Fit`] for [`Learner::Refit`], which is no estimator,
+    /// and for [`Learner::Load`], which learns no weights.
+    pub fn adaptation(&self, model: &Model, recording: &Recording) -> Result<Adaptation<f64>> {
+        self.resolve(model, recording)?.estimator()
+    }
+
+    /// The options of an estimator for `model` before any measurement. `Y` is the model's range,
+    /// and the output is assumed to have no noise.
     ///
     /// # Errors
     /// As [`AdaptOptions::adaptation`].
     pub fn before(&self, model: &Model) -> Result<Adaptation<f64>> {
-        self.resolved(model, 0.0, 0.0)
+        self.resolved(model, 0.0, 0.0)?.estimator()
     }
 
-    /// An estimator for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
+    /// A learner for `model` in a loop, with the options of [`AdaptOptions::before`]. An unknown
     /// start is taken as off.
     ///
     /// ```
@@ -158,9 +184,22 @@ impl AdaptOptions {
     /// ```
     ///
     /// # Errors
-    /// As [`AdaptOptions::adaptation`], [`Adaptive::new`] and [`Adaptive::of_basis`].
+    /// As [`AdaptOptions::resolve`], [`Adaptive::new`] and [`Adaptive::of_basis`].
     pub fn adaptive(&self, model: &Model) -> Result<Adaptive> {
-        let mut adaptive = self.estimator(model, self.before(model)?)?;
+        self.begun(model, self.resolved(model, 0.0, 0.0)?)
+    }
+
+    /// As [`AdaptOptions::adaptive`], with the options that follow from a recording of the plant.
+    /// It learns nothing from it.
+    ///
+    /// # Errors
+    /// As [`AdaptOptions::adaptive`].
+    pub fn adaptive_after(&self, model: &Model, recording: &Recording) -> Result<Adaptive> {
+        self.begun(model, self.resolve(model, recording)?)
+    }
+
+    fn begun(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
+        let mut adaptive = self.learner(model, options)?;
         if self.start == Start::On {
             adaptive.saturate()?;
         }
@@ -174,7 +213,7 @@ impl AdaptOptions {
     /// [`Error::Fit`] for another learner, for options that this one does not use, and as
     /// [`AdaptiveLoad::new`].
     pub fn adaptive_load(&self, model: &Model) -> Result<AdaptiveLoad> {
-        let options = self.shift(model, 0.0, 0.0)?;
+        let options = self.resolved(model, 0.0, 0.0)?.shift()?;
         let mut adaptive = AdaptiveLoad::new(model, self.load, options)?;
         if self.start == Start::On {
             adaptive.saturate();
@@ -182,25 +221,42 @@ impl AdaptOptions {
         Ok(adaptive)
     }
 
-    /// The options of the estimator of the shift, for `model` on `recording`.
-    pub(super) fn shift_on(
-        &self,
-        model: &Model,
-        recording: &Recording,
-    ) -> Result<ShiftOptions<f64>> {
-        let output = &recording.output;
-        self.shift(model, noise(output), usual_range(output))
+    /// What learns the weights or the coefficients.
+    pub(super) fn learner(&self, model: &Model, options: EstimatorOptions) -> Result<Adaptive> {
+        if let EstimatorOptions::Refit(refit) = options {
+            return Adaptive::refitting(&DriftBasis::of(model, self.load)?.model, refit);
+        }
+        let adaptation = options.estimator()?;
+        match self.learner {
+            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
+            _ => Adaptive::new(model, adaptation),
+        }
     }
 
-    fn shift(&self, model: &Model, rough: f64, range: f64) -> Result<ShiftOptions<f64>> {
+    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<EstimatorOptions> {
         self.refuse_unused(model)?;
-        if self.learner != Learner::Load {
-            let what = "only the method `load` estimates the shift";
-            return Err(Error::Fit(what.into()));
-        }
+        Ok(match self.learner {
+            Learner::Refit => {
+                let usual = Refit::default();
+                EstimatorOptions::Refit(Refit {
+                    window: self.window.unwrap_or(usual.window),
+                    every: self.every,
+                    ridge: self.ridge.unwrap_or(usual.ridge),
+                    movement: self.movement.unwrap_or(usual.movement),
+                    gate: self.gate.unwrap_or(usual.gate),
+                    burst: self.burst.unwrap_or(usual.burst),
+                })
+            }
+            Learner::Load => EstimatorOptions::Shift(self.shift(model, rough, range)),
+            _ => EstimatorOptions::Weights(self.weights(model, rough, range)),
+        })
+    }
+
+    /// The options of the estimator of the shift.
+    fn shift(&self, model: &Model, rough: f64, range: f64) -> ShiftOptions<f64> {
         let usual = AdaptiveLoad::usual_options(model);
         let misfit = rough.max(usual.noise).max(MISFIT[1] * range);
-        Ok(ShiftOptions {
+        ShiftOptions {
             noise: self.noise.unwrap_or(misfit),
             spread: self.spread.unwrap_or(usual.spread),
             dead_zone: self.dead_zone.unwrap_or(2.0 * rough),
@@ -208,23 +264,11 @@ impl AdaptOptions {
             gate: self.gate.unwrap_or(usual.gate),
             burst: self.burst.unwrap_or(usual.burst),
             ..usual
-        })
-    }
-
-    /// An estimator of the weights or of the coefficients, depending on the learner.
-    pub(super) fn estimator(&self, model: &Model, adaptation: Adaptation<f64>) -> Result<Adaptive> {
-        match self.learner {
-            Learner::Drift => DriftBasis::of(model, self.load)?.adaptive(adaptation),
-            _ => Adaptive::new(model, adaptation),
         }
     }
 
-    fn resolved(&self, model: &Model, rough: f64, range: f64) -> Result<Adaptation<f64>> {
-        self.refuse_unused(model)?;
-        if self.learner == Learner::Load {
-            let what = "the method `load` adapts no weights, but the shift of the axis";
-            return Err(Error::Fit(what.into()));
-        }
+    /// The options of an estimator of weights or coefficients.
+    fn weights(&self, model: &Model, rough: f64, range: f64) -> Adaptation<f64> {
         let (off, on) = model.output_range();
         let span = (on - off).abs().max(range);
         let usual = Adaptation::default();
@@ -250,13 +294,15 @@ impl AdaptOptions {
                     DEVIATION * span / variance_of_sum(model.plane().levels(), correlation).sqrt();
                 least_squares(spread, correlation)
             }
-            Learner::Drift | Learner::Load => least_squares(SHARE, 0.0),
+            Learner::Drift => least_squares(SHARE, 0.0),
+            // These learn otherwise.
+            Learner::Refit | Learner::Load => usual.method,
         };
         let offset_share = match method {
             Method::LeastSquares { spread, .. } => DEVIATION * span / spread,
             _ => OFFSET * (model.plane().operators() as f64).sqrt(),
         };
-        Ok(Adaptation {
+        Adaptation {
             method,
             offset_share: self.offset_share.unwrap_or(offset_share),
             dead_zone: self.dead_zone.unwrap_or(2.0 * rough),
@@ -265,38 +311,74 @@ impl AdaptOptions {
             trial: self.trial.unwrap_or(usual.trial),
             gate: self.gate.unwrap_or(usual.gate),
             burst: self.burst.unwrap_or(usual.burst),
-        })
+        }
     }
 
     fn refuse_unused(&self, model: &Model) -> Result<()> {
-        use Learner::{Drift, Gradient, Increments, LeastSquares, Load};
-        let steps = matches!(self.learner, Gradient | Increments);
-        let weights = self.learner != Load;
+        use Learner::{Drift, Gradient, Increments, LeastSquares, Load, Refit};
+        let is = |learners: &[Learner]| learners.contains(&self.learner);
+        let (steps, squares) = ([Gradient, Increments], [LeastSquares, Drift]);
+        let filters = [LeastSquares, Drift, Load];
+        let starts = is(&[Drift, Refit, Load]) && model.load.is_some();
+        let (refit, estimator) = (is(&[Refit]), !is(&[Refit]));
+        let weights = !is(&[Refit, Load]);
         let given = [
-            ("gain", self.gain.is_some(), steps),
-            ("span", self.span.is_some(), self.learner == Increments),
-            ("forgetting", self.forgetting.is_some(), !steps && weights),
-            ("leakage", self.leakage.is_some(), weights),
-            ("offset_share", self.offset_share.is_some(), weights),
-            ("trial", self.trial.is_some(), weights),
-            ("noise", self.noise.is_some(), !steps),
-            ("spread", self.spread.is_some(), !steps),
+            ("load", self.load.is_some(), starts),
+            ("window", self.window.is_some(), refit),
+            ("every", self.every.is_some(), refit),
+            ("ridge", self.ridge.is_some(), refit),
+            ("gain", self.gain.is_some(), is(&steps)),
+            ("span", self.span.is_some(), is(&[Increments])),
+            ("forgetting", self.forgetting.is_some(), is(&squares)),
+            ("noise", self.noise.is_some(), is(&filters)),
+            ("spread", self.spread.is_some(), is(&filters)),
             (
                 "correlation",
                 self.correlation.is_some(),
-                self.learner == LeastSquares,
+                is(&[LeastSquares]),
             ),
-            (
-                "load",
-                self.load.is_some(),
-                matches!(self.learner, Drift | Load) && model.load.is_some(),
-            ),
+            ("dead_zone", self.dead_zone.is_some(), estimator),
+            ("leakage", self.leakage.is_some(), weights),
+            ("offset_share", self.offset_share.is_some(), weights),
+            ("trial", self.trial.is_some(), weights),
         ];
         match given.iter().find(|(_, given, used)| *given && !used) {
             Some((name, ..)) => Err(Error::Fit(format!(
                 "`{name}` means nothing to this method of adaptation: leave it out"
             ))),
             None => Ok(()),
+        }
+    }
+}
+
+impl EstimatorOptions {
+    fn estimator(self) -> Result<Adaptation<f64>> {
+        match self {
+            Self::Weights(adaptation) => Ok(adaptation),
+            Self::Refit(_) => Err(Error::Fit(
+                "a refit is no estimator: take another method here".into(),
+            )),
+            Self::Shift(_) => Err(Error::Fit(
+                "the method `load` adapts no weights, but the shift of the axis".into(),
+            )),
+        }
+    }
+
+    pub(super) fn shift(self) -> Result<ShiftOptions<f64>> {
+        match self {
+            Self::Shift(options) => Ok(options),
+            _ => Err(Error::Fit(
+                "only the method `load` estimates the shift".into(),
+            )),
+        }
+    }
+
+    /// The gate, and the readings in a row that pass it where they agree.
+    pub(super) fn gate(self) -> (f64, u32) {
+        match self {
+            Self::Weights(Adaptation { gate, burst, .. }) => (gate, burst),
+            Self::Refit(Refit { gate, burst, .. }) => (gate, burst),
+            Self::Shift(ShiftOptions { gate, burst, .. }) => (gate, burst),
         }
     }
 }

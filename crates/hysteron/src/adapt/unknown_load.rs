@@ -1,6 +1,6 @@
 //! The method `load` over a recording: an estimate of the shift, sample by sample.
 
-use super::{AdaptOptions, Adapted, AdaptiveLoad, EstimatorOptions, Learned, fixed, on_probation};
+use super::{AdaptOptions, Adapted, AdaptiveLoad, Learned, fixed, on_probation};
 use crate::error::Result;
 use crate::model::{Model, Surroundings};
 use crate::progress::{Progress, SAMPLES_BETWEEN};
@@ -30,8 +30,8 @@ pub(super) fn adapt(
     options: &AdaptOptions,
     progress: Progress<'_>,
 ) -> Result<Adapted> {
-    let estimator = options.shift_on(model, recording)?;
-    let mut adaptive = AdaptiveLoad::new(model, options.load, estimator)?;
+    let learned_by = options.resolve(model, recording)?;
+    let mut adaptive = AdaptiveLoad::new(model, options.load, learned_by.shift()?)?;
     let offline = match adaptive.told() {
         Some(load) => model.at_load(load)?,
         None => model.clone(),
@@ -41,7 +41,7 @@ pub(super) fn adapt(
         adaptive.saturate();
     }
     let count = recording.len();
-    let probation = on_probation(estimator.gate, estimator.burst, count);
+    let probation = on_probation(learned_by, count);
     let around = Surroundings {
         load: None,
         ..Surroundings::of(model, recording)
@@ -79,7 +79,7 @@ pub(super) fn adapt(
         from_on,
         probation,
         shift: Some(found),
-        options: EstimatorOptions::Shift(estimator),
+        options: learned_by,
     }
     .judged(recording, options)
 }

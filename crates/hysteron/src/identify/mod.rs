@@ -28,4 +28,7 @@ pub use monotone::{AGAINST_INPUT, way_against_input};
 pub use options::{Auto, Choice, FitOptions, LoadLaw, Spacing};
 pub use weights::experiment::plane_of;
 pub(crate) use weights::fit::fit_weights;
-pub(crate) use weights::sparse::Initial;
+pub(crate) use weights::nnls;
+pub(crate) use weights::pivoting;
+pub(crate) use weights::rows::Term;
+pub(crate) use weights::sparse::{BranchSums, Initial, SparseForm};

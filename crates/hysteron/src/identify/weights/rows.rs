@@ -57,13 +57,7 @@ impl<'a> Rows<'a> {
     /// Computes [`Rows::memory`] for the current branch.
     pub(crate) fn remember(&mut self) {
         self.held = self.state.held();
-        self.memory.clear();
-        self.state.memory_terms(|index, factor| {
-            let place = self.place[index];
-            if place != Term::NOWHERE && factor != 0.0 {
-                self.memory.push(Term { place, factor });
-            }
-        });
+        memory_terms(&self.state, self.place, &mut self.memory);
     }
 
     pub(crate) fn state(&self) -> &OperatorState {
@@ -78,16 +72,7 @@ impl<'a> Rows<'a> {
     /// The factors of the branch itself, at the current sample.
     #[inline]
     pub(crate) fn branch(&self) -> [Term; 3] {
-        self.state.branch_terms().map(|(index, factor)| {
-            match self.place[index] {
-                // Any column will do, because the factor is zero.
-                Term::NOWHERE => Term {
-                    place: 0,
-                    factor: 0.0,
-                },
-                place => Term { place, factor },
-            }
-        })
+        branch_terms(&self.state, self.place)
     }
 
     /// Adds the factors of the turning points, times `sum`, to `sums`.
@@ -96,6 +81,32 @@ impl<'a> Rows<'a> {
             sums[term.place as usize] += term.factor * sum;
         }
     }
+}
+
+/// Writes the factors of the turning points before the branch that `state` is on to `memory`.
+pub(crate) fn memory_terms(state: &OperatorState, place: &[u32], memory: &mut Vec<Term>) {
+    memory.clear();
+    state.memory_terms(|index, factor| {
+        let place = place[index];
+        if place != Term::NOWHERE && factor != 0.0 {
+            memory.push(Term { place, factor });
+        }
+    });
+}
+
+/// The factors of the branch that `state` is on.
+#[inline]
+pub(crate) fn branch_terms(state: &OperatorState, place: &[u32]) -> [Term; 3] {
+    state
+        .branch_terms()
+        .map(|(index, factor)| match place[index] {
+            // Any column will do, because the factor is zero.
+            Term::NOWHERE => Term {
+                place: 0,
+                factor: 0.0,
+            },
+            place => Term { place, factor },
+        })
 }
 
 /// The state of a model before the first sample.

@@ -7,8 +7,8 @@
 //! the turning points once per branch.
 
 use crate::error::Result;
-use crate::identify::weights::rows::{Rows, Term};
-use crate::model::Plane;
+use crate::identify::weights::rows::{Rows, Term, branch_terms, memory_terms};
+use crate::model::{OperatorState, Plane};
 use crate::progress::Progress;
 use hysteron_core::Operator;
 use hysteron_core::{Model, operator_index, operators, table_index, table_len};
@@ -28,6 +28,7 @@ pub(crate) const OPEN: f64 = 1e-9;
 const REPORT: usize = 1 << 16;
 
 /// The regressor of a plane: `N` operators with states in `[0, 1]`, for any input.
+#[derive(Debug, Clone)]
 pub(crate) struct SparseForm {
     plane: Plane,
     operator: Operator,
@@ -68,6 +69,16 @@ impl SparseForm {
 
     pub(crate) fn rows(&self, from: Initial) -> Result<Rows<'_>> {
         Rows::new(&self.blank, &self.place, from)
+    }
+
+    /// The factors of the branch that `state` is on, and those of the turning points before it are
+    /// written to `memory` if that is given. The state may be that of any model of this plane and
+    /// operator.
+    pub(crate) fn row(&self, state: &OperatorState, memory: Option<&mut Vec<Term>>) -> [Term; 3] {
+        if let Some(memory) = memory {
+            memory_terms(state, &self.place, memory);
+        }
+        branch_terms(state, &self.place)
     }
 
     /// The share of each operator that the first sample does not determine: its state from on minus
@@ -178,13 +189,7 @@ impl SparseForm {
             }
             let t = a.branch();
             let u = other.as_ref().map_or(t, Rows::branch);
-            sums.add(s, &t, &u);
-            for t in &t {
-                let row = &mut gram[t.place as usize * count..][..count];
-                for u in &u {
-                    row[u.place as usize] += s * t.factor * u.factor;
-                }
-            }
+            sums.add(s, &t, &u, gram, count);
         }
         let b = other.as_ref().unwrap_or(&a);
         sums.flush(a.memory(), b.memory(), gram, count);
@@ -215,14 +220,29 @@ impl SparseForm {
 /// Sums over the samples of one branch. With `f`, `g` the factors of the turning points and `t`,
 /// `u` those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
 #[derive(Default)]
-struct BranchSums {
+pub(crate) struct BranchSums {
     scale: f64,
     left: Vec<Term>,
     right: Vec<Term>,
 }
 
 impl BranchSums {
-    fn add(&mut self, s: f64, t: &[Term; 3], u: &[Term; 3]) {
+    /// Adds a sample with the factors `t` and `u` of the branch, times `s`. Their own product goes
+    /// to `gram` at once, `count × count` row by row.
+    pub(crate) fn add(
+        &mut self,
+        s: f64,
+        t: &[Term; 3],
+        u: &[Term; 3],
+        gram: &mut [f64],
+        count: usize,
+    ) {
+        for t in t {
+            let row = &mut gram[t.place as usize * count..][..count];
+            for u in u {
+                row[u.place as usize] += s * t.factor * u.factor;
+            }
+        }
         self.scale += s;
         for (sums, terms) in [(&mut self.left, t), (&mut self.right, u)] {
             for term in terms {
@@ -243,7 +263,8 @@ impl BranchSums {
         }
     }
 
-    fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
+    /// Adds what depends on the turning points to `gram`, at the end of a branch.
+    pub(crate) fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
         let mut outer = |a: &[Term], b: &[Term], scale: f64| {
             for a in a {
                 let row = &mut gram[a.place as usize * count..][..count];
