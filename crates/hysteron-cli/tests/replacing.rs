@@ -31,13 +31,16 @@ const FILES: [(&str, &str); 13] = [
          --figure OUT",
         "svg",
     ),
-    ("adapt m.json run.csv --input x --output y -o OUT", "json"),
     (
-        "adapt m.json run.csv --input x --output y -o side.json --table OUT",
+        "adapt m.json run.csv --input x --output y --method drift -o OUT",
+        "json",
+    ),
+    (
+        "adapt m.json run.csv --input x --output y --method drift -o side.json --table OUT",
         "csv",
     ),
     (
-        "adapt m.json run.csv --input x --output y -o side.json --table OUT",
+        "adapt m.json run.csv --input x --output y --method drift -o side.json --table OUT",
         "parquet",
     ),
     ("export fmu m.json -o OUT", "fmu"),
@@ -309,7 +312,7 @@ fn no_result_replaces_what_is_read() {
         }
     }
     lines.extend([
-        "adapt m.json run.csv --input x --output y -o hard.json".into(),
+        "adapt m.json run.csv --input x --output y --method drift -o hard.json".into(),
         "design --range 20,80 --levels 4 --heating-rate 2 --cooling-rate 1 --from run.csv \
          --input x -o hard.csv"
             .into(),
@@ -332,7 +335,9 @@ fn no_result_replaces_what_is_read() {
         }
     }
     for table in ["x.json", "./x.json", "here/x.json"] {
-        let line = format!("adapt m.json run.csv --input x --output y -o x.json --table {table}");
+        let line = format!(
+            "adapt m.json run.csv --input x --output y --method drift -o x.json --table {table}"
+        );
         assert!(
             common::refused(path, &line).contains("this one file"),
             "{line}"

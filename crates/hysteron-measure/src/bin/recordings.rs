@@ -1,41 +1,20 @@
 //! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
 //! `cargo run --release -p hysteron-measure --bin recordings -- ../shared/data`
 
+#[path = "../folder/mod.rs"]
+mod folder;
 #[path = "../genuine/mod.rs"]
 mod genuine;
 #[path = "../scipy/mod.rs"]
 mod scipy;
 
 use hysteron::{
-    Candidates, Columns, FitOptions, LeftOut, Operator, Progress, Recording, Start, TableReader,
-    left_out, plane_of,
+    Candidates, FitOptions, LeftOut, Operator, Progress, Recording, Start, left_out, plane_of,
 };
 use std::error::Error;
 use std::path::Path;
 
 const LEVELS: usize = 20;
-
-/// What drives the actuator, the first of these that a recording has.
-const INPUTS: [&str; 5] = [
-    "temperature_C",
-    "voltage_V",
-    "duty",
-    "current_A",
-    "H_A_per_m",
-];
-
-/// What the actuator does, the first of these that a recording has.
-const OUTPUTS: [&str; 9] = [
-    "output",
-    "strain",
-    "strain_percent",
-    "extension_mm",
-    "position_m",
-    "BL_T",
-    "polarization_uC_cm2",
-    "displacement_nm",
-    "B_T",
-];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args()
@@ -47,25 +26,10 @@ fn main() -> Result<(), Box<dyn Error>> {
          relay | SciPy, K = 20 | auto / best |"
     );
     println!("| --- | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |");
-    let mut names: Vec<String> = std::fs::read_dir(&folder)?
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| name.ends_with(".csv") && name != "MANIFEST.csv")
-        .collect();
-    names.sort();
-    for name in names {
-        let path = Path::new(&folder).join(&name);
-        let name = name.trim_end_matches(".csv");
-        let table = TableReader::open(&path)?;
-        let find = |known: &[&'static str]| {
-            let mut known = known.iter().copied();
-            known.find(|k| table.header().iter().any(|h| h == k))
-        };
-        match (find(&INPUTS), find(&OUTPUTS)) {
-            (Some(input), Some(output)) => {
-                let columns = Columns::new(input, output);
-                row(name, genuine::read(&path, columns)?)?;
-            }
-            _ => println!("| {name} | no known columns | | | | | | | |"),
+    for (name, recording) in folder::recordings(Path::new(&folder))? {
+        match recording {
+            Some(recording) => row(&name, recording)?,
+            None => println!("| {name} | no known columns | | | | | | | |"),
         }
     }
     Ok(())

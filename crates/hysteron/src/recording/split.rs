@@ -48,8 +48,8 @@ impl Recording {
     /// let input: Vec<f64> = [0, 1, 2, 3, 2, 1, 0, 1, 2, 3].map(f64::from).to_vec();
     /// let recording = Recording::new(input.clone(), input)?;
     /// let split = recording.split(&HoldOut::Branches(0.3))?;
-    /// // From 3 down to 0. The samples at both ends are turning points, and stay.
-    /// assert_eq!(split.training[0].input, [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+    /// // The last branch, from 0 up to 3. Its first sample is a turning point, and stays.
+    /// assert_eq!(split.training[0].input, [0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.0]);
     /// let split = recording.split(&HoldOut::Rows(8..=10))?;
     /// assert_eq!(split.training[0].len(), 7);
     /// assert!(split.held_out[7..].iter().all(|held_out| *held_out));
