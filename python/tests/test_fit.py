@@ -22,7 +22,8 @@ def test_recording_arrays_and_lists_are_the_same_experiment(recording):
 
 
 def test_the_weights_are_those_behind_the_data(truth, swings):
-    model = pyhysteron.fit(swings, truth.simulate(swings), levels=12, range=(25, 80), bootstrap=0)
+    exact = dict(smooth=0.0, ridge=0.0, spacing="uniform", robust=False, bootstrap=0)
+    model = pyhysteron.fit(swings, truth.simulate(swings), levels=12, range=(25, 80), **exact)
     # Without noise all that is left is rounding.
     assert nrmse(model) < 1e-6
     assert abs(model.offset - 3) < 1e-6
@@ -53,15 +54,18 @@ def test_options_reach_the_fit(recording, options):
     assert model.operator == options.get("operator", "mkp")
     assert model.offset == options.get("offset", model.offset)
     assert model.range == options.get("range", model.range)
-    assert ("auto" in options.values()) == (told.validation is not None)
+    chosen = "auto" in (options.get("smooth", "auto"), options.get("levels"))
+    assert chosen == (told.validation is not None)
     assert (model.confidence is None) == ("bootstrap" not in options)
     assert nrmse(model) < 5
 
 
-def test_levels_are_20_and_replicates_200(recording):
+def test_levels_are_chosen_and_replicates_follow(recording):
     model = pyhysteron.fit(recording)
-    assert model.levels == 20
-    assert model.confidence.replicates == 200
+    assert model.fit.validation.criterion == "left_out"
+    assert model.levels in {score.levels for score in model.fit.validation.scores}
+    assert model.confidence.replicates == (200 if model.levels < 25 else 60)
+    assert pyhysteron.fit(recording, levels=20).confidence.replicates == 200
 
 
 def test_load(recording, swings):
@@ -187,7 +191,7 @@ def test_left_out(recording):
     assert rmse == pytest.approx(found.nrmse_percent)
     assert found.nrmse_percent > found.training_nrmse_percent
     chosen = pyhysteron.left_out(recording, levels="auto", smooth=1e-6).chosen
-    assert len(chosen) == 5 and all(smooth == 1e-6 for _, smooth in chosen)
+    assert len(chosen) == 5 and all(smooth == (1e-6, 0) for _, smooth in chosen)
 
 
 def test_what_does_not_run_by_its_input_alone(recording, swings):

@@ -37,7 +37,7 @@ def test_fit(recording):
     pictures, text = page(fit)
     assert len(pictures[0].findall(f".//{SVG}circle")) == len(fit.validation.scores)
     assert "cross-validation" in text
-    assert page(pyhysteron.fit(recording, levels=5, bootstrap=0).fit)[0] == []
+    assert page(pyhysteron.fit(recording, levels=5, smooth=0.0, bootstrap=0).fit)[0] == []
 
 
 @pytest.mark.parametrize(

@@ -91,7 +91,7 @@ def test_the_defaults_are_those_that_are_shown(function, tmp_path, monkeypatch):
 def test_of_the_options_of_an_estimator(call):
     arguments = [MODEL] if call is pyhysteron.Adaptive else [MODEL, SERIES, 0.1 * SERIES]
     names = [option.name for option in options(call)]
-    assert len(names) == (18 if call is pyhysteron.adapt else 16)
+    assert len(names) == (21 if call is pyhysteron.adapt else 19)
     for name in set(names) - {"method", "start", "time", "progress"}:
         method = METHODS.get(name, "gradient")
         call(*arguments, method=method, **{name: None})

@@ -190,7 +190,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         }
         if let Some(found) = &fit.validation {
             let better = found.rivals.iter();
-            let better = better.filter(|rival| rival.nrmse_percent < found.nrmse_percent);
+            let better = better.filter(|rival| wins(rival.nrmse_percent, found.nrmse_percent));
             advice.extend(better.map(|rival| Advice::RivalWins {
                 name: rival.name.clone(),
                 rival: rival.nrmse_percent,
@@ -232,4 +232,12 @@ fn false_reversals(recording: &Recording) -> Option<Advice> {
     let tolerance = usual_tolerance(input).max(6.0 * noise);
     let real = branches(input, tolerance).last()? + 1;
     (all > FALSE * real && noise > 0.0).then_some(Advice::FalseReversals { all, real, noise })
+}
+
+/// A rival wins where it errs clearly less. An error below this, in percent of the range, is no
+/// matter.
+const SMALL: f64 = 0.05;
+
+fn wins(rival: f64, model: f64) -> bool {
+    model > SMALL && rival < 0.95 * model
 }
