@@ -143,6 +143,13 @@ pub struct FitOptions {
 /// magnet is predicted worse by half.
 const RIDGE: f64 = 1e-6;
 
+/// The smoothness of fits that only compare recordings or starts: too smooth to follow a single
+/// reading, and not enough to blur a loop.
+pub(crate) const SOME_SMOOTHNESS: Smooth = Smooth {
+    along: 1e-8,
+    across: 1e-8,
+};
+
 /// What is assumed about the weights before any data: the strengths of a Gaussian prior.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prior {

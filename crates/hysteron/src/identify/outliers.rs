@@ -2,22 +2,17 @@
 //! model.
 
 use crate::error::Result;
-use crate::identify::options::{FitOptions, LoadLaw};
+use crate::identify::options::{FitOptions, LoadLaw, SOME_SMOOTHNESS};
 use crate::identify::weights::problem::Problem;
-use crate::model::{Outlier, Smooth};
+use crate::model::Outlier;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
 use crate::series::spikes::isolated;
 use std::borrow::Cow;
 
-/// Levels and smoothness of the model that outliers are judged by: enough to follow a loop, and
-/// too smooth to follow a single reading.
+/// Levels of the model that outliers are judged by: enough to follow a loop.
 const LEVELS: usize = 20;
-const SMOOTH: Smooth = Smooth {
-    along: 1e-8,
-    across: 1e-8,
-};
 
 /// An outlier is this many deviations away from its neighbours. Of a million readings with Gaussian
 /// noise, none is.
@@ -48,7 +43,7 @@ pub(super) fn mended<'a>(
 ) -> Result<(Cow<'a, [Recording]>, Vec<Outlier>)> {
     let options = FitOptions {
         levels: LEVELS,
-        smooth: options.smooth.at_least(SMOOTH),
+        smooth: options.smooth.at_least(SOME_SMOOTHNESS),
         load_law: LoadLaw::Weights,
         load_curves: None,
         load_degree: Some(0),

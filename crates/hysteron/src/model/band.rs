@@ -105,16 +105,27 @@ impl Band {
     /// As [`Model::run`] and [`Band::states`].
     pub fn run(&self, state: &State, input: &[f64]) -> Result<Vec<f64>> {
         let mut variance = vec![self.noise * self.noise; input.len()];
-        let mut output = vec![0.0; input.len()];
         for (factor, mut state) in self.factors.iter().zip(self.states(state)?) {
-            factor.run(&mut state, input, &mut output)?;
-            for (variance, deviation) in variance.iter_mut().zip(&output) {
-                *variance += deviation * deviation;
-            }
+            add_variance(factor, &mut state, input, &mut variance)?;
         }
         let half_width = |variance: f64| INTERVAL * variance.sqrt();
         Ok(variance.into_iter().map(half_width).collect())
     }
+}
+
+/// Adds the variance of the output that a factor causes, at each sample of `input`.
+pub(crate) fn add_variance(
+    factor: &Operators,
+    state: &mut OperatorState,
+    input: &[f64],
+    variance: &mut [f64],
+) -> Result<()> {
+    let mut output = vec![0.0; input.len()];
+    factor.run(state, input, &mut output)?;
+    for (variance, deviation) in variance.iter_mut().zip(&output) {
+        *variance += deviation * deviation;
+    }
+    Ok(())
 }
 
 /// Lower and upper end of the band around a modelled output.

@@ -31,6 +31,7 @@ mod within;
 
 pub(crate) use after::After;
 pub use after::CreepTerm;
+pub(crate) use band::add_variance;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;

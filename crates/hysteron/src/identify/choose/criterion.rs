@@ -65,10 +65,6 @@ impl<'a> Level<'a> {
         vec![vec![0.0; self.problem.regressor.columns().len()]; self.folds.len() + 1]
     }
 
-    pub(super) fn samples(&self) -> f64 {
-        self.whole.samples
-    }
-
     fn prior(&self, smooth: Smooth) -> Prior {
         Prior {
             smooth,
@@ -76,8 +72,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Sums of squared errors on each fold, from a fit to the others.
-    pub(super) fn left_out(&self, smooth: Smooth, starts: &mut Starts) -> Result<Vec<f64>> {
+    /// Root mean squared error over all samples, each from a fit without its fold.
+    pub(super) fn left_out_rmse(&self, smooth: Smooth, starts: &mut Starts) -> Result<f64> {
         let solver = self.problem.options.solver;
         let before = &*starts;
         let solved = parallel::map(self.folds.len(), |n| {
@@ -87,15 +83,15 @@ impl<'a> Level<'a> {
             let at = rest.solve(&penalised, solver, &before[n], Progress::NONE)?;
             Ok((own.error(&at), at.x))
         })?;
-        let mut errors = Vec::with_capacity(solved.len());
+        let mut squares = 0.0;
         for (start, (error, x)) in starts.iter_mut().zip(solved) {
-            errors.push(error);
+            squares += error;
             // Without smoothness most weights are zero. Then zero is a better starting point.
             if !smooth.is_none() {
                 *start = x;
             }
         }
-        Ok(errors)
+        Ok((squares / self.whole.samples).sqrt())
     }
 
     /// The logarithm of the evidence, without constants: how probable the outputs are, whatever the

@@ -1,10 +1,10 @@
 //! Chooses the state of the operators before the first sample.
 
 use crate::error::Result;
-use crate::identify::choose::validate::{Candidates, cross_validate};
-use crate::identify::options::FitOptions;
+use crate::identify::choose::validate::{Candidates, Choice, choose};
+use crate::identify::options::{FitOptions, SOME_SMOOTHNESS};
 use crate::identify::weights::problem::Problem;
-use crate::model::{Smooth, Start, Validation};
+use crate::model::Start;
 use crate::progress::Progress;
 use crate::recording::Recording;
 
@@ -15,12 +15,6 @@ pub(crate) const MANY_OPEN: f64 = 0.05;
 /// An unknown start has to be better than a known one by this share, see
 /// [`Criterion::is_worth`](crate::model::Criterion::is_worth).
 const WORTH: f64 = 0.02;
-
-/// Smoothness of the fits that are compared.
-const SMOOTH: Smooth = Smooth {
-    along: 1e-8,
-    across: 1e-8,
-};
 
 /// The start that the recordings ask for: off where the first samples determine nearly all
 /// operators; otherwise off, on or unknown, by the same criterion as levels and smoothness. The
@@ -38,23 +32,21 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Sta
     if problem.regressor.open_at_start as f64 <= MANY_OPEN * operators {
         return Ok(Start::Off);
     }
-    let smooth = options.smooth.at_least(SMOOTH);
+    let smooth = options.smooth.at_least(SOME_SMOOTHNESS);
     let candidates = Candidates::new(Some(options.levels), Some(smooth));
-    let tried = |start: Start| -> Result<Validation> {
+    let tried = |start: Start| -> Result<Choice> {
         let options = FitOptions {
             start,
             ..options.clone()
         };
-        Ok(cross_validate(recordings, &options, &candidates, Progress::NONE)?.1)
+        choose(recordings, &options, &candidates, None, Progress::NONE)
     };
     let (off, on) = (tried(Start::Off)?, tried(Start::On)?);
     let known = match on.value() < off.value() {
-        true => (on, Start::On),
-        false => (off, Start::Off),
+        true => (on.value(), Start::On),
+        false => (off.value(), Start::Off),
     };
     let unknown = tried(Start::Unknown)?;
-    let better = unknown
-        .criterion
-        .is_worth(unknown.value(), known.0.value(), WORTH);
+    let better = unknown.criterion.is_worth(unknown.value(), known.0, WORTH);
     Ok(if better { Start::Unknown } else { known.1 })
 }

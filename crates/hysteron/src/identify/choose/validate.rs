@@ -59,9 +59,9 @@ impl Candidates {
 /// choice.
 ///
 /// With six branches or more the criterion is the error on branches left out. Otherwise it is the
-/// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row have
-/// not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several recordings are
-/// unknown, only two patterns of starts are tried: all off and all on.
+/// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row
+/// have not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several
+/// recordings are unknown, only two patterns of starts are tried: all off and all on.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -71,16 +71,69 @@ pub fn cross_validate(
     candidates: &Candidates,
     progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
-    choose(recordings, options, candidates, None, progress)
+    let Choice {
+        options,
+        folds,
+        criterion,
+        chosen,
+        scores,
+    } = choose(recordings, options, candidates, None, progress)?;
+    let problem = Problem::new(recordings, &options)?;
+    let (low, high) = range(&problem.experiment.output);
+    let rivals = rivals::left_out(&problem.experiment, &folds.of, folds.whole_branches)?;
+    // What the choice is worth is the error on what was left out, whatever chose.
+    let rmse = match criterion {
+        Criterion::LeftOut => chosen.rmse,
+        Criterion::Evidence => {
+            let sign = options.sign.unwrap_or_default();
+            let level = Level::new(problem, sign, &folds.of, progress)?;
+            level.left_out_rmse(chosen.smooth, &mut level.starts())?
+        }
+    };
+    let validation = Validation {
+        criterion,
+        folds: folds.count,
+        whole_branches: folds.whole_branches,
+        rmse,
+        nrmse_percent: 100.0 * rmse / (high - low),
+        scores,
+        rivals,
+    };
+    Ok((options, validation))
 }
 
-pub(crate) fn choose(
+/// What was left out together.
+pub(super) struct Folds {
+    /// For each sample the fold that leaves it out, `None` for samples that do not count.
+    of: Vec<Option<usize>>,
+    count: usize,
+    whole_branches: bool,
+}
+
+/// The candidate that was chosen, and how.
+pub(super) struct Choice {
+    /// With its levels and smoothness.
+    pub(super) options: FitOptions,
+    folds: Folds,
+    pub(super) criterion: Criterion,
+    chosen: Score,
+    scores: Vec<Score>,
+}
+
+impl Choice {
+    /// What the criterion says of it: the smaller, the better.
+    pub(super) fn value(&self) -> f64 {
+        self.criterion.value(&self.chosen)
+    }
+}
+
+pub(super) fn choose(
     recordings: &[Recording],
     options: &FitOptions,
     candidates: &Candidates,
     kept: Option<&[f64]>,
     progress: Progress<'_>,
-) -> Result<(FitOptions, Validation)> {
+) -> Result<Choice> {
     let mut options = options.clone();
     let at = |levels: usize, options: &FitOptions| {
         let options = FitOptions {
@@ -97,8 +150,11 @@ pub(crate) fn choose(
     let sign = options.sign.unwrap_or_default();
     let (unit, units, whole_branches) = problem.experiment.units(kept, ENOUGH_BRANCHES);
     let count = units.min(FOLDS);
-    let folds: Vec<Option<usize>> = unit.into_iter().map(|u| u.map(|u| u % count)).collect();
-    let (low, high) = range(&problem.experiment.output);
+    let folds = Folds {
+        of: unit.into_iter().map(|u| u.map(|u| u % count)).collect(),
+        count,
+        whole_branches,
+    };
     let criterion = match whole_branches {
         true => Criterion::LeftOut,
         false => Criterion::Evidence,
@@ -117,7 +173,7 @@ pub(crate) fn choose(
         if n > 0 && problem.regressor.columns().len() > MOST_COLUMNS {
             break;
         }
-        let level = Level::new(problem, sign, &folds, progress)?;
+        let level = Level::new(problem, sign, &folds.of, progress)?;
         let mut starts = level.starts();
         let mut rate = |smooth: Smooth| -> Result<f64> {
             let mut score = Score {
@@ -128,8 +184,7 @@ pub(crate) fn choose(
             };
             match criterion {
                 Criterion::LeftOut => {
-                    let squares: f64 = level.left_out(smooth, &mut starts)?.iter().sum();
-                    score.rmse = (squares / level.samples()).sqrt();
+                    score.rmse = level.left_out_rmse(smooth, &mut starts)?;
                 }
                 Criterion::Evidence => {
                     score.log_evidence = Some(level.log_evidence(smooth, &mut starts)?);
@@ -163,27 +218,11 @@ pub(crate) fn choose(
         .ok_or_else(|| crate::error::Error::Fit("there are no candidates".into()))?;
     options.levels = chosen.levels;
     options.smooth = chosen.smooth;
-    // What the choice is worth is the error on what was left out, whatever chose.
-    let rmse = match criterion {
-        Criterion::LeftOut => chosen.rmse,
-        Criterion::Evidence => {
-            let level = Level::new(at(chosen.levels, &options)?, sign, &folds, progress)?;
-            let squares: f64 = level
-                .left_out(chosen.smooth, &mut level.starts())?
-                .iter()
-                .sum();
-            (squares / level.samples()).sqrt()
-        }
-    };
-    let rivals = rivals::left_out(&problem.experiment, &folds, whole_branches)?;
-    let validation = Validation {
+    Ok(Choice {
+        options,
+        folds,
         criterion,
-        folds: count,
-        whole_branches,
-        rmse,
-        nrmse_percent: 100.0 * rmse / (high - low),
+        chosen,
         scores,
-        rivals,
-    };
-    Ok((options, validation))
+    })
 }

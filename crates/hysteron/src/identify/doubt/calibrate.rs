@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::weights::problem::Problem;
-use crate::model::{INTERVAL, LoadPart, Operators, Sign, Start};
+use crate::model::{INTERVAL, LoadPart, Operators, Sign, Start, add_variance};
 
 /// Share of the samples that the band holds.
 const SHARE: f64 = 0.95;
@@ -39,7 +39,6 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
     let options = &problem.options;
     let experiment = &problem.experiment;
     let mut variance = vec![0.0; experiment.input.len()];
-    let mut output = variance.clone();
     for factor in factors {
         let plane = *problem.regressor.plane();
         let weights = factor.weights.clone();
@@ -49,13 +48,14 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
                 Start::On => operators.saturated(),
                 _ => operators.start(),
             };
-            let output = &mut output[range.clone()];
-            operators.run(&mut state, &experiment.input[range.clone()], output)?;
+            let own = &mut variance[range.clone()];
+            add_variance(
+                &operators,
+                &mut state,
+                &experiment.input[range.clone()],
+                own,
+            )?;
         }
-        variance
-            .iter_mut()
-            .zip(&output)
-            .for_each(|(v, y)| *v += y * y);
     }
     Ok(variance)
 }
