@@ -16,7 +16,7 @@ use rand_distr::{Distribution, StandardNormal};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// With fewer branches than this, parts of branches are the units instead.
-const ENOUGH_BRANCHES: usize = 16;
+pub(crate) const ENOUGH_BRANCHES: usize = 16;
 
 /// Largest number of fits that leave something out. With more units than this, several are left out
 /// together.
@@ -54,6 +54,7 @@ pub(crate) fn replicates(
         unit,
         units,
         errors,
+        ..
     } = left_out;
     let done = AtomicUsize::new(0);
     parallel::map(options.bootstrap, |seed| {
@@ -97,9 +98,10 @@ pub(crate) fn replicates(
 pub(crate) fn left_out_errors(
     problem: &Problem,
     fitted: &Fitted,
+    enough_branches: usize,
     progress: Progress<'_>,
 ) -> Result<LeftOutErrors> {
-    let (unit, units, _) = problem.experiment.units(None, ENOUGH_BRANCHES);
+    let (unit, units, whole) = problem.experiment.units(None, enough_branches);
     let groups = units.min(GROUPS);
     let target = problem.target(fitted.sign);
     let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
@@ -132,6 +134,7 @@ pub(crate) fn left_out_errors(
     Ok(LeftOutErrors {
         unit,
         units,
+        whole,
         errors,
     })
 }
@@ -140,7 +143,25 @@ pub(crate) fn left_out_errors(
 pub(crate) struct LeftOutErrors {
     unit: Vec<Option<usize>>,
     units: usize,
-    pub(crate) errors: Vec<f64>,
+    /// Whether the units are whole branches.
+    whole: bool,
+    errors: Vec<f64>,
+}
+
+impl LeftOutErrors {
+    /// Numbers and errors of the samples that show what the model errs by on a new branch, and the
+    /// number of their units. The first branch of a recording is not among them, because no other
+    /// comes from where it comes, unless there are only first branches.
+    pub(crate) fn of_new_branches(&self, problem: &Problem) -> (Vec<(usize, f64)>, usize) {
+        let experiment = &problem.experiment;
+        let begins = experiment.recordings.iter().map(|own| own.start);
+        let first: Vec<Option<usize>> = begins.map(|n| self.unit[n]).collect();
+        let all = !self.whole || first.len() == self.units;
+        let counts = |n: &usize| all || !first.contains(&self.unit[*n]);
+        let errors = self.errors.iter().copied().enumerate();
+        let errors = errors.filter(|(n, _)| counts(n)).collect();
+        (errors, self.units - if all { 0 } else { first.len() })
+    }
 }
 
 /// The weights fitted to the fitted output plus `noise`, from which the free columns have been

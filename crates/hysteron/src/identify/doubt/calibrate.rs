@@ -7,31 +7,28 @@ use crate::model::{INTERVAL, LoadPart, Operators, Sign, Start, add_variance};
 /// Share of the samples that the band holds.
 const SHARE: f64 = 0.95;
 
-/// Sets the noise of the band, and shrinks the `factors` where they are too wide, so that the band
-/// holds 95 % of the `errors` of fits that left each sample's branch out (jackknife+, Barber et al.
-/// 2021). Returns the noise. `sensor` is the least it can be.
+/// Variance of the output that the band needs beyond that of the factors, so that it holds 95 % of
+/// the errors on new branches (jackknife+, Barber et al. 2021). `sensor` is the least noise.
+///
+/// `errors` are those of fits that left the sample's unit out, with the number of the sample, and
+/// the number of units.
 pub(super) fn calibrate(
-    factors: &mut [LoadPart],
-    errors: &[f64],
+    factors: &[LoadPart],
+    (errors, units): (Vec<(usize, f64)>, usize),
     sensor: f64,
     problem: &Problem,
     sign: Sign,
 ) -> Result<f64> {
     let variance = variance(factors, problem, sign)?;
-    let standard = |error: &f64| (error / INTERVAL).powi(2);
-    let missing = errors.iter().zip(&variance).map(|(e, v)| standard(e) - v);
-    let noise = quantile(missing.collect()).max(0.0).sqrt();
-    if noise > sensor {
-        return Ok(noise);
-    }
-    let ratios = errors.iter().zip(&variance);
-    let ratios = ratios.map(|(e, v)| (standard(e) - sensor * sensor).max(0.0) / v.max(1e-300));
-    let scale = quantile(ratios.collect()).clamp(0.0, 1.0).sqrt();
-    for factor in factors {
-        factor.offset *= scale;
-        factor.weights.iter_mut().for_each(|mu| *mu *= scale);
-    }
-    Ok(sensor)
+    let missing = errors
+        .into_iter()
+        .map(|(n, error)| missing(error, variance[n]));
+    Ok(quantile(missing.collect(), units).sqrt().max(sensor))
+}
+
+/// The variance that a band with `variance` misses to hold `error`.
+pub(super) fn missing(error: f64, variance: f64) -> f64 {
+    (error / INTERVAL).powi(2) - variance
 }
 
 /// The variance of the output from the factors, at each sample.
@@ -60,8 +57,19 @@ fn variance(factors: &[LoadPart], problem: &Problem, sign: Sign) -> Result<Vec<f
     Ok(variance)
 }
 
-/// The value that [`SHARE`] of the values do not exceed.
-pub(super) fn quantile(mut values: Vec<f64>) -> f64 {
-    let place = ((values.len() as f64 * SHARE).ceil() as usize).clamp(1, values.len()) - 1;
-    *values.select_nth_unstable_by(place, f64::total_cmp).1
+/// What 95 % of the samples of a new unit need at most, from samples of `units` others; at least
+/// zero.
+///
+/// The share is a little larger than 95 %, because the units are few and differ. With the share
+/// `95 % · (1 + 1 / units)` it would hold for any units (Dunn, Wasserman and Ramdas 2023). That
+/// is the worst case, in which one unit has all large errors. Half of it is added here.
+pub(super) fn quantile(mut values: Vec<f64>, units: usize) -> f64 {
+    let share = SHARE * (1.0 + 0.5 / units.max(1) as f64);
+    let count = values.len();
+    let Some(last) = count.checked_sub(1) else {
+        return 0.0;
+    };
+    let place = (count as f64 * share).ceil() as usize - 1;
+    let (_, value, _) = values.select_nth_unstable_by(place.min(last), f64::total_cmp);
+    value.max(0.0)
 }

@@ -1,7 +1,7 @@
 //! Confidence in the weights of a fit: excitation, rank, standard errors, and factors for the band.
 
 use crate::error::Result;
-use crate::identify::doubt::bootstrap;
+use crate::identify::doubt::bootstrap::{self, ENOUGH_BRANCHES};
 use crate::identify::doubt::calibrate::calibrate;
 use crate::identify::doubt::excitation::Unresolved;
 use crate::identify::options::Prior;
@@ -14,6 +14,9 @@ use crate::progress::Progress;
 use crate::series::noise::noise;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+
+/// With fewer branches than this, the band is for new parts of branches.
+const ENOUGH_FOR_BAND: usize = 3;
 
 /// Eigenvalues below this share of the largest one are zero up to rounding.
 const ROUNDING: f64 = 1e-12;
@@ -50,7 +53,8 @@ pub(crate) fn of(
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
     let spread = (squares / left).sqrt();
-    let left_out = bootstrap::left_out_errors(problem, fitted, progress)?;
+    let of_units = |enough| bootstrap::left_out_errors(problem, fitted, enough, progress);
+    let left_out = of_units(ENOUGH_BRANCHES)?;
     let replicates = bootstrap::replicates(
         problem,
         fitted,
@@ -59,7 +63,7 @@ pub(crate) fn of(
         (&left_out, spread),
         progress,
     )?;
-    let (standard, mut factors) = bootstrap::spread(
+    let (standard, factors) = bootstrap::spread(
         &replicates,
         &problem.at_middle(&solution.x, &solution.free, fitted.sign),
     );
@@ -67,7 +71,14 @@ pub(crate) fn of(
     let sensor =
         own.map(|range| noise(&solution.residual[range.clone()]).powi(2) * range.len() as f64);
     let sensor = (sensor.sum::<f64>() / samples).sqrt();
-    let width = calibrate(&mut factors, &left_out.errors, sensor, problem, fitted.sign)?;
+    // The band is for new branches.
+    let new_branches = if experiment.branches() < ENOUGH_BRANCHES {
+        &of_units(ENOUGH_FOR_BAND)?
+    } else {
+        &left_out
+    };
+    let errors = new_branches.of_new_branches(problem);
+    let width = calibrate(&factors, errors, sensor, problem, fitted.sign)?;
     let inputs: Vec<&[f64]> = experiment
         .recordings
         .iter()

@@ -1,10 +1,11 @@
 //! Widens the band to what changes between sessions: other recordings of the same actuator.
 
 use crate::error::Result;
-use crate::identify::doubt::calibrate::quantile;
+use crate::identify::doubt::calibrate::{missing, quantile};
 use crate::identify::history::find_start;
 use crate::model::{INTERVAL, Model, Surroundings};
 use crate::recording::Recording;
+use crate::series::{branches, usual_tolerance};
 
 /// Widens the band of a model with confidence so that it holds 95 % of the samples of the
 /// `repeats`, too. Weights and offset stay as they are. The start of each repeat is estimated from
@@ -17,7 +18,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
         return Ok(());
     };
     let noise = confidence(model).map_or(0.0, |found| found.noise);
-    let mut missing = Vec::new();
+    let (mut values, mut units) = (Vec::new(), 0);
     for repeat in repeats {
         let (start, _) = find_start(model, repeat)?;
         let begin = model.restore(&start.turning_points, start.input)?;
@@ -26,16 +27,16 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
         model.run_in(&mut begin.clone(), &repeat.input, around, &mut output)?;
         let half = band.run(&begin, &model.seen(&repeat.input, around)?)?;
         let errors = repeat.output.iter().zip(&output).map(|(y, h)| y - h);
-        // What the errors need beyond the variance of the weights.
-        missing.extend(errors.zip(half).map(|(error, half)| {
-            let [error, half] = [error, half].map(|size| (size / INTERVAL).powi(2));
-            error - (half - noise * noise)
+        values.extend(errors.zip(half).map(|(error, half)| {
+            let of_weights = (half / INTERVAL).powi(2) - noise * noise;
+            missing(error, of_weights)
         }));
+        let tolerance = usual_tolerance(&repeat.input);
+        units += branches(&repeat.input, tolerance)
+            .last()
+            .map_or(0, |last| last + 1);
     }
-    if missing.is_empty() {
-        return Ok(());
-    }
-    let needed = quantile(missing).max(0.0).sqrt();
+    let needed = quantile(values, units).sqrt();
     if let Some(found) = confidence(model) {
         found.noise = found.noise.max(needed);
         found.sessions += repeats.len();
