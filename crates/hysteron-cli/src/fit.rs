@@ -3,7 +3,7 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, LoadLaw,
+    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw,
     Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
     Validation,
 };
@@ -31,11 +31,11 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         prepared.push(read(args, data, columns)?);
     }
     let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
-    let repeats = args.repeat.iter();
-    let repeats = repeats.map(|file| recording::read(file, columns, &args.repair));
+    let read = |file: &Path| Ok(read(args, file, columns)?.0);
+    let repeats = args.repeat.iter().map(|file| read(file));
     let repeats = repeats.collect::<Result<_>>()?;
-    let what = hold_out::What::of(args, |file| Ok(read(args, file, columns)?.0))?;
-    let (model, held_out) = identify(args, &recordings, repeats, &what)?;
+    let what = hold_out::what(args, read)?;
+    let (model, held_out) = identify(args, &recordings, repeats, what.as_ref())?;
     file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
@@ -84,7 +84,7 @@ fn identify(
     args: &args::Fit,
     recordings: &[Recording],
     repeats: Vec<Recording>,
-    what: &hold_out::What,
+    what: Option<&HoldOut>,
 ) -> Result<(Model, Option<HeldOut>)> {
     let levels = match args.levels {
         args::Levels::Auto => Choice::Auto,
@@ -145,7 +145,13 @@ fn identify(
         .thermal(args.thermal.is_some())
         .repeats(repeats)
         .progress(Progress::new(&told));
-    let found = hold_out::fit(&fit, recordings, what)?;
+    let found = match what {
+        None => (fit.run(recordings)?, None),
+        Some(what) => {
+            let (model, held_out) = hysteron::fit_holding_out(&fit, recordings, what)?;
+            (model, Some(held_out))
+        }
+    };
     bar.finish_and_clear();
     Ok(found)
 }

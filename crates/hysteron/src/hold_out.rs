@@ -78,6 +78,12 @@ pub fn fit_holding_out(
     what: &HoldOut,
 ) -> Result<(Model, HeldOut)> {
     let recordings = recordings.as_ref();
+    if let HoldOut::Recordings(others) = what {
+        let mut model = fit.run(recordings)?;
+        let report = held_out(&model, recordings, others)?;
+        report.record_in(&mut model);
+        return Ok((model, report));
+    }
     if matches!(what, HoldOut::Rows(_)) && recordings.len() > 1 {
         return Err(Error::Fit(format!(
             "rows can be held out of one recording, and there are {}",
