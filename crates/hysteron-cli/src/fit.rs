@@ -39,14 +39,13 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
-    for advice in hysteron::advice(&model, &recordings)? {
+    let mut advice = hysteron::advice(&model, &recordings)?;
+    advice.extend(held_out.iter().flat_map(HeldOut::advice));
+    for advice in advice {
         say(format_args!("{}", crate::remedy::text_of_advice(&advice)));
         if let Advice::Clipped { inputs, .. } = advice {
             clipped = inputs;
         }
-    }
-    if let Some(held_out) = &held_out {
-        hold_out::warn(held_out);
     }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),

@@ -1,6 +1,6 @@
 //! `hysteron fit --hold-out`: what is held out, and what it says of the model.
 
-use crate::terminal::{Result, say};
+use crate::terminal::Result;
 use crate::{args, text};
 use hysteron::{HeldOut, HoldOut, Model, Recording};
 use std::path::Path;
@@ -23,18 +23,6 @@ pub(crate) fn what(
         }
     }
     Ok((!files.is_empty()).then_some(HoldOut::Recordings(files)))
-}
-
-/// Says where a simple predictor is better.
-pub(crate) fn warn(held_out: &HeldOut) {
-    for rival in held_out.better() {
-        say(format_args!(
-            "{} predicts what was held out better than the model, by a factor of {}: the data do \
-             not determine the model, or it cannot follow them; record more branches",
-            rival.name,
-            text::number(held_out.model.rmse / rival.errors.rmse),
-        ));
-    }
 }
 
 /// A line for the model, and a table of the rivals.
