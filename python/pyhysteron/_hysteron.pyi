@@ -1,5 +1,5 @@
 # Written by python/stubs: change the docstrings, or the tables there.
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias, TypedDict, TypeVar, final, overload
@@ -18,6 +18,7 @@ from .results import (
     Event,
     FitSummary,
     FmuExport,
+    Forward,
     LearningTable,
     LeftOut,
     LoadCurves,
@@ -54,6 +55,7 @@ __all__ = [
     "Trace",
     "adapt",
     "branches",
+    "compare",
     "design",
     "excitation",
     "fit",
@@ -743,6 +745,15 @@ def adapt(
     progress: _Progress = None,
 ) -> Adapted: ...
 def branches(input: ArrayLike, *, dead_band: float | None = None) -> NDArray[int64]: ...
+def compare(
+    models: Model | Sequence[Model] | Mapping[str, Model],
+    recording: Recording | ArrayLike,
+    output: ArrayLike | None = None,
+    *,
+    start: Literal["fitted", "off", "on", "unknown"] = "fitted",
+    time: ArrayLike | None = None,
+    load: ArrayLike | None = None,
+) -> list[Forward]: ...
 def design(
     range: _Range,
     levels: int,
@@ -781,6 +792,8 @@ def fit(
     creep: int | Literal['auto', 'off'] = "off",
     lag: float | Literal['auto', 'off'] = "off",
     bootstrap: int | None = None,
+    repeats: Recording | Sequence[Recording] | None = None,
+    hold_out: str | Recording | Sequence[Recording] | None = None,
     thermal: Literal["first-order", True, False] | None = None,
     time: _Times | None = None,
     load: ArrayLike | None = None,

@@ -38,6 +38,8 @@ __all__ = [
     "Event",
     "FitSummary",
     "FmuExport",
+    "Forward",
+    "HeldOut",
     "InverseRun",
     "InverseTest",
     "LearningTable",
@@ -54,10 +56,12 @@ __all__ = [
     "Ratio",
     "RecordingSummary",
     "Repairs",
+    "RivalErrors",
     "RivalScore",
     "Sampling",
     "SavedState",
     "ScoreTable",
+    "SeenFile",
     "SensorLag",
     "SeriesSummary",
     "Smooth",
@@ -276,6 +280,63 @@ class Validation(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class SeenFile(_Result):
+    """A file that a fit has seen.
+
+    Attributes
+    ----------
+    file : str
+        Its path.
+    sha256 : str
+        Checksum of its bytes.
+    """
+
+    file: str
+    sha256: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RivalErrors(_Result):
+    """The errors of a simple predictor, fitted to the same samples as the model.
+
+    Attributes
+    ----------
+    name : str
+        Such as 'straight line'.
+    rmse : float
+        As in `Errors`, and so are the others.
+    max_abs : float
+        Largest absolute difference, in the output's unit.
+    nrmse_percent : float or None
+        `rmse` in percent of the measured range.
+    samples : int
+        Number of samples compared.
+    """
+
+    name: str
+    rmse: float
+    max_abs: float
+    nrmse_percent: float | _MaybeNone
+    samples: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HeldOut(_Result):
+    """The errors over samples that took no part in the fit: `FitSummary.hold_out`.
+
+    Attributes
+    ----------
+    model : Errors
+        Of the model.
+    rivals : tuple of RivalErrors
+        Of a straight line and of interpolation.
+    """
+
+    model: Errors
+    rivals: tuple[RivalErrors, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class FitSummary(_Result):
     """How a model was identified: `Model.fit`.
 
@@ -309,10 +370,16 @@ class FitSummary(_Result):
         Checksum of its bytes.
     other_files : tuple of str
         The other files fitted.
+    other_sha256 : tuple of str
+        Checksums of their bytes.
+    repeats : tuple of SeenFile
+        Files that were not fitted, but widened the band.
     outliers : tuple of Outlier
         Readings that had no weight. The errors do not count them.
     validation : Validation or None
         How levels and smoothness were chosen; None where neither was 'auto'.
+    hold_out : HeldOut or None
+        The errors over what was held out; None where nothing was.
     other : dict
         Further entries of the model file.
     """
@@ -331,8 +398,11 @@ class FitSummary(_Result):
     file: str | None = None
     sha256: str | None = None
     other_files: tuple[str, ...] = ()
+    other_sha256: tuple[str, ...] = ()
+    repeats: tuple[SeenFile, ...] = ()
     outliers: tuple[Outlier, ...] = ()
     validation: Validation | None = None
+    hold_out: HeldOut | _MaybeNone = None
     other: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     def _repr_html_(self) -> str:
@@ -653,6 +723,11 @@ class Evaluation(_Result):
         Number of inputs outside the plane.
     estimated_from : int or None
         Samples at the beginning from which the start was estimated; None where it was given.
+    was_fitted : bool
+        Whether the model was fitted to the file of this recording. Then the errors say how well it
+        fits, not how well it predicts.
+    seen_for_band : bool
+        Whether the file of this recording was not fitted, but widened the band.
     band : BandTest or None
         The 95 % band; None for a model without confidence.
     inverse : InverseTest or None
@@ -665,9 +740,40 @@ class Evaluation(_Result):
     forward: Errors
     clipped: int
     estimated_from: int | None
+    was_fitted: bool
+    seen_for_band: bool
     band: BandTest | _MaybeNone
     inverse: InverseTest | _MaybeNone
     inverse_refused: str | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Forward(_Result):
+    """A model that ran over the input of a recording: `compare`.
+
+    Attributes
+    ----------
+    name : str
+        Name of the model.
+    errors : Errors
+        Of the modelled output.
+    was_fitted : bool
+        Whether the model was fitted to the file of this recording. Then the errors say how well it
+        fits, not how well it predicts.
+    seen_for_band : bool
+        Whether the file of this recording was not fitted, but widened the band.
+    residual : ndarray, shape (n,)
+        Measured output without the modelled one, in the output's unit.
+    output_model : ndarray, shape (n,)
+        Modelled output, in the output's unit.
+    """
+
+    name: str
+    errors: Errors
+    was_fitted: bool
+    seen_for_band: bool
+    residual: _Array
+    output_model: _Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -779,6 +885,12 @@ class RecordingSummary(_Result):
         Number of operators of that plane.
     excited : int
         Number of operators that the input moves. Nothing can be learned of the others.
+    rank : int or None
+        Number of combinations of their weights that the recording would determine without noise.
+        Operators that move together count as one. None for more than 50 levels.
+    determined : int or None
+        Number of these combinations that the noise of the output leaves: their standard error is at
+        most the weight that each operator has where all share the range of the output evenly.
     """
 
     samples: int
@@ -789,6 +901,8 @@ class RecordingSummary(_Result):
     plane: tuple[float, float]
     operators: int
     excited: int
+    rank: int | _MaybeNone
+    determined: int | _MaybeNone
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -60,6 +60,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
     offset : float, optional
     bootstrap : int
         Replicates for `Model.confidence` and `Model.band` of ``model_``.
+    hold_out : str, optional
+        What takes no part in the fit, such as ``'branches:20%'`` or ``'rows:100-200'``. The errors
+        there are in ``model_.fit.hold_out``. To test several parts in turn, use `BranchSplit`.
     column : int
         The column of `X` that is the input.
     time_column, load_column : int, optional
@@ -99,6 +102,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         sign: Literal[1, -1] | None = None,
         offset: float | None = None,
         bootstrap: int = 0,
+        hold_out: str | None = None,
         column: int = 0,
         time_column: int | None = None,
         load_column: int | None = None,
@@ -120,6 +124,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.sign = sign
         self.offset = offset
         self.bootstrap = bootstrap
+        self.hold_out = hold_out
         self.column = column
         self.time_column = time_column
         self.load_column = load_column
@@ -130,7 +135,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         self.lag = lag
         self.thermal = thermal
 
-    def fit(self, X: ArrayLike, y: Any) -> HysteresisRegressor:
+    def fit(self, X: ArrayLike, y: Any, *, repeats: Any = None) -> HysteresisRegressor:
         """Identify the model.
 
         Parameters
@@ -140,6 +145,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
             it was sampled.
         y : array_like, shape (n,)
             The output.
+        repeats : list of tuple, optional
+            Pairs of `X` and `y` of other recordings of the same actuator. The weights are not fitted
+            to them. The band of ``model_`` is widened to what changes between sessions.
 
         Returns
         -------
@@ -163,6 +171,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
             named["input_name"] = names[self.column]
             if self.load_column is not None:
                 named["load_name"] = names[self.load_column]
+        if repeats is not None:
+            options["repeats"] = [self._repeat(X, y) for X, y in repeats]
         self.model_ = _hysteron.fit(_hysteron.Recording(input, y, **around, **named), **options)
         return self
 
@@ -192,6 +202,11 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):
         input, around = self._series(X)
         start = self.start if self.start in ("off", "on") else "fitted"
         return self.model_.simulate(input, **around, start=start)
+
+    def _repeat(self, X, y):
+        X, y = validate_data(self, X, y, reset=False, y_numeric=True, dtype=np.float64)
+        input, around = self._series(X)
+        return _hysteron.Recording(input, y, **around)
 
     def _series(self, X):
         """The input, and time and load as far as there are columns for them."""

@@ -101,6 +101,7 @@ fn to_json(all: &[Compared<'_>], names: &[String]) -> serde_json::Value {
             let mut object = json!(run.errors);
             object["model"] = json!(name);
             object["was_fitted"] = json!(run.was_fitted);
+            object["seen_for_band"] = json!(run.seen_for_band);
             object
         });
         json!({"recording": compared.data, "models": models.collect::<Vec<_>>()})

@@ -36,17 +36,19 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         folder.commit()?;
         say(format_args!("the report is {}", paths[0].display()));
     }
-    let fit = model.fit.as_ref();
-    let fitted = fit.is_some_and(|fit| fit.was_fitted_to(&recording));
     if args.json.json {
         let mut object = to_json(&evaluation);
-        object["was_fitted"] = json!(fitted);
+        object["was_fitted"] = json!(evaluation.was_fitted);
+        object["seen_for_band"] = json!(evaluation.seen_for_band);
         return print(&object.to_string());
     }
     let mut result = to_text(&evaluation, &recording);
-    if fitted {
-        result += "\nthis is the recording that the model was fitted to: the errors say how well it \
+    if evaluation.was_fitted {
+        result += "\nthis is a recording that the model was fitted to: the errors say how well it \
                    fits, not how well it predicts";
+    } else if evaluation.seen_for_band {
+        result += "\nthe band was widened to this recording: what it holds here says nothing of \
+                   other sessions";
     }
     print(&result)
 }

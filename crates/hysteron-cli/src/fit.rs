@@ -3,7 +3,7 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, LoadLaw,
+    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw,
     Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
     Validation,
 };
@@ -31,22 +31,21 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
         prepared.push(read(args, data, columns)?);
     }
     let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
-    let repeats = args.repeat.iter();
-    let repeats = repeats.map(|file| recording::read(file, columns, &args.repair));
+    let read = |file: &Path| Ok(read(args, file, columns)?.0);
+    let repeats = args.repeat.iter().map(|file| read(file));
     let repeats = repeats.collect::<Result<_>>()?;
-    let what = hold_out::What::of(args, |file| Ok(read(args, file, columns)?.0))?;
-    let (model, held_out) = identify(args, &recordings, repeats, &what)?;
+    let what = hold_out::what(args, read)?;
+    let (model, held_out) = identify(args, &recordings, repeats, what.as_ref())?;
     file.commit_with(model.to_json().as_bytes())?;
 
     let mut clipped = 0;
-    for advice in hysteron::advice(&model, &recordings)? {
+    let mut advice = hysteron::advice(&model, &recordings)?;
+    advice.extend(held_out.iter().flat_map(HeldOut::advice));
+    for advice in advice {
         say(format_args!("{}", crate::remedy::text_of_advice(&advice)));
         if let Advice::Clipped { inputs, .. } = advice {
             clipped = inputs;
         }
-    }
-    if let Some(held_out) = &held_out {
-        hold_out::warn(held_out);
     }
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
@@ -84,7 +83,7 @@ fn identify(
     args: &args::Fit,
     recordings: &[Recording],
     repeats: Vec<Recording>,
-    what: &hold_out::What,
+    what: Option<&HoldOut>,
 ) -> Result<(Model, Option<HeldOut>)> {
     let levels = match args.levels {
         args::Levels::Auto => Choice::Auto,
@@ -145,7 +144,13 @@ fn identify(
         .thermal(args.thermal.is_some())
         .repeats(repeats)
         .progress(Progress::new(&told));
-    let found = hold_out::fit(&fit, recordings, what)?;
+    let found = match what {
+        None => (fit.run(recordings)?, None),
+        Some(what) => {
+            let (model, held_out) = hysteron::fit_holding_out(&fit, recordings, what)?;
+            (model, Some(held_out))
+        }
+    };
     bar.finish_and_clear();
     Ok(found)
 }

@@ -1,72 +1,28 @@
 //! `hysteron fit --hold-out`: what is held out, and what it says of the model.
 
-use crate::terminal::{Result, say};
+use crate::terminal::Result;
 use crate::{args, text};
-use hysteron::{Fit, HeldOut, HoldOut, Model, Recording};
+use hysteron::{HeldOut, HoldOut, Model, Recording};
 use std::path::Path;
 
-/// What takes no part in a fit.
-pub(crate) enum What {
-    Nothing,
-    /// A part of each recording.
-    Part(HoldOut),
-    /// Other recordings.
-    Recordings(Vec<Recording>),
-}
-
-impl What {
-    /// From the options; `read` reads a file as the recordings fitted are read.
-    pub(crate) fn of(args: &args::Fit, read: impl Fn(&Path) -> Result<Recording>) -> Result<Self> {
-        let mut files = Vec::new();
-        for what in &args.hold_out {
-            match what {
-                args::HoldOut::File(file) => files.push(read(file)?),
-                args::HoldOut::Part(part) if args.hold_out.len() == 1 => {
-                    return Ok(Self::Part(part.clone()));
-                }
-                args::HoldOut::Part(_) => {
-                    return Err("--hold-out: several are possible for files only".into());
-                }
+/// What the options hold out; `read` reads a file as the recordings fitted are read.
+pub(crate) fn what(
+    args: &args::Fit,
+    read: impl Fn(&Path) -> Result<Recording>,
+) -> Result<Option<HoldOut>> {
+    let mut files = Vec::new();
+    for what in &args.hold_out {
+        match what {
+            args::HoldOut::File(file) => files.push(read(file)?),
+            args::HoldOut::Part(part) if args.hold_out.len() == 1 => {
+                return Ok(Some(part.clone()));
+            }
+            args::HoldOut::Part(_) => {
+                return Err("--hold-out: several are possible for files only".into());
             }
         }
-        Ok(match files.is_empty() {
-            true => Self::Nothing,
-            false => Self::Recordings(files),
-        })
     }
-}
-
-/// Fits to what is not held out.
-pub(crate) fn fit(
-    fit: &Fit<'_>,
-    recordings: &[Recording],
-    what: &What,
-) -> hysteron::Result<(Model, Option<HeldOut>)> {
-    match what {
-        What::Nothing => Ok((fit.run(recordings)?, None)),
-        What::Part(part) => {
-            let (model, held_out) = hysteron::fit_holding_out(fit, recordings, part)?;
-            Ok((model, Some(held_out)))
-        }
-        What::Recordings(others) => {
-            let mut model = fit.run(recordings)?;
-            let held_out = hysteron::held_out(&model, recordings, others)?;
-            held_out.record_in(&mut model);
-            Ok((model, Some(held_out)))
-        }
-    }
-}
-
-/// Says where a simple predictor is better.
-pub(crate) fn warn(held_out: &HeldOut) {
-    for rival in held_out.better() {
-        say(format_args!(
-            "{} predicts what was held out better than the model, by a factor of {}: the data do \
-             not determine the model, or it cannot follow them; record more branches",
-            rival.name,
-            text::number(held_out.model.rmse / rival.errors.rmse),
-        ));
-    }
+    Ok((!files.is_empty()).then_some(HoldOut::Recordings(files)))
 }
 
 /// A line for the model, and a table of the rivals.

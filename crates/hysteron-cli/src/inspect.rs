@@ -99,8 +99,16 @@ fn recording_text(summary: &RecordingSummary) -> String {
             time.repeated
         )
     });
+    let determined = match (summary.rank, summary.determined) {
+        (Some(rank), Some(determined)) => format!(
+            ";\n{rank} combinations of their weights determined, {determined} of them against the \
+             noise of the output"
+        ),
+        _ => String::new(),
+    };
     format!(
-        "{} samples\n{}\n{time}plane of {} levels from {} to {}: {} of {} operators excited",
+        "{} samples\n{}\n{time}plane of {} levels from {} to {}: {} of {} operators excited\
+         {determined}",
         summary.samples,
         text::table(&rows),
         summary.levels,

@@ -2,12 +2,14 @@
 
 use crate::choices::{another_kind, choice, named, no_argument, operator, start_of};
 use crate::convert::{result, warn};
-use crate::error::spelt;
-use crate::inputs::recordings_of;
+use crate::error::{Raise, spelt};
+use crate::inputs::{recordings_alone, recordings_of};
 use crate::integer::Integer;
 use crate::model::{Model, sign_of};
 use crate::progress::with_progress;
-use hysteron::{Auto, Candidates, Choice, Fit, FitOptions, LoadLaw, Smooth, Solver, Spacing};
+use hysteron::{
+    Auto, Candidates, Choice, Fit, FitOptions, HeldOut, HoldOut, LoadLaw, Smooth, Solver, Spacing,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -15,7 +17,8 @@ use pyo3::types::{PyDict, PyString};
 /// Identify a model: the weights and offset that minimise the squared error over the recording.
 ///
 /// Ctrl-C ends it. `HysteronWarning` reports inputs outside the plane, an output that falls as
-/// the input rises, and operators whose state at the first sample is unknown.
+/// the input rises, operators whose state at the first sample is unknown, and simple predictors
+/// that are better on what was left out or held out.
 ///
 /// Parameters
 /// ----------
@@ -68,6 +71,13 @@ use pyo3::types::{PyDict, PyString};
 /// bootstrap : int, optional
 ///     Replicates for standard errors and the prediction band, 0 for none. By default 200, from 25
 ///     levels on 60, from 45 on 0.
+/// repeats : Recording or list of Recording, optional
+///     Other recordings of the same actuator. The weights are not fitted to them. The band is
+///     widened to what changes between sessions.
+/// hold_out : str, Recording or list of Recording, optional
+///     What takes no part in the fit, and tests it beside a straight line and interpolation:
+///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
+///     (counted from 1), or other recordings. `FitSummary.hold_out` has the errors there.
 /// thermal : {None, 'first-order', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a
@@ -97,23 +107,39 @@ use pyo3::types::{PyDict, PyString};
 /// >>> model = pyhysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0)
 /// >>> model.fit.nrmse_percent < 1
 /// True
+///
+/// >>> tested = pyhysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0, hold_out='branches:20%')
+/// >>> line = tested.fit.hold_out.rivals[0]
+/// >>> line.name, line.rmse > 5 * tested.fit.hold_out.model.rmse
+/// ('straight line', True)
 #[pyfunction]
 #[pyo3(signature = (
-    recording, output=None, *, bootstrap=None, thermal=None, time=None, load=None, progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, thermal=None, time=None, load=None, progress=None)")]
+    recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, time=None, load=None,
+    progress=None, **options,
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
     recording: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
     bootstrap: Option<Integer>,
+    repeats: Option<&Bound<'_, PyAny>>,
+    hold_out: Option<&Bound<'_, PyAny>>,
     thermal: Option<&Bound<'_, PyAny>>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
-    let names = ["bootstrap", "thermal", "time", "load", "progress"];
+    let names = [
+        "bootstrap",
+        "repeats",
+        "hold_out",
+        "thermal",
+        "time",
+        "load",
+        "progress",
+    ];
     let defaults = FitOptions {
         robust: true,
         spacing: Spacing::Auto,
@@ -137,10 +163,20 @@ pub(crate) fn fit(
     };
     let thermal = thermal.map_or(Ok(false), thermal_of)?;
     let recordings = recordings_of(recording, output, time, load)?;
+    let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
+    let hold_out = hold_out.map(hold_out_of).transpose()?;
+    fit = fit.repeats(repeats.transpose()?.unwrap_or_default());
     let (model, advice) = with_progress(py, progress, |progress| {
         let fit = fit.thermal(thermal).progress(progress);
-        let model = fit.run(&recordings)?;
-        let advice = hysteron::advice(&model, &recordings)?;
+        let (model, held_out) = match &hold_out {
+            None => (fit.run(&recordings)?, None),
+            Some(what) => {
+                let (model, held_out) = hysteron::fit_holding_out(&fit, &recordings, what)?;
+                (model, Some(held_out))
+            }
+        };
+        let mut advice = hysteron::advice(&model, &recordings)?;
+        advice.extend(held_out.iter().flat_map(HeldOut::advice));
         Ok((model, advice))
     })?;
     for advice in advice {
@@ -346,6 +382,14 @@ fn stage<'py, T: Copy>(
             choice(name, &word.to_string(), &words)
         }
         Err(_) => given(value).map(Choice::Fixed),
+    }
+}
+
+/// What takes no part in a fit: a part of the recordings in words, or other recordings.
+fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
+    match value.cast::<PyString>() {
+        Ok(text) => text.to_string().parse().raise(),
+        Err(_) => recordings_alone("hold_out", value).map(HoldOut::Recordings),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Recordings and inputs as calls take them: as such, or as arrays.
 
 use crate::array::series;
+use crate::choices::named;
 use crate::error::finite;
 use crate::recording::Recording;
 use pyo3::exceptions::PyTypeError;
@@ -49,6 +50,18 @@ pub(crate) fn recordings_of(
     }
     let recording = recording_of(value, output, time, load)?;
     Ok(vec![Arc::unwrap_or_clone(recording.inner)])
+}
+
+/// One recording or a list of them; arrays are not taken.
+pub(crate) fn recordings_alone(
+    argument: &str,
+    value: &Bound<'_, PyAny>,
+) -> PyResult<Vec<hysteron::Recording>> {
+    if let Ok(one) = value.cast::<Recording>() {
+        return Ok(vec![(*one.get().inner).clone()]);
+    }
+    let several: Vec<Recording> = named(argument, "a Recording or a list of Recording", value)?;
+    Ok(several.iter().map(|r| (*r.inner).clone()).collect())
 }
 
 /// One input, or a list of inputs, each an array or that of a recording.

@@ -6,6 +6,7 @@ mod adaptive;
 mod around;
 mod array;
 mod choices;
+mod compare;
 mod controller;
 mod convert;
 mod design;
@@ -53,6 +54,8 @@ mod _hysteron {
     use crate::adapt::{Adapted, adapt};
     #[pymodule_export]
     use crate::adaptive::Adaptive;
+    #[pymodule_export]
+    use crate::compare::compare;
     #[pymodule_export]
     use crate::controller::Controller;
     #[pymodule_export]

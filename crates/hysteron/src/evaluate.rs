@@ -26,6 +26,12 @@ pub struct Evaluation {
     /// For a start that was unknown: the number of samples at the beginning of the recording from
     /// which it was estimated.
     pub estimated_from: Option<usize>,
+    /// Whether this is a recording that the model was fitted to. Then the errors say how well the
+    /// model fits, not how well it predicts.
+    pub was_fitted: bool,
+    /// Whether this recording was not fitted, but widened the band. Then the band was made to hold
+    /// it.
+    pub seen_for_band: bool,
     /// The prediction band; `None` for a model without confidence.
     pub band: Option<BandEvaluation>,
     /// The inverse test, or the reason why there is none (for example negative weights).
@@ -97,7 +103,10 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         Err(error) => Err(error.to_string()),
     };
     let band = BandEvaluation::of(model, &begin, recording, &output_model)?;
+    let fit = model.fit.as_ref();
     Ok(Evaluation {
+        was_fitted: fit.is_some_and(|fit| fit.was_fitted_to(recording)),
+        seen_for_band: fit.is_some_and(|fit| fit.was_seen_for_band(recording)),
         band,
         output_model,
         forward,

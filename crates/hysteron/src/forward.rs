@@ -13,9 +13,11 @@ pub struct Forward {
     pub output_model: Vec<f64>,
     /// Modelled against measured output.
     pub errors: Errors,
-    /// Whether this is the recording that the model was fitted to. Then the errors say how well the
+    /// Whether this is a recording that the model was fitted to. Then the errors say how well the
     /// model fits, not how well it predicts.
     pub was_fitted: bool,
+    /// Whether this recording was not fitted, but widened the band.
+    pub seen_for_band: bool,
 }
 
 /// Runs a model over the input of a recording, without the tests of its inverse that
@@ -41,12 +43,11 @@ pub fn forward(model: &Model, recording: &Recording, start: Start) -> Result<For
     let mut output_model = vec![0.0; recording.len()];
     let around = Surroundings::of(model, recording);
     model.run_in(&mut state, &recording.input, around, &mut output_model)?;
+    let fit = model.fit.as_ref();
     Ok(Forward {
         errors: compare(&recording.output, &output_model),
-        was_fitted: model
-            .fit
-            .as_ref()
-            .is_some_and(|fit| fit.was_fitted_to(recording)),
+        was_fitted: fit.is_some_and(|fit| fit.was_fitted_to(recording)),
+        seen_for_band: fit.is_some_and(|fit| fit.was_seen_for_band(recording)),
         output_model,
     })
 }

@@ -1,7 +1,7 @@
 //! Fits a model while part of the data is held out, and tests it there beside simple rivals.
 
 use crate::error::{Error, Result};
-use crate::identify::{Fit, find_start};
+use crate::identify::{Advice, Fit, find_start};
 use crate::model::{Model, Start, State, Surroundings};
 use crate::recording::{HoldOut, Recording, Split};
 use crate::rivals::{Rival, RivalKind};
@@ -35,6 +35,16 @@ impl HeldOut {
     pub fn better(&self) -> impl Iterator<Item = &RivalErrors> {
         let model = self.model.rmse;
         self.rivals.iter().filter(move |r| r.errors.rmse < model)
+    }
+
+    /// A warning for each rival that is better.
+    pub fn advice(&self) -> impl Iterator<Item = Advice> {
+        let model = self.model.nrmse_percent.unwrap_or_default();
+        self.better().map(move |rival| Advice::RivalWins {
+            name: rival.name.to_owned(),
+            rival: rival.errors.nrmse_percent.unwrap_or_default(),
+            model,
+        })
     }
 
     /// Writes the result into the record of the fit, as `hold_out`. The model file keeps it.
@@ -78,6 +88,12 @@ pub fn fit_holding_out(
     what: &HoldOut,
 ) -> Result<(Model, HeldOut)> {
     let recordings = recordings.as_ref();
+    if let HoldOut::Recordings(others) = what {
+        let mut model = fit.run(recordings)?;
+        let report = held_out(&model, recordings, others)?;
+        report.record_in(&mut model);
+        return Ok((model, report));
+    }
     if matches!(what, HoldOut::Rows(_)) && recordings.len() > 1 {
         return Err(Error::Fit(format!(
             "rows can be held out of one recording, and there are {}",

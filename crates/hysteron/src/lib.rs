@@ -72,7 +72,7 @@ pub use inspect::{
 pub use model::{
     Band, BandEvaluation, Confidence, CreepTerm, Criterion, Excitation, FirstOrder, FitSummary,
     FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState,
-    Operators, Plane, Policy, RivalScore, Sample, Score, Sign, Smooth, Solver, Start, State,
+    Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth, Solver, Start, State,
     Surroundings, Validation, Wanted,
 };
 pub use prepare::{

@@ -130,25 +130,13 @@ pub(crate) enum HoldOut {
 }
 
 pub(super) fn parse_hold_out(text: &str) -> Result<HoldOut, String> {
-    let part = match text.split_once(':') {
-        Some(("branches", share)) => {
-            let number = share.trim().trim_end_matches('%').trim_end().parse::<f64>();
-            let percent = number
-                .ok()
-                .filter(|percent| (0.0..=100.0).contains(percent));
-            let percent = percent.ok_or("a share is needed, such as `branches:20%`")?;
-            hysteron::HoldOut::Branches(percent / 100.0)
+    match text.split_once(':') {
+        Some(("branches" | "rows", _)) => {
+            let part = text.parse::<hysteron::HoldOut>();
+            part.map(HoldOut::Part).map_err(|error| error.to_string())
         }
-        Some(("rows", rows)) => {
-            let ends = rows.split_once('-');
-            let ends =
-                ends.and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
-            let (first, last) = ends.ok_or("two row numbers are needed, such as `rows:100-200`")?;
-            hysteron::HoldOut::Rows(first..=last)
-        }
-        _ => return Ok(HoldOut::File(text.into())),
-    };
-    Ok(HoldOut::Part(part))
+        _ => Ok(HoldOut::File(text.into())),
+    }
 }
 
 impl RunStart {

@@ -11,6 +11,7 @@ fn forward(recording: &Recording, error: f64) -> Forward {
         errors: Errors::between(&recording.output, &output_model, |_| true).unwrap(),
         output_model,
         was_fitted: error < 0.1,
+        seen_for_band: false,
     }
 }
 

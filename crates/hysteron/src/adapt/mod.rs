@@ -364,6 +364,8 @@ fn summary(
         file: source.map(|source| source.path.display().to_string()),
         sha256: source.map(|source| source.sha256.clone()),
         other_files: Vec::new(),
+        other_sha256: Vec::new(),
+        repeats: Vec::new(),
         validation: None,
         confidence: None,
         other,

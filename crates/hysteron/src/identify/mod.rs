@@ -22,6 +22,7 @@ pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
 pub(crate) use doubt::excitation::Unresolved;
 pub use doubt::excitation::excitation;
+pub(crate) use doubt::spectrum::determined;
 pub use fit::Fit;
 pub(crate) use history::find_start;
 pub use monotone::{AGAINST_INPUT, way_against_input};

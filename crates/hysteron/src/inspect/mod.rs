@@ -5,6 +5,7 @@ mod model;
 pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect_model};
 
 use crate::error::Result;
+use crate::identify::determined;
 use crate::model::Plane;
 use crate::recording::Recording;
 use crate::recording::gaps;
@@ -50,6 +51,13 @@ pub struct RecordingSummary {
     pub operators: usize,
     /// Number of operators that the input excites. Nothing can be learned about the others.
     pub excited: usize,
+    /// Number of combinations of their weights that the recording would determine without noise:
+    /// the rank that a fit states. Operators that move together count as one. `None` for more than
+    /// 50 levels.
+    pub rank: Option<usize>,
+    /// Number of these combinations that the noise of the output leaves: their standard error is at
+    /// most the weight that each operator has where all share the range of the output evenly.
+    pub determined: Option<usize>,
 }
 
 /// How a recording was sampled.
@@ -71,7 +79,8 @@ pub struct Sampling {
     pub repeated: usize,
 }
 
-/// Summarises `recording`, and counts the operators of `plane` that it excites.
+/// Summarises `recording`, and counts the operators of `plane` that it excites and the combinations
+/// of their weights that it determines.
 ///
 /// # Errors
 /// [`crate::Error::Recording`] for an invalid recording.
@@ -93,6 +102,7 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
             reversals_of_any_size: count(0.0),
         }
     };
+    let determined = determined(recording, plane)?;
     Ok(RecordingSummary {
         samples: recording.len(),
         input: series(&recording.input, &recording.input_quantity),
@@ -102,6 +112,8 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
         plane: (plane.min(), plane.max()),
         operators: plane.operators(),
         excited: excited(&recording.input, plane),
+        rank: determined.map(|(rank, _)| rank),
+        determined: determined.map(|(_, against_noise)| against_noise),
     })
 }
 

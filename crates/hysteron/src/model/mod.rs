@@ -47,7 +47,7 @@ pub use sign::Sign;
 pub use smooth::Smooth;
 pub use start::FittedStart;
 pub use state::{Sample, State};
-pub use summary::{FitSummary, Outlier, Solver, Start};
+pub use summary::{FitSummary, Outlier, SeenFile, Solver, Start};
 pub use surroundings::Surroundings;
 pub use validation::{Criterion, RivalScore, Score, Validation};
 pub(crate) use within::Found;

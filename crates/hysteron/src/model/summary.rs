@@ -46,6 +46,25 @@ pub struct Outlier {
     pub by: f64,
 }
 
+/// A file that a fit has seen.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SeenFile {
+    /// Its path, as given by the caller.
+    pub file: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl SeenFile {
+    /// The file that a recording was read from, if any.
+    pub(crate) fn of(recording: &Recording) -> Option<Self> {
+        recording.source.as_ref().map(|source| Self {
+            file: source.path.display().to_string(),
+            sha256: source.sha256.clone(),
+        })
+    }
+}
+
 /// How a model was obtained, as stored in the model file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -85,6 +104,12 @@ pub struct FitSummary {
     /// The other files fitted together with it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub other_files: Vec<String>,
+    /// SHA-256 of the bytes of each of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_sha256: Vec<String>,
+    /// Files that were not fitted, but widened the band.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub repeats: Vec<SeenFile>,
     /// How smoothness and levels were chosen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<super::Validation>,
@@ -97,11 +122,19 @@ pub struct FitSummary {
 }
 
 impl FitSummary {
-    /// Whether the recording comes from the file that was fitted, by the digest of that file. If
-    /// several files were fitted, only the first one is known in this way.
+    /// Whether the recording comes from a file that was fitted, by the digest of that file. A model
+    /// file of an earlier version knows only the first one of several.
     #[must_use]
     pub fn was_fitted_to(&self, recording: &Recording) -> bool {
+        let mut fitted = self.sha256.iter().chain(&self.other_sha256);
         let digest = recording.source.as_ref().map(|source| &source.sha256);
-        digest.is_some() && self.sha256.as_ref() == digest
+        digest.is_some_and(|digest| fitted.any(|other| other == digest))
+    }
+
+    /// Whether the recording comes from a file that widened the band, by the digest of that file.
+    #[must_use]
+    pub fn was_seen_for_band(&self, recording: &Recording) -> bool {
+        let digest = recording.source.as_ref().map(|source| &source.sha256);
+        digest.is_some_and(|digest| self.repeats.iter().any(|seen| seen.sha256 == *digest))
     }
 }

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::recording::Recording;
 use crate::series::{branches, usual_tolerance};
 use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 /// The largest share of the branches that can be held out. Beyond it, neighbours would be left out
 /// together, and the turning point between them with both.
@@ -12,7 +13,17 @@ const MOST: f64 = 1.0 / 3.0;
 /// Branches with fewer samples than this are not held out.
 const SHORTEST: usize = 3;
 
-/// The part of a recording that is held out.
+/// What takes no part in a fit, to test it.
+///
+/// A text says it as on the command line: `branches:20%`, or `rows:100-200`.
+///
+/// ```
+/// use hysteron::HoldOut;
+/// assert_eq!("branches:20%".parse::<HoldOut>()?, HoldOut::Branches(0.2));
+/// assert_eq!("rows:100-200".parse::<HoldOut>()?, HoldOut::Rows(100..=200));
+/// assert!("rows:100".parse::<HoldOut>().is_err());
+/// # Ok::<(), hysteron::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum HoldOut {
     /// This share of the branches, above 0 and up to a third. They are spread over the recording,
@@ -20,6 +31,36 @@ pub enum HoldOut {
     Branches(f64),
     /// These rows, counted from 1.
     Rows(RangeInclusive<usize>),
+    /// Other recordings, as a whole.
+    Recordings(Vec<Recording>),
+}
+
+impl FromStr for HoldOut {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let needed = |what: &str| Error::Fit(format!("`{text}` cannot be held out: {what}"));
+        match text.split_once(':') {
+            Some(("branches", share)) => {
+                let number = share.trim().trim_end_matches('%').trim_end().parse::<f64>();
+                let percent = number
+                    .ok()
+                    .filter(|percent| (0.0..=100.0).contains(percent));
+                let percent =
+                    percent.ok_or_else(|| needed("a share is needed, such as `branches:20%`"))?;
+                Ok(Self::Branches(percent / 100.0))
+            }
+            Some(("rows", rows)) => {
+                let ends = rows.split_once('-');
+                let ends =
+                    ends.and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+                let (first, last) =
+                    ends.ok_or_else(|| needed("two row numbers are needed, such as `rows:100-200`"))?;
+                Ok(Self::Rows(first..=last))
+            }
+            _ => Err(needed("`branches:20%` or `rows:100-200` is needed")),
+        }
+    }
 }
 
 /// A recording in two parts.
@@ -37,7 +78,8 @@ pub struct Split {
 }
 
 impl Recording {
-    /// Parts the recording. No output that is held out is in the training part.
+    /// Parts the recording. No output that is held out is in the training part. Where other
+    /// recordings are held out, all of this one is.
     ///
     /// A branch is held out without the turning point at its end, because the next branch begins
     /// there. So the operators remember the same with and without that branch: its input is
@@ -64,6 +106,12 @@ impl Recording {
         match what {
             HoldOut::Branches(share) => self.split_branches(*share),
             HoldOut::Rows(rows) => self.split_rows(rows),
+            HoldOut::Recordings(_) => Ok(Split {
+                training: vec![self.clone()],
+                held_out: vec![false; self.len()],
+                begins_inside: false,
+                is_head: true,
+            }),
         }
     }
 

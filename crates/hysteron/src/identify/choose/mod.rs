@@ -18,7 +18,30 @@ use crate::identify::options::FitOptions;
 use crate::model::Validation;
 use crate::progress::Progress;
 use crate::recording::Recording;
-use validate::{Candidates, cross_validate};
+use validate::{Candidates, validated};
+
+/// The same samples at three places of a model.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<'a> {
+    /// As the operators see them.
+    pub(super) operators: &'a [Recording],
+    /// The same before the place of the levels bends the axis. Their branches are left out, so that
+    /// every spacing is tested on the same samples.
+    pub(super) even: &'a [Recording],
+    /// As measured. Simple rivals see these.
+    pub(super) measured: &'a [Recording],
+}
+
+impl<'a> From<&'a [Recording]> for Seen<'a> {
+    /// Recordings that the operators see as they were measured.
+    fn from(recordings: &'a [Recording]) -> Self {
+        Self {
+            operators: recordings,
+            even: recordings,
+            measured: recordings,
+        }
+    }
+}
 
 /// What is left to the data.
 #[derive(Debug, Clone, Copy)]
@@ -28,10 +51,10 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// The options with levels and smoothness, for recordings as the operators see them.
+    /// The options with levels and smoothness.
     pub(super) fn choose(
         self,
-        recordings: &[Recording],
+        seen: Seen<'_>,
         options: &FitOptions,
         progress: Progress<'_>,
     ) -> Result<(FitOptions, Option<Validation>)> {
@@ -42,7 +65,7 @@ impl Open {
             (!self.levels).then_some(options.levels),
             (!self.smooth).then_some(options.smooth),
         );
-        let (options, found) = cross_validate(recordings, options, &candidates, progress)?;
+        let (options, found) = validated(seen, options, &candidates, progress)?;
         Ok((options, Some(found)))
     }
 }

@@ -2,23 +2,23 @@
 //! little.
 
 use crate::error::Result;
-use crate::identify::weights::experiment::Experiment;
 use crate::model::RivalScore;
 use crate::recording::Recording;
 use crate::rivals::{Rival, RivalKind};
 use crate::series::range;
 
-/// The errors of simple rivals on samples that their `folds` left out.
+/// The errors of simple rivals on samples that their `folds` left out: one fold for each sample of
+/// all recordings.
 ///
 /// Where only parts of branches are left out, both neighbours of a gap are known, and interpolation
 /// would be asked nothing. Then the straight line is the only rival.
 pub(super) fn left_out(
-    experiment: &Experiment,
+    recordings: &[Recording],
     folds: &[Option<usize>],
     whole_branches: bool,
 ) -> Result<Vec<RivalScore>> {
     // A load that changes moves the output by itself, so these rivals say nothing then.
-    if experiment.load_range.is_some() {
+    if recordings.iter().any(|recording| recording.load.is_some()) {
         return Ok(Vec::new());
     }
     let kinds: &[RivalKind] = match whole_branches {
@@ -26,20 +26,22 @@ pub(super) fn left_out(
         false => &[RivalKind::Line],
     };
     let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
-    let (low, high) = range(&experiment.output);
+    let outputs = recordings.iter().map(|recording| range(&recording.output));
+    let (low, high) = outputs.fold((f64::INFINITY, f64::NEG_INFINITY), |all, own| {
+        (all.0.min(own.0), all.1.max(own.1))
+    });
     let mut scores = Vec::new();
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
         for fold in 0..count {
-            let Ok(rival) = Rival::fit(kind, &pieces(experiment, folds, fold)?) else {
+            let Ok(rival) = Rival::fit(kind, &pieces(recordings, folds, fold)) else {
                 continue;
             };
-            for range in &experiment.recordings {
-                let whole = piece(experiment, range.clone())?;
-                let predicted = rival.predict(&whole)?;
-                for (n, predicted) in range.clone().zip(predicted) {
+            for (recording, folds) in with_folds(recordings, folds) {
+                let predicted = rival.predict(recording)?;
+                for (n, predicted) in predicted.into_iter().enumerate() {
                     if folds[n] == Some(fold) {
-                        squares += (experiment.output[n] - predicted).powi(2);
+                        squares += (recording.output[n] - predicted).powi(2);
                         samples += 1;
                     }
                 }
@@ -55,27 +57,34 @@ pub(super) fn left_out(
     Ok(scores)
 }
 
+/// Each recording with the folds of its samples.
+fn with_folds<'a>(
+    recordings: &'a [Recording],
+    folds: &'a [Option<usize>],
+) -> impl Iterator<Item = (&'a Recording, &'a [Option<usize>])> {
+    let mut rest = folds;
+    recordings.iter().map(move |recording| {
+        let (own, others) = rest.split_at(recording.len());
+        rest = others;
+        (recording, own)
+    })
+}
+
 /// The runs of samples that a fold keeps.
-fn pieces(experiment: &Experiment, folds: &[Option<usize>], fold: usize) -> Result<Vec<Recording>> {
+fn pieces(recordings: &[Recording], folds: &[Option<usize>], fold: usize) -> Vec<Recording> {
     let mut pieces = Vec::new();
-    for recording in &experiment.recordings {
-        let mut start = recording.start;
-        for n in recording.clone().chain([recording.end]) {
-            let kept = n < recording.end && folds[n].is_some_and(|other| other != fold);
+    for (recording, folds) in with_folds(recordings, folds) {
+        let mut start = 0;
+        for n in 0..=recording.len() {
+            let kept = n < recording.len() && folds[n].is_some_and(|other| other != fold);
             if !kept {
                 // A single sample has no direction.
                 if n > start + 1 {
-                    pieces.push(piece(experiment, start..n)?);
+                    pieces.extend(recording.only(|k| (start..n).contains(&k)));
                 }
                 start = n + 1;
             }
         }
     }
-    Ok(pieces)
-}
-
-fn piece(experiment: &Experiment, range: std::ops::Range<usize>) -> Result<Recording> {
-    let [input, output] =
-        [&experiment.input, &experiment.output].map(|all| all[range.clone()].to_vec());
-    Recording::new(input, output)
+    pieces
 }

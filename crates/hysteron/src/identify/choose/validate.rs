@@ -6,9 +6,11 @@
 
 use crate::error::Result;
 use crate::identify::choose::criterion::Level;
+use crate::identify::choose::Seen;
 use crate::identify::choose::rivals;
 use crate::identify::choose::search::{Place, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
+use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
 use crate::model::{Criterion, Score, Smooth, Solver, Validation};
 use crate::progress::Progress;
@@ -71,16 +73,26 @@ pub fn cross_validate(
     candidates: &Candidates,
     progress: Progress<'_>,
 ) -> Result<(FitOptions, Validation)> {
+    validated(recordings.into(), options, candidates, progress)
+}
+
+/// As [`cross_validate`], for recordings that stages have changed.
+pub(super) fn validated(
+    seen: Seen<'_>,
+    options: &FitOptions,
+    candidates: &Candidates,
+    progress: Progress<'_>,
+) -> Result<(FitOptions, Validation)> {
     let Choice {
         options,
         folds,
         criterion,
         chosen,
         scores,
-    } = choose(recordings, options, candidates, None, progress)?;
-    let problem = Problem::new(recordings, &options)?;
+    } = choose(seen, options, candidates, None, progress)?;
+    let problem = Problem::new(seen.operators, &options)?;
     let (low, high) = range(&problem.experiment.output);
-    let rivals = rivals::left_out(&problem.experiment, &folds.of, folds.whole_branches)?;
+    let rivals = rivals::left_out(seen.measured, &folds.of, folds.whole_branches)?;
     // What the choice is worth is the error on what was left out, whatever chose.
     let rmse = match criterion {
         Criterion::LeftOut => chosen.rmse,
@@ -128,7 +140,7 @@ impl Choice {
 }
 
 pub(super) fn choose(
-    recordings: &[Recording],
+    seen: Seen<'_>,
     options: &FitOptions,
     candidates: &Candidates,
     kept: Option<&[f64]>,
@@ -140,7 +152,7 @@ pub(super) fn choose(
             levels,
             ..options.clone()
         };
-        Problem::new(recordings, &options)
+        Problem::new(seen.operators, &options)
     };
     let first = candidates.levels.first().copied().unwrap_or(options.levels);
     let mut problem = at(first, &options)?;
@@ -148,7 +160,8 @@ pub(super) fn choose(
         options.sign = Some(problem.solve(kept, Progress::NONE)?.sign);
     }
     let sign = options.sign.unwrap_or_default();
-    let (unit, units, whole_branches) = problem.experiment.units(kept, ENOUGH_BRANCHES);
+    let even = Experiment::new(seen.even, &options)?;
+    let (unit, units, whole_branches) = even.units(kept, ENOUGH_BRANCHES);
     let count = units.min(FOLDS);
     let folds = Folds {
         of: unit.into_iter().map(|u| u.map(|u| u % count)).collect(),

@@ -4,9 +4,10 @@ use crate::error::Result;
 use crate::identify::doubt::bootstrap::{self, ENOUGH_BRANCHES};
 use crate::identify::doubt::calibrate::calibrate;
 use crate::identify::doubt::excitation::Unresolved;
+use crate::identify::doubt::spectrum::Spectrum;
 use crate::identify::options::Prior;
 use crate::identify::weights::problem::{Fitted, Problem};
-use crate::identify::weights::solve::{NormalEquations, Penalised, not_definite};
+use crate::identify::weights::solve::{NormalEquations, Penalised};
 use crate::identify::weights::sparse::Initial;
 use crate::model::Confidence;
 use crate::model::Start;
@@ -17,9 +18,6 @@ use faer::{Mat, Side};
 
 /// With fewer branches than this, the band is for new parts of branches.
 const ENOUGH_FOR_BAND: usize = 3;
-
-/// Eigenvalues below this share of the largest one are zero up to rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// The confidence of a fit; `None` without bootstrap replicates.
 pub(crate) fn of(
@@ -42,7 +40,7 @@ pub(crate) fn of(
     let equations = with(options.prior())?;
     // The matrix without the prior: what the data alone determine.
     let plain = with(Prior::NONE)?;
-    let (rank, condition) = rank(&plain.penalised)?;
+    let spectrum = Spectrum::of(&plain.penalised.matrix, plain.penalised.ridge)?;
     let free_count = fitted.solution.free.len() as f64;
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
@@ -92,9 +90,9 @@ pub(crate) fn of(
     };
     Ok(Some(Confidence {
         branches: experiment.branches(),
-        rank,
+        rank: spectrum.rank(),
         unknowns: solution.x.len(),
-        condition,
+        condition: spectrum.condition(),
         noise: width,
         sensor,
         sessions: 1,
@@ -122,28 +120,4 @@ fn degrees_of_freedom(x: &[f64], equations: &Penalised, plain: &Penalised) -> f6
         }
         Err(_) => size as f64,
     }
-}
-
-/// Rank of the centred regressor, and the ratio of its largest to its smallest non-zero singular
-/// value.
-fn rank(equations: &Penalised) -> Result<(usize, f64)> {
-    let count = equations.matrix.len().isqrt();
-    let element = |i: usize, j: usize| equations.matrix[i * count + j];
-    let matrix = Mat::from_fn(count, count, element);
-    let values = matrix
-        .self_adjoint_eigenvalues(Side::Lower)
-        .map_err(|_| not_definite())?;
-    let largest = values.iter().copied().fold(0.0, f64::max);
-    let above: Vec<f64> = values
-        .into_iter()
-        .map(|value| value - equations.ridge)
-        .filter(|value| *value > ROUNDING * largest)
-        .collect();
-    let smallest = above.iter().copied().fold(f64::INFINITY, f64::min);
-    let condition = if above.is_empty() {
-        1.0
-    } else {
-        (largest / smallest).sqrt()
-    };
-    Ok((above.len(), condition))
 }

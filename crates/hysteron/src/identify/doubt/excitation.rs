@@ -144,7 +144,7 @@ fn prefix_sums(levels: usize, mu: &mut [f64]) {
 }
 
 /// `Φᵀ Φ` of all recordings together, with the common mean subtracted from every column.
-fn centred_gram(
+pub(super) fn centred_gram(
     inputs: &[&[f64]],
     plane: Plane,
     operator: Operator,

@@ -1,7 +1,9 @@
-//! How well the data determine the weights: excitation, bootstrap, calibration, confidence.
+//! How well the data determine the weights: excitation, spectrum, bootstrap, calibration,
+//! confidence.
 
 pub(super) mod bootstrap;
 mod calibrate;
 pub(super) mod confidence;
 pub(super) mod excitation;
 pub(super) mod sessions;
+pub(super) mod spectrum;

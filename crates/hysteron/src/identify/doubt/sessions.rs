@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::identify::doubt::calibrate::{missing, quantile};
 use crate::identify::history::find_start;
-use crate::model::{INTERVAL, Model, Surroundings};
+use crate::model::{INTERVAL, Model, SeenFile, Surroundings};
 use crate::recording::Recording;
 use crate::series::{branches, usual_tolerance};
 
@@ -40,6 +40,9 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
     if let Some(found) = confidence(model) {
         found.noise = found.noise.max(needed);
         found.sessions += repeats.len();
+    }
+    if let Some(fit) = &mut model.fit {
+        fit.repeats.extend(repeats.iter().filter_map(SeenFile::of));
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ mod nelder_mead;
 mod spacing;
 
 use crate::error::Result;
-use crate::identify::choose::Open;
+use crate::identify::choose::{Open, Seen};
 use crate::identify::history::find_start;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
 use crate::identify::weights::fit::fit_weights_without;
@@ -66,9 +66,14 @@ pub(crate) fn fit(
         found.curves = Some(law.curves.clone());
         options.load_curves = law.uses_curves.then_some(law.curves);
     }
-    let (mut options, mut validation) = asked.open.choose(&seen, &options, progress)?;
+    let unspaced = Seen {
+        operators: &seen,
+        even: &seen,
+        measured: recordings,
+    };
+    let (mut options, mut validation) = asked.open.choose(unspaced, &options, progress)?;
     if options.spacing == Spacing::Auto {
-        let spaced = spacing::find(&seen, &options, (asked.open, &validation), progress)?;
+        let spaced = spacing::find(unspaced, &options, (asked.open, &validation), progress)?;
         if let Some(spaced) = spaced {
             found.spacing = spaced.corners;
             seen = Cow::Owned(spaced.recordings);

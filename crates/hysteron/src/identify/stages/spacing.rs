@@ -1,7 +1,7 @@
 //! Places the levels where the output moves.
 
 use crate::error::Result;
-use crate::identify::choose::Open;
+use crate::identify::choose::{Open, Seen};
 use crate::identify::options::FitOptions;
 use crate::identify::stages::{on_grid, with_inputs};
 use crate::identify::weights::experiment::plane_of_all;
@@ -38,11 +38,12 @@ pub(super) struct Spaced {
 /// Finds the corners that fit the recordings best. `None` if equal distances fit as well. Where
 /// levels or smoothness were chosen (`chosen`), the same criterion decides.
 pub(super) fn find(
-    recordings: &[Recording],
+    seen: Seen<'_>,
     options: &FitOptions,
     (open, chosen): (Open, &Option<Validation>),
     progress: Progress<'_>,
 ) -> Result<Option<Spaced>> {
+    let recordings = seen.operators;
     let plane = plane_of_all(recordings, options)?;
     let mut options = FitOptions {
         range: Some((plane.min(), plane.max())),
@@ -59,7 +60,11 @@ pub(super) fn find(
             levels: false,
             ..open
         };
-        let (again, found) = open.choose(&recordings, &options, progress)?;
+        let bent = Seen {
+            operators: &recordings,
+            ..seen
+        };
+        let (again, found) = open.choose(bent, &options, progress)?;
         if let Some(found) = &found
             && !found
                 .criterion

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::identify::doubt::confidence;
 use crate::identify::options::FitOptions;
 use crate::identify::weights::problem::Problem;
-use crate::model::{FitSummary, LoadDependence, LoadPart, Model, Outlier};
+use crate::model::{FitSummary, LoadDependence, LoadPart, Model, Outlier, SeenFile};
 use crate::progress::Progress;
 use crate::recording::{Origin, Recording};
 use crate::series::Errors;
@@ -64,7 +64,8 @@ pub(crate) fn fit_weights_without(
         .collect();
     let errors = Errors::between(measured, &modelled, |_| true)
         .ok_or_else(|| Error::Fit("no samples".into()))?;
-    let path = |r: &Recording| r.source.as_ref().map(|s| s.path.display().to_string());
+    let file = SeenFile::of(first);
+    let others: Vec<SeenFile> = recordings[1..].iter().filter_map(SeenFile::of).collect();
     model.fit = Some(FitSummary {
         solver: options.solver,
         smooth: options.smooth,
@@ -78,9 +79,11 @@ pub(crate) fn fit_weights_without(
         weights_not_zero: model.weights().iter().filter(|mu| **mu != 0.0).count(),
         outliers: Vec::new(),
         simulated: recordings.iter().any(|r| r.origin == Origin::Simulated),
-        file: path(first),
-        sha256: first.source.as_ref().map(|s| s.sha256.clone()),
-        other_files: recordings[1..].iter().filter_map(path).collect(),
+        sha256: file.as_ref().map(|seen| seen.sha256.clone()),
+        file: file.map(|seen| seen.file),
+        other_sha256: others.iter().map(|seen| seen.sha256.clone()).collect(),
+        other_files: others.into_iter().map(|seen| seen.file).collect(),
+        repeats: Vec::new(),
         validation: None,
         confidence,
         other: std::collections::BTreeMap::new(),
