@@ -109,7 +109,7 @@ fn main() {
         ratio(&name, "≤ 1.5", forward(1000, input), forward(20, input));
     }
     for levels in [20, 100] {
-        for (kind, aim, input) in [("smooth", "≤ 16", &smooth), ("random walk", "≤ 40", &walk)]
+        for (kind, aim, input) in [("smooth", "≤ 10", &smooth), ("random walk", "≤ 30", &walk)]
         {
             let name = format!("fast / pass y = a·x + b, 1e6 samples, {kind}, K = {levels}");
             ratio(&name, aim, forward(levels, input), plain_pass(input));
@@ -121,7 +121,7 @@ fn main() {
             let name = format!("inverse / forward step, {kind}, K = {levels}");
             ratio(
                 &name,
-                "≤ 6",
+                "≤ 4",
                 inverse(levels, &targets),
                 stepping(levels, input),
             );

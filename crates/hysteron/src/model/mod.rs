@@ -253,6 +253,7 @@ impl Model {
     ///   none.
     ///
     /// After an error the state is unchanged.
+    #[inline]
     pub fn step(&self, state: &mut State, sample: impl Into<Sample>) -> Result<Output<f64>> {
         state.step(self, sample.into())
     }

@@ -167,6 +167,7 @@ impl Operators {
     /// # Errors
     /// [`Error::Core`] for an input that is not finite or a state of another model; then the state
     /// is unchanged.
+    #[inline]
     pub fn step(
         &self,
         state: &mut OperatorState,

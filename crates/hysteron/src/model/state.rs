@@ -115,6 +115,7 @@ impl State {
         Ok(Self { stages, ..self })
     }
 
+    #[inline]
     pub(super) fn step(&mut self, model: &Model, sample: Sample) -> Result<Output<f64>> {
         if model.is_plain() {
             if sample.load.is_some() {
@@ -124,6 +125,12 @@ impl State {
             self.forget_stages();
             return Ok(step);
         }
+        self.step_staged(model, sample)
+    }
+
+    /// Apart from the step of a plain model, which is a tenth of its instructions.
+    #[inline(never)]
+    fn step_staged(&mut self, model: &Model, sample: Sample) -> Result<Output<f64>> {
         let mut stages = model.stages();
         let worded = |error| model.worded(error);
         stages.accepts(&self.stages, sample).map_err(worded)?;
@@ -139,6 +146,7 @@ impl State {
     }
 
     /// After a step of the operators alone, what a stage remembered is of the past.
+    #[inline]
     pub(super) fn forget_stages(&mut self) {
         if self.stages.is_started() {
             self.stages = StageState::default();
