@@ -27,14 +27,22 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     println!("## Where the truth is known\n");
     println!(
         "{MATERIALS} random materials in each row: MKP of {LEVELS} levels, relays of {FINE} levels, \
-         and sums of plays (Prandtl-Ishlinskii). The input is a random zigzag of the branches \
-         named, {SAMPLES} samples each, from the lowest input; noise of {} % of the range is on \
-         the output. The band of a fit without options is tested on another zigzag of {FRESH} \
-         branches with fresh noise. *Good* counts materials with a coverage between 90 and 99 %. \
-         *Weights* is the share of the intervals of ±{INTERVAL} standard errors that hold the true \
-         weight, over the operators that are well determined; it needs the true plane, so a second \
-         fit is told it, and only MKP materials have it.\n",
+         and sums of plays\n\
+         (Prandtl-Ishlinskii). The input is a random zigzag of the branches named, with {SAMPLES} \
+         samples each,\n\
+         from the lowest input. On the output is noise of {} % of its range. The band of a fit \
+         without\n\
+         options is tested on another zigzag of {FRESH} branches with fresh noise. *Good* counts \
+         materials with a\n\
+         coverage between 90 and 99 %.\n",
         100.0 * NOISE
+    );
+    println!(
+        "*Weights* is the share of the intervals of ±{INTERVAL:.2} standard errors that hold the \
+         true weight, over\n\
+         the operators that are well determined. It needs the true plane. So a second fit is told \
+         it, and\n\
+         only MKP materials have it.\n"
     );
     println!("| truth | branches | coverage | good | half width | error | weights |");
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
