@@ -209,3 +209,74 @@ def test_what_does_not_run_by_its_input_alone(recording, swings):
     state.step(0.3)  # at rest
     with pytest.raises(pyhysteron.ThermalError, match="needs the time of each sample"):
         state.step(0.3)
+
+
+def session(truth, shrink, seed):
+    t = np.linspace(0, 40, 1500)
+    input = 50 - 30 * np.cos(t) * np.exp(-t / shrink)
+    noise = 0.01 * np.random.default_rng(seed).normal(size=len(t))
+    return pyhysteron.Recording(input, truth.simulate(input) + noise)
+
+
+def test_repeats_widen_the_band_and_leave_the_weights(recording, truth):
+    options = dict(levels=10, smooth=1e-8, start="off", bootstrap=20)
+    one = pyhysteron.fit(recording, **options)
+    other = session(truth, 30, 1)
+    shifted = pyhysteron.Recording(other.input, other.output + 0.5)
+    for repeats in (shifted, [shifted], [other, shifted]):
+        wide = pyhysteron.fit(recording, repeats=repeats, **options)
+        np.testing.assert_array_equal(one.weights, wide.weights)
+        assert wide.confidence.noise > 5 * one.confidence.noise
+        assert wide.evaluate(shifted, start="unknown").band.coverage_percent > 90
+    assert one.evaluate(shifted, start="unknown").band.coverage_percent < 50
+    for bad in (recording.input, 3, [recording, 3]):
+        with pytest.raises(TypeError, match="`repeats` is .*Recording is needed"):
+            pyhysteron.fit(recording, repeats=bad, **options)
+
+
+def test_what_is_held_out_takes_no_part(recording, truth):
+    options = dict(levels=8, bootstrap=0)
+    assert pyhysteron.fit(recording, **options).fit.hold_out is None
+    rows = len(recording)
+    for what, samples in [
+        ("branches:20%", range(100, rows // 2)),
+        (f"rows:{rows - 499}-{rows}", [500]),
+        (session(truth, 30, 1), [1500]),
+        ([session(truth, 30, 1), session(truth, 20, 2)], [3000]),
+    ]:
+        tested = pyhysteron.fit(recording, hold_out=what, **options).fit.hold_out
+        assert tested.model.samples in samples
+        assert [rival.name for rival in tested.rivals] == ["straight line", "interpolation"]
+        assert all(rival.samples == tested.model.samples for rival in tested.rivals)
+        assert tested.rivals[0].rmse > 3 * tested.model.rmse
+    changed = recording.output.copy()
+    changed[-500:] += 100
+    what = f"rows:{rows - 499}-{rows}"
+    one, other = (pyhysteron.fit(recording.input, output, hold_out=what, **options) for output in (recording.output, changed))
+    np.testing.assert_array_equal(one.weights, other.weights)
+    again = pyhysteron.Model.from_json(one.to_json())
+    assert again.fit.hold_out == one.fit.hold_out
+
+
+def test_a_rival_that_wins_where_data_were_held_out_is_a_warning():
+    input = 50 - 30 * np.cos(np.linspace(0, 30, 600))
+    line = input + 5 * np.random.default_rng(0).normal(size=600)
+    with pytest.warns(pyhysteron.HysteronWarning, match="straight line errs"):
+        pyhysteron.fit(input, line, levels=40, smooth=0.0, ridge=0.0, robust=False, bootstrap=0, hold_out="rows:401-600")
+
+
+@pytest.mark.parametrize(
+    "what, error, said",
+    [
+        ("branches:80%", pyhysteron.FitError, "up to 33 %"),
+        ("branches:many", pyhysteron.FitError, "`branches:many`.*such as `branches:20%`"),
+        ("rows:5", pyhysteron.FitError, "two row numbers"),
+        ("rows:0-9", pyhysteron.FitError, "rows 0 to 9"),
+        ("half", pyhysteron.FitError, "`half` cannot be held out"),
+        (0.2, TypeError, "`hold_out` is 0.2"),
+        ([], pyhysteron.FitError, "nothing was held out"),
+    ],
+)
+def test_what_cannot_be_held_out(recording, what, error, said):
+    with pytest.raises(error, match=said):
+        pyhysteron.fit(recording, levels=5, bootstrap=0, hold_out=what)

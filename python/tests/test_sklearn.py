@@ -131,3 +131,13 @@ def test_a_column_that_is_not_there(data, column, error):
     for use in (HysteresisRegressor(column=column).fit, lambda X, y: list(BranchSplit(column=column).split(X))):
         with pytest.raises(error, match=f"`column` is {column!r}"):
             use(X, y)
+
+
+def test_hold_out_and_repeats(data):
+    X, y = data
+    tested = HysteresisRegressor(levels=8, hold_out="branches:20%").fit(X, y)
+    assert tested.model_.fit.hold_out.model.samples > 0
+    narrow = HysteresisRegressor(levels=8, bootstrap=20).fit(X, y)
+    wide = HysteresisRegressor(levels=8, bootstrap=20).fit(X, y, repeats=[(X, y + 0.5)])
+    np.testing.assert_array_equal(narrow.predict(X), wide.predict(X))
+    assert wide.model_.confidence.noise > narrow.model_.confidence.noise

@@ -125,7 +125,12 @@ fn to_text(all: &[Compared<'_>], names: &[String]) -> String {
         for (name, run) in runs {
             let quantity = &compared.recording.output_quantity;
             let mut row = text::errors(name, &run.errors, quantity);
-            row.extend(run.was_fitted.then(|| "fitted to this recording".into()));
+            let seen = match (run.was_fitted, run.seen_for_band) {
+                (true, _) => Some("fitted to this recording"),
+                (_, true) => Some("band widened to this recording"),
+                _ => None,
+            };
+            row.extend(seen.map(str::to_owned));
             rows.push(row);
         }
         text::table(&rows)

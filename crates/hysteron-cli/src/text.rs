@@ -74,7 +74,7 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
             confidence.unknowns,
             number(confidence.condition),
             with_unit(confidence.sensor, &model.output),
-            with_unit(misfit(fit.rmse, confidence.sensor), &model.output)
+            with_unit(fit.misfit().unwrap_or_default(), &model.output)
         ),
         match confidence.sessions {
             0 | 1 => "the 95 % band holds within this session; --repeat FILE widens it to \
@@ -83,9 +83,4 @@ pub(crate) fn confidence(fit: &FitSummary, model: &Model) -> Vec<String> {
             sessions => format!("the 95 % band holds for {sessions} sessions"),
         },
     ]
-}
-
-/// What is left of an error without the white noise of the readings.
-fn misfit(rmse: f64, noise: f64) -> f64 {
-    (rmse * rmse - noise * noise).max(0.0).sqrt()
 }

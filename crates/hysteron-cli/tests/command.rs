@@ -184,7 +184,10 @@ fn tables_go_to_standard_output_and_json_stands_alone() {
     let done = bench.run("inspect run.csv --input x --output y --time t --json");
     assert_eq!(done.json()["samples"], 400);
     assert_eq!(done.json()["time"]["median_step"], 1.0);
-    assert!(done.json()["excited"].as_u64().unwrap() > 100);
+    let count = |name: &str| done.json()[name].as_u64().unwrap();
+    assert!(count("excited") > 100);
+    assert!(0 < count("determined") && count("determined") <= count("rank"));
+    assert!(count("rank") < count("excited"));
     assert_eq!(
         bench.run("inspect run.csv --json").json()["columns"][1]["name"],
         "x"

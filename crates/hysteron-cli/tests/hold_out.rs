@@ -128,11 +128,11 @@ fn a_rival_that_wins_is_named() {
     let done = run(path, &format!("{fit} --hold-out rows:81-120 -o m.json"));
     let said = text(&done.stderr);
     assert!(
-        done.status.success() && said.contains("straight line predicts"),
+        done.status.success() && said.contains("straight line errs"),
         "{said}"
     );
     let done = run(path, &format!("{FIT} --hold-out branches:20% -o m.json"));
-    assert!(!text(&done.stderr).contains("predicts what was held out better"));
+    assert!(!text(&done.stderr).contains("on what was left out"));
 }
 
 #[test]
@@ -178,6 +178,62 @@ fn a_recording_that_was_fitted_is_recognised() {
         let said = text(&run(path, &evaluate(data)).stdout);
         assert_eq!(said.contains("the model was fitted to"), fitted, "{said}");
     }
+}
+
+/// Also those beside the first, and those that widened the band.
+#[test]
+fn every_file_of_a_fit_is_recognised() {
+    let folder = bench();
+    let path = folder.path();
+    write(path, "third.csv", &play(500, 4.0));
+    write(path, "fourth.csv", &play(500, 7.0));
+    let fit = "fit run.csv other.csv --repeat third.csv --input x --output y --levels 8 \
+               --bootstrap 10 -o m.json";
+    json(path, fit);
+    for (data, fitted, band) in [
+        ("run.csv", true, false),
+        ("other.csv", true, false),
+        ("third.csv", false, true),
+        ("fourth.csv", false, false),
+    ] {
+        let evaluate = format!("evaluate m.json {data} --input x --output y");
+        let found = json(path, &evaluate);
+        assert_eq!(found["was_fitted"], fitted, "{data}");
+        assert_eq!(found["seen_for_band"], band, "{data}");
+        let said = text(&run(path, &evaluate).stdout);
+        assert_eq!(
+            said.contains("that the model was fitted to"),
+            fitted,
+            "{said}"
+        );
+        assert_eq!(said.contains("band was widened to"), band, "{said}");
+        let compared = json(path, &format!("compare m.json {data} --input x --output y"));
+        let model = &compared["recordings"][0]["models"][0];
+        assert_eq!(model["was_fitted"], fitted, "{data}");
+        assert_eq!(model["seen_for_band"], band, "{data}");
+    }
+}
+
+/// A band is widened by the readings that a fit would see, not by their noise or another lag.
+#[test]
+fn repeats_are_prepared_as_the_recording_fitted() {
+    let folder = bench();
+    let path = folder.path();
+    let mut rows = play(700, 9.0);
+    // One reading in eight is lost.
+    rows.iter_mut().step_by(8).for_each(|row| row[2] = 0.0);
+    write(path, "lost.csv", &rows);
+    let fit = "fit run.csv --input x --output y --levels 12 --bootstrap 20 -o m.json";
+    let noise = |options: &str| {
+        let found = json(path, &format!("{fit} {options}"));
+        number(&found["fit"]["confidence"]["noise"])
+    };
+    let whole = noise("--repeat other.csv");
+    let raw = noise("--repeat lost.csv");
+    let prepared = noise("--repeat lost.csv --spikes 4");
+    assert!(raw > 10.0 * whole, "{whole} {raw}");
+    // The readings that were put back are straight lines between their neighbours.
+    assert!(prepared < 1.1 * whole, "{whole} {prepared}");
 }
 
 #[test]

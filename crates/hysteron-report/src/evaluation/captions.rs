@@ -1,13 +1,13 @@
 //! Titles and captions: what each figure shows, with its numbers.
 
 use crate::evaluation::figure::Figure;
-use crate::evaluation::figures::{classes_counted, dead_band_shown};
+use crate::evaluation::figures::{SHOWN, choices_hidden, classes_counted, dead_band_shown};
 use crate::evaluation::view::View;
 use crate::number::{capitalised, percent};
 use crate::number::{count, significant};
 use crate::quantity::Labelled;
 use crate::stack::Figures;
-use hysteron::Errors;
+use hysteron::{Criterion, Errors};
 
 /// The short title at the head of a figure.
 pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
@@ -19,7 +19,7 @@ pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
         },
         Figure::Excitation => "What is known of each operator".into(),
         Figure::StandardErrors => "Standard errors of the weights".into(),
-        Figure::CrossValidation => "Levels and smoothness by cross-validation".into(),
+        Figure::CrossValidation => "Choice of levels and smoothness".into(),
         Figure::PlaneEvolution => "Evolution of the plane".into(),
         Figure::WeightsPlane => "Weights on the plane".into(),
         Figure::WeightsMap => "Size of the weights".into(),
@@ -151,18 +151,44 @@ fn cross_validation(view: &View<'_>) -> String {
     let Some(validation) = view.validation() else {
         return String::new();
     };
-    format!(
-        "Error on {}branches left out, in {} folds. Chosen is the smoothest that is no worse than \
-         the best by more than one standard error over the folds: {}, {} of the range.",
-        if validation.whole_branches {
-            ""
-        } else {
-            "parts of "
-        },
-        validation.folds,
+    let parts = match validation.whole_branches {
+        true => "",
+        false => "parts of ",
+    };
+    let left_out = format!(
+        "{} on {parts}branches left out, {} of the range",
         view.output.value(validation.rmse),
         percent(validation.nrmse_percent),
-    )
+    );
+    let chosen = match validation.criterion {
+        Criterion::LeftOut => format!(
+            "Error on {parts}branches left out, in {} folds, at the best strength across. Chosen is \
+             the smallest: {left_out}.",
+            validation.folds
+        ),
+        Criterion::Evidence => format!(
+            "Error over the samples fitted. The evidence chose, because there are few branches to \
+             leave out, so the smallest error is not the best. What was chosen errs {left_out}."
+        ),
+    };
+    let hidden = choices_hidden(validation);
+    let hidden = match hidden.is_empty() {
+        true => String::new(),
+        false => format!(
+            " Errors of more than {SHOWN} times the smallest are not shown: {} levels.",
+            hidden.join(", ")
+        ),
+    };
+    let rivals = validation.rivals.iter().map(|rival| {
+        let error = percent(rival.nrmse_percent);
+        format!("{} errs {error}", rival.name)
+    });
+    let rivals: Vec<String> = rivals.collect();
+    let rivals = match rivals.is_empty() {
+        true => String::new(),
+        false => format!(" On the same samples left out, {}.", rivals.join(", ")),
+    };
+    format!("{chosen}{hidden}{rivals}")
 }
 
 fn band(view: &View<'_>) -> String {

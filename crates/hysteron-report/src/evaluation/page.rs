@@ -111,8 +111,10 @@ fn certainty(confidence: &Confidence, view: &View<'_>) -> Markup {
         tr {
             th scope="row" { "Noise" }
             td {
-                (view.output.value(confidence.noise))
-                " (standard deviation of what the fit leaves)"
+                (view.output.value(confidence.sensor)) " of the readings"
+                @if let Some(misfit) = view.source.fit().and_then(hysteron::FitSummary::misfit) {
+                    ", misfit of the model " (view.output.value(misfit))
+                }
             }
         }
         @if let Some(band) = view.band() {

@@ -41,6 +41,7 @@ fn table(view: &View<'_>) -> Markup {
                     th scope="row" {
                         (model.name)
                         @if model.forward.was_fitted { " (fitted to this recording)" }
+                        @else if model.forward.seen_for_band { " (band widened to this recording)" }
                     }
                     td { (significant(errors.rmse, 3)) }
                     td { (significant(errors.max_abs, 3)) }

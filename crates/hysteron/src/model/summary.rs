@@ -122,6 +122,14 @@ pub struct FitSummary {
 }
 
 impl FitSummary {
+    /// What the white noise of the readings does not explain of `rmse`, in the output's unit: the
+    /// model errs by it. `None` for a fit without confidence.
+    #[must_use]
+    pub fn misfit(&self) -> Option<f64> {
+        let noise = self.confidence.as_ref()?.sensor;
+        Some((self.rmse.powi(2) - noise.powi(2)).max(0.0).sqrt())
+    }
+
     /// Whether the recording comes from a file that was fitted, by the digest of that file. A model
     /// file of an earlier version knows only the first one of several.
     #[must_use]

@@ -10,18 +10,18 @@ use crate::draw::style::LINES;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 use crate::number::{magnitude, power_of_ten, significant};
+use crate::panels::WIDTH;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
-use hysteron::Criterion;
+use hysteron::{Criterion, Validation};
 
-const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 340.0;
 
 /// Errors beyond this many times the best are cut off: they would press the others together.
-const SHOWN: f64 = 6.0;
+pub(crate) const SHOWN: f64 = 6.0;
 
 pub(super) fn svg(view: &View<'_>) -> Option<String> {
-    let (levels, smooth, errors) = view.validation()?.table();
+    let (levels, smooth, errors) = shown(view.validation()?);
     let of_levels = |k: usize| format!("{k} levels");
     let lines: Vec<(String, Vec<Option<f64>>)> = match smooth.len() {
         // With one strength only, the levels take its place below.
@@ -36,13 +36,11 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         ),
     };
     let all = || lines.iter().flat_map(|(_, errors)| errors).flatten();
-    let best = all().copied().fold(f64::INFINITY, f64::min);
-    let shown = all().filter(|error| **error <= SHOWN * best);
     let error = view.output.renamed(match view.validation()?.criterion {
         Criterion::LeftOut => "RMSE left out",
         Criterion::Evidence => "RMSE",
     });
-    let y = Axis::new(&error, Span::of(shown).with(0.0).padded(0.05).from(0.0));
+    let y = Axis::new(&error, Span::of(all()).with(0.0).padded(0.05).from(0.0));
     let name = Labelled {
         name: name.into(),
         unit: None,
@@ -91,6 +89,41 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     }
     let height = area.bottom() + BELOW + 4.0;
     Some(view.finish(Figure::CrossValidation, sheet, height))
+}
+
+/// The table of a choice without what would press the rest together: levels and strengths of which
+/// nothing is left are not drawn.
+fn shown(validation: &Validation) -> (Vec<usize>, Vec<f64>, Vec<Vec<Option<f64>>>) {
+    let (mut levels, mut smooth, mut errors) = validation.table();
+    let all = errors.iter().flatten().flatten();
+    let most = SHOWN * all.copied().fold(f64::INFINITY, f64::min);
+    for error in errors.iter_mut().flatten() {
+        *error = error.filter(|error| *error <= most);
+    }
+    let rows: Vec<bool> = errors
+        .iter()
+        .map(|row| row.iter().any(Option::is_some))
+        .collect();
+    let column = |n: usize| errors.iter().any(|row| row[n].is_some());
+    let columns: Vec<bool> = (0..smooth.len()).map(column).collect();
+    retain(&mut levels, &rows);
+    retain(&mut smooth, &columns);
+    retain(&mut errors, &rows);
+    errors.iter_mut().for_each(|row| retain(row, &columns));
+    (levels, smooth, errors)
+}
+
+fn retain<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    values.retain(|_| kept.next().is_some_and(|kept| *kept));
+}
+
+/// The numbers of levels that were tried and are not drawn.
+pub(crate) fn choices_hidden(validation: &Validation) -> Vec<String> {
+    let drawn = shown(validation).0;
+    let (tried, ..) = validation.table();
+    let hidden = tried.into_iter().filter(|levels| !drawn.contains(levels));
+    hidden.map(|levels| levels.to_string()).collect()
 }
 
 /// `10⁻⁸` where it is one.

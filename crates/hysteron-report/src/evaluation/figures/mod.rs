@@ -15,6 +15,7 @@ mod weights_plane;
 pub use excitation_map::excitation_map;
 
 pub(crate) use close_up::find as dead_band_shown;
+pub(crate) use cross_validation::{SHOWN, choices_hidden};
 pub(crate) use excitation_map::counts as classes_counted;
 
 use crate::evaluation::figure::Figure;
