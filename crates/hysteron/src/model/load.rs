@@ -387,20 +387,10 @@ pub(crate) fn no_load() -> Error {
     Error::Fit("this model does not depend on a load: leave the load out".into())
 }
 
-/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one.
-/// So non-negative coefficients give non-negative weights at every load in the range (Farouki
-/// 2012).
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`.
 pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
-    // De Casteljau's algorithm.
-    let mut values = vec![1.0];
-    for _ in 0..degree {
-        let mut next = vec![0.0; values.len() + 1];
-        for (k, value) in values.iter().enumerate() {
-            next[k] += (1.0 - s) * value;
-            next[k + 1] += s * value;
-        }
-        values = next;
-    }
+    let mut values = vec![0.0; degree + 1];
+    hysteron_core::bernstein(s, &mut values);
     values
 }
 
