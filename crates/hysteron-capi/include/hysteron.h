@@ -201,6 +201,11 @@
 #define HYSTERON_INTERNAL 106
 
 /**
+ * The largest number of parts of weights that depend on the load.
+ */
+#define HYSTERON_PARTS 8
+
+/**
  * The largest number of creep terms.
  */
 #define HYSTERON_CREEP_TERMS 4
@@ -513,6 +518,32 @@ typedef struct HysteronStages {
    * Time constant of a lag of the whole in seconds; 0 for none.
    */
   double lag;
+  /**
+   * Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
+   * that do not. `offset` and the weights of the model have no effect then.
+   */
+  size_t part_count;
+  /**
+   * Number of weights of one part: `K (K + 1) / 2`.
+   */
+  size_t part_weight_count;
+  /**
+   * The output of each part where its sum is zero.
+   */
+  const double *part_offsets;
+  /**
+   * The weights of the parts, one part after the other. Their factors are the Bernstein
+   * polynomials of the load.
+   */
+  const double *part_weights;
+  /**
+   * The load of the first part, where `part_count` is not 0. A smaller load acts as this one.
+   */
+  double load_min;
+  /**
+   * The load of the last part, above `load_min`. A larger load acts as this one.
+   */
+  double load_max;
 } HysteronStages;
 
 /**
@@ -739,6 +770,9 @@ size_t hysteron_core_stages_size(const struct HysteronStages *stages);
  * Makes stages around the operators of `model` in `memory`. The constants are copied, with their
  * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
  * model of as many levels.
+ *
+ * Where the weights depend on the load, the operators are those of `model`, and its weights have
+ * no effect.
  */
 int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
                                   const struct HysteronStages *constants,
@@ -751,9 +785,13 @@ int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
  * are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
  * what the stages remember, zeros before the first sample. `clipped` may be null. After an error
  * nothing has moved.
+ *
+ * Where the weights depend on the load, the call first gives `model` those of this load, in
+ * `O(K²)` if the load has changed. Stages and model are then changed, so only one thread at a time
+ * may use them. Otherwise they are only read. Several states may take turns.
  */
-int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
-                                  const struct HysteronCoreModel *model,
+int32_t hysteron_core_stages_step(struct HysteronCoreStages *stages,
+                                  struct HysteronCoreModel *model,
                                   struct HysteronCoreState *state,
                                   struct HysteronStageState *memory,
                                   double input,
@@ -766,8 +804,8 @@ int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
  * Finds the input for the output `target` and moves there. Arguments are as for
  * `hysteron_inverse_step_in`; `limits` may be null for none. After an error nothing has moved.
  */
-int32_t hysteron_core_stages_inverse_step(const struct HysteronCoreStages *stages,
-                                          const struct HysteronCoreModel *model,
+int32_t hysteron_core_stages_inverse_step(struct HysteronCoreStages *stages,
+                                          struct HysteronCoreModel *model,
                                           struct HysteronCoreState *state,
                                           struct HysteronStageState *memory,
                                           double target,
@@ -1026,9 +1064,6 @@ int32_t hysteron_state_temperature(uint64_t state, double *temperature);
 /**
  * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
  * those of the model: they end when it and its states are freed.
- *
- * A model whose weights depend on a load has other constants at each load: take it at one load
- * (`hysteron_model_at_load`).
  */
 int32_t hysteron_model_stages(uint64_t model, struct HysteronStages *stages);
 

@@ -36,6 +36,8 @@ mod limits;
 mod memory;
 #[cfg(feature = "handles")]
 mod model;
+#[cfg(feature = "handles")]
+mod parts;
 mod pointer;
 #[cfg(feature = "handles")]
 mod room;
@@ -64,6 +66,8 @@ pub use limits::*;
 pub use memory::*;
 #[cfg(feature = "handles")]
 pub use model::*;
+#[cfg(feature = "handles")]
+pub use parts::*;
 #[cfg(feature = "handles")]
 pub use stage_state::*;
 #[cfg(feature = "handles")]

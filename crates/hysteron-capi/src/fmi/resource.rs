@@ -354,8 +354,9 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 3", "`hysteron-fmu 3` where"),
+            (1, "hysteron-fmu 4", "`hysteron-fmu 4` where"),
             (1, "hysteron-fmu 2", "`first` is expected"),
+            (1, "hysteron-fmu 3", "`first` is expected"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),
@@ -389,6 +390,38 @@ mod tests {
         let mut lines = LINES;
         (lines[4], lines[6]) = ("plane 20.0 80.0 46340", "weights 1073720970");
         assert!(parse(closed(&lines).as_bytes()).unwrap_err().line >= 11);
+    }
+
+    #[test]
+    fn parts_of_the_weights() {
+        let more = "first 20.0 60.0\nstart\nbody\ndrive\nloads\nshifts\nscales\ngains\noffsets\n\
+                    spacing\ncreep\ntaus\nlag 0.0\nrange 50.0 200.0\nparts 1.0 2.5";
+        let with = |replaced: (&str, &str)| {
+            let mut lines: Vec<&str> = LINES[..6].to_vec();
+            lines[0] = "hysteron-fmu 3";
+            lines.extend(more.split('\n'));
+            lines.extend(["weights 6", "0.1", "0.0", "1e-3", "0.5", "0.25", "2.0"]);
+            let at = lines.iter().position(|line| *line == replaced.0).unwrap();
+            lines[at] = replaced.1;
+            parse(closed(&lines).as_bytes())
+        };
+        let block = with(("0.5", "0.5")).unwrap();
+        assert!(block.is_loaded() && block.by_load.unwrap().count() == 2);
+        let many = "parts 1 2 3 4 5 6 7 8 9";
+        for (line, replaced, expected) in [
+            ("range 50.0 200.0", "range 200.0 200.0", "in order"),
+            ("range 50.0 200.0", "range 50.0 NaN", "not a finite"),
+            ("range 50.0 200.0", "range 50.0", "in order"),
+            ("range 50.0 200.0", "range -1.7e308 1.7e308", "`load`"),
+            ("parts 1.0 2.5", "parts", "1 to 8 numbers"),
+            ("parts 1.0 2.5", many, "1 to 8 numbers"),
+            ("parts 1.0 2.5", "parts 1.0", "are needed"),
+            ("weights 6", "weights 3", "are needed"),
+            ("0.25", "-0.25", "negative"),
+        ] {
+            let fault = with((line, replaced)).unwrap_err();
+            assert!(fault.problem.contains(expected), "{replaced}: {fault:?}");
+        }
     }
 
     #[cfg(unix)]

@@ -20,14 +20,7 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
     };
     // Those of the parts, one after the other, where they depend on the load.
     let parts = staged::parts(model);
-    let weights = match parts {
-        None => model.weights().to_vec(),
-        Some(load) => load
-            .parts()
-            .iter()
-            .flat_map(|part| part.weights.clone())
-            .collect(),
-    };
+    let weights = parts.map_or(model.weights(), |load| load.joined().1);
     let offset = model.offset();
     let (version, more) = match staged::is_plain(model) {
         true => (1, String::new()),

@@ -98,8 +98,10 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
     ];
     let parts = parts(model).map_or_else(Vec::new, |load| {
         let (low, high) = load.range();
-        let offsets = load.parts().iter().map(|part| part.offset).collect();
-        vec![("range", vec![low, high]), ("parts", offsets)]
+        vec![
+            ("range", vec![low, high]),
+            ("parts", load.joined().0.to_vec()),
+        ]
     });
     let parts = parts
         .iter()
