@@ -337,6 +337,11 @@ typedef struct HysteronCoreEstimator HysteronCoreEstimator;
 typedef struct HysteronCoreModel HysteronCoreModel;
 
 /**
+ * An estimator of the shift, in the caller's memory.
+ */
+typedef struct HysteronCoreShift HysteronCoreShift;
+
+/**
  * The stages around the operators, in the caller's memory.
  */
 typedef struct HysteronCoreStages HysteronCoreStages;
@@ -430,6 +435,67 @@ typedef struct HysteronLearning {
    */
   int32_t clipped;
 } HysteronLearning;
+
+/**
+ * Options of the estimator of the shift: of a load that nobody measures.
+ * `hysteron_shift_usual` and `hysteron_core_shift_usual` write those that follow from a model.
+ */
+typedef struct HysteronShiftOptions {
+  /**
+   * Standard deviation of a reading's error, model error included, in the output's unit; above
+   * 0.
+   */
+  double noise;
+  /**
+   * Standard deviation of the shift at the start and after a jump, in the unit of the
+   * temperature; above 0.
+   */
+  double spread;
+  /**
+   * Standard deviation of the change of the shift while the temperature moves by one level, in
+   * the unit of the temperature, from 0.
+   */
+  double walk;
+  /**
+   * The largest shift to either side, in the unit of the temperature; above 0.
+   */
+  double reach;
+  /**
+   * Errors up to this are noise, in the output's unit, from 0.
+   */
+  double dead_zone;
+  /**
+   * Levels between two samples that are learned from, from 0.
+   */
+  double movement;
+  /**
+   * Readings with a surprise above so many times the usual one are refused, from 2. 0: none is.
+   */
+  double gate;
+  /**
+   * So many refused readings in a row that agree are a jump of the load, from 1.
+   */
+  uint32_t burst;
+} HysteronShiftOptions;
+
+/**
+ * What the estimator of the shift found.
+ */
+typedef struct HysteronShift {
+  /**
+   * The shift of the axis from the load that it departs from, in the unit of the temperature.
+   */
+  double shift;
+  /**
+   * Standard deviation of the shift, as the filter believes it.
+   */
+  double deviation;
+  /**
+   * The load that the shift tells. `NAN` for a model whose shift says nothing of the load.
+   * Beyond the model's loads it is the outermost one.
+   */
+  double load;
+} HysteronShift;
 
 /**
  * The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
@@ -761,6 +827,76 @@ int32_t hysteron_adaptive_keep(uint64_t adaptive);
 int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 
 /**
+ * Makes a model that follows a load that nobody measures. It follows the shift of the axis alone;
+ * the weights stay, or are those of the load that the shift tells.
+ *
+ * `load` is the load to start at, `NAN` for the middle of the model's range. `options` may be null
+ * for the usual ones (`hysteron_shift_usual`). All operators are off.
+ */
+int32_t hysteron_adaptive_load_new(uint64_t model,
+                                   double load,
+                                   const struct HysteronShiftOptions *options,
+                                   uint64_t *adaptive_load);
+
+/**
+ * Frees the handle.
+ */
+int32_t hysteron_adaptive_load_free(uint64_t adaptive_load);
+
+/**
+ * Moves to `input`, predicts the output there, and learns from the output `measured`. `dt` is as
+ * for `hysteron_step_in`. After an error nothing has changed.
+ */
+int32_t hysteron_adaptive_load_step(uint64_t adaptive_load,
+                                    double input,
+                                    double dt,
+                                    double measured,
+                                    struct HysteronLearning *learning);
+
+/**
+ * Moves to `input` and writes the output predicted there, without learning.
+ */
+int32_t hysteron_adaptive_load_simulate(uint64_t adaptive_load, double input, double dt, double *output);
+
+/**
+ * As `hysteron_inverse_step_in`, at the present shift. The inverse has a state of its own, separate
+ * from the state that follows the plant.
+ */
+int32_t hysteron_adaptive_load_inverse_step(uint64_t adaptive_load,
+                                            double target,
+                                            int32_t heading,
+                                            double tolerance,
+                                            double dt,
+                                            double *input,
+                                            int32_t *status);
+
+/**
+ * Writes the shift, and the load that it tells.
+ */
+int32_t hysteron_adaptive_load_shift(uint64_t adaptive_load, struct HysteronShift *shift);
+
+/**
+ * Makes a model with the present shift, which depends on no load. Free it with
+ * `hysteron_model_free`.
+ */
+int32_t hysteron_adaptive_load_model(uint64_t adaptive_load, uint64_t *model);
+
+/**
+ * Switches all operators off, those of the inverse too. The shift stays.
+ */
+int32_t hysteron_adaptive_load_reset(uint64_t adaptive_load);
+
+/**
+ * Sets the state of the inverse to that of the measured input.
+ */
+int32_t hysteron_adaptive_load_align(uint64_t adaptive_load);
+
+/**
+ * Stops learning (`frozen` not 0), or resumes it (0).
+ */
+int32_t hysteron_adaptive_load_freeze(uint64_t adaptive_load, int32_t frozen);
+
+/**
  * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
  * be aligned like a `uint64_t`.
  */
@@ -1042,6 +1178,87 @@ int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity,
  * becomes the size of the whole text in bytes, with the zero byte. `text` may be null with size 0.
  */
 int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
+
+/**
+ * Writes the usual options for `model` between `stages`.
+ */
+int32_t hysteron_core_shift_usual(const struct HysteronCoreModel *model,
+                                  const struct HysteronCoreStages *stages,
+                                  struct HysteronShiftOptions *options);
+
+/**
+ * Size in bytes of an estimator of the shift. The memory has to be aligned like a `uint64_t`.
+ */
+size_t hysteron_core_shift_size(void);
+
+/**
+ * Makes an estimator of the shift for `model` between `stages`, in `memory`. `options` may be null
+ * for the usual ones. A model without stages takes stages of zeros with the sign 1.
+ */
+int32_t hysteron_core_shift_init(const struct HysteronCoreModel *model,
+                                 const struct HysteronCoreStages *stages,
+                                 const struct HysteronShiftOptions *options,
+                                 void *memory,
+                                 size_t bytes,
+                                 struct HysteronCoreShift **shift);
+
+/**
+ * Moves by one sample, predicts the output, and learns from the output `measured`. Arguments are
+ * as for `hysteron_core_stages_step`, but `load` is the load that the shift departs from: always
+ * the same, `NAN` for a model without a load. After an error nothing has changed.
+ */
+int32_t hysteron_core_shift_step(struct HysteronCoreShift *shift,
+                                 struct HysteronCoreStages *stages,
+                                 struct HysteronCoreModel *model,
+                                 struct HysteronCoreState *state,
+                                 struct HysteronStageState *memory,
+                                 double input,
+                                 double dt,
+                                 double load,
+                                 double measured,
+                                 struct HysteronLearning *learning);
+
+/**
+ * As `hysteron_core_stages_inverse_step`, at the present shift from the load `load`. `state` and
+ * `memory` are those of the inverse: the plant is elsewhere.
+ */
+int32_t hysteron_core_shift_inverse_step(const struct HysteronCoreShift *shift,
+                                         struct HysteronCoreStages *stages,
+                                         struct HysteronCoreModel *model,
+                                         struct HysteronCoreState *state,
+                                         struct HysteronStageState *memory,
+                                         double target,
+                                         int32_t heading,
+                                         double tolerance,
+                                         double dt,
+                                         double load,
+                                         const struct HysteronLimits *limits,
+                                         double *input,
+                                         int32_t *status);
+
+/**
+ * Writes the shift, and the load that it tells, for a model that was told the load `load`.
+ */
+int32_t hysteron_core_shift_read(const struct HysteronCoreShift *shift,
+                                 const struct HysteronCoreStages *stages,
+                                 double load,
+                                 struct HysteronShift *found);
+
+/**
+ * Takes `value` for the shift, as uncertain as at the start. Beyond the reach it is the nearest one
+ * within.
+ */
+int32_t hysteron_core_shift_reset(struct HysteronCoreShift *shift, double value);
+
+/**
+ * Stops learning (`frozen` not 0), or resumes it (0).
+ */
+int32_t hysteron_core_shift_freeze(struct HysteronCoreShift *shift, int32_t frozen);
+
+/**
+ * Writes the usual options for `model`.
+ */
+int32_t hysteron_shift_usual(uint64_t model, struct HysteronShiftOptions *options);
 
 /**
  * Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole

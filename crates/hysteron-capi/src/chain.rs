@@ -23,7 +23,7 @@ impl Kind for HysteronCoreStages {
 
 /// Stages that were checked for a plane of so many levels.
 pub(crate) struct Chain {
-    stages: Stages<'static, f64>,
+    pub(crate) stages: Stages<'static, f64>,
     levels: usize,
     by_load: Option<ByLoad>,
 }
@@ -32,7 +32,7 @@ pub(crate) struct Chain {
 /// offset at that load.
 ///
 /// A model whose weights do not depend on the load is only read, so others may read it too.
-fn placed(
+pub(crate) fn placed(
     chain: &mut Object<HysteronCoreStages>,
     model: &mut Object<HysteronCoreModel>,
     state: &mut <HysteronCoreState as Kind>::Content,
@@ -49,7 +49,26 @@ fn placed(
     Ok(Stages { offset, ..stages })
 }
 
-fn check_levels(chain: &Chain, model: &<HysteronCoreModel as Kind>::Content) -> Result<()> {
+/// The range of the loads, where the weights depend on the load.
+pub(crate) fn weights_range(chain: &Chain) -> Option<(f64, f64)> {
+    chain.by_load.as_ref().map(ByLoad::range)
+}
+
+/// Refuses the inverse of operators of another plane, and of weights below zero.
+pub(crate) fn invertible(
+    chain: &Object<HysteronCoreStages>,
+    model: &Object<HysteronCoreModel>,
+) -> Result<()> {
+    check_levels(chain.get(), model.get())?;
+    model.get().inverse()?;
+    let by_load = chain.get().by_load.as_ref();
+    by_load.map_or(Ok(()), ByLoad::check_inverse)
+}
+
+pub(crate) fn check_levels(
+    chain: &Chain,
+    model: &<HysteronCoreModel as Kind>::Content,
+) -> Result<()> {
     match model.plane().levels() == chain.levels {
         true => Ok(()),
         false => Err(Error::StateMismatch.into()),
@@ -212,11 +231,7 @@ pub unsafe extern "C" fn hysteron_core_stages_inverse_step(
             horizon: limits.horizon,
             temperature: limits.temperature(),
         };
-        check_levels(chain.get(), model.get())?;
-        model.get().inverse()?;
-        if let Some(by_load) = &chain.get().by_load {
-            by_load.check_inverse()?;
-        }
+        invertible(&chain, &model)?;
         let sample = Sample {
             input: target,
             dt: wanted.dt,

@@ -20,6 +20,8 @@
 #[cfg(feature = "handles")]
 mod adaptive;
 #[cfg(feature = "handles")]
+mod adaptive_load;
+#[cfg(feature = "handles")]
 mod chain;
 mod codes;
 #[cfg(feature = "handles")]
@@ -42,6 +44,10 @@ mod pointer;
 #[cfg(feature = "handles")]
 mod room;
 #[cfg(feature = "handles")]
+mod shift;
+#[cfg(feature = "handles")]
+mod shift_options;
+#[cfg(feature = "handles")]
 mod stage_state;
 #[cfg(feature = "handles")]
 mod stages;
@@ -54,6 +60,8 @@ mod types;
 
 #[cfg(feature = "handles")]
 pub use adaptive::*;
+#[cfg(feature = "handles")]
+pub use adaptive_load::*;
 #[cfg(feature = "handles")]
 pub use chain::*;
 pub use codes::*;
@@ -68,6 +76,10 @@ pub use memory::*;
 pub use model::*;
 #[cfg(feature = "handles")]
 pub use parts::*;
+#[cfg(feature = "handles")]
+pub use shift::*;
+#[cfg(feature = "handles")]
+pub use shift_options::*;
 #[cfg(feature = "handles")]
 pub use stage_state::*;
 #[cfg(feature = "handles")]

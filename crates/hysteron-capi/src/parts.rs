@@ -82,6 +82,11 @@ impl ByLoad {
         Ok(self.parts.place(model, state, &mut self.placed, load)?)
     }
 
+    /// Smallest and largest load.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        self.parts.range
+    }
+
     /// Refuses the inverse where a part has weights below zero.
     pub(crate) fn check_inverse(&self) -> Result<()> {
         match self.negative {
