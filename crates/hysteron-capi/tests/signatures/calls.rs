@@ -1,10 +1,12 @@
 //! The table: one row for a function.
 
 use super::Argument::{
-    Characters, Constants, Doubles, Estimator, Integers, Json, Learning, Limits, Memory, Model,
-    Options, Path, StageState, Stages, State, Word,
+    Characters, Constants, Doubles, Estimator, Found, Integers, Json, Learning, Limits, Memory,
+    Model, Options, Path, Shift, ShiftOptions, StageState, Stages, State, Word,
 };
-use super::{Call, LEVELS, WEIGHTS, estimator_size, model_size, stages_size, state_size};
+use super::{
+    Call, LEVELS, WEIGHTS, estimator_size, model_size, shift_size, stages_size, state_size,
+};
 use hysteron_capi::*;
 
 /// One number, of whatever value.
