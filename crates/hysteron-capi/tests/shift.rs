@@ -272,7 +272,7 @@ fn what_is_wrong_is_refused_and_nothing_changes() {
         let mut step =
             |input, dt, y| hysteron_adaptive_load_step(follower, input, dt, y, &mut learning);
         ok(step(0.5, NONE, 1.0));
-        assert_eq!(step(0.5, -1.0, 1.0), HYSTERON_TIME_STEP);
+        assert_eq!(step(0.5, -1.0, 1.0), HYSTERON_THERMAL);
         assert_eq!(step(NONE, 0.1, 1.0), HYSTERON_INPUT_NOT_FINITE);
         assert_eq!(step(0.5, 0.1, NONE), HYSTERON_INPUT_NOT_FINITE);
         assert_eq!(shift_of(follower).shift, before.shift);

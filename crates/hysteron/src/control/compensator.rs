@@ -166,21 +166,25 @@ impl Compensator {
             None if !turned => NOT_TURNED * tolerance,
             _ => tolerance,
         };
-        let after: Vec<Wanted> = match &self.kind {
-            Kind::Fixed { model, .. } if model.thermal.is_some() => {
-                let policy = match heading {
-                    Some(_) => Policy::Anticipate,
-                    None => Policy::Hold,
-                };
-                let headings = policy.headings(next, told).into_iter();
-                let ahead = headings.zip(next).map(|(heading, &target)| Wanted {
-                    dt,
-                    ..Target::new(target).heading(heading).tolerance(told).into()
-                });
-                ahead.collect()
-            }
-            _ => Vec::new(),
-        };
+        let after: Vec<Wanted> =
+            match &self.kind {
+                Kind::Fixed { model, .. } if model.thermal.is_some() => {
+                    let policy = match heading {
+                        Some(_) => Policy::Anticipate,
+                        None => Policy::Hold,
+                    };
+                    // *Hold* has no headings.
+                    let headings = policy.headings(next, told).into_iter();
+                    let ahead = headings.chain(std::iter::repeat(None)).zip(next).map(
+                        |(heading, &target)| Wanted {
+                            dt,
+                            ..Target::new(target).heading(heading).tolerance(told).into()
+                        },
+                    );
+                    ahead.collect()
+                }
+                _ => Vec::new(),
+            };
         let target = Target::new(target).heading(heading).tolerance(tolerance);
         match &self.kind {
             Kind::Fixed { model, .. } => {
