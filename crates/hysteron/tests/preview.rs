@@ -103,8 +103,8 @@ fn whoever_sees_ahead_errs_less_and_stays_within_the_drives() {
         assert!(without.1.iter().chain(&with.1).all(inside), "{seed}");
         (blind, seeing) = (blind + without.0, seeing + with.0);
     }
-    // Half a jump of waiting at each end: the error falls clearly, not by a hair.
-    assert!(seeing < 0.8 * blind, "{seeing} against {blind}");
+    // No more than a tenth of the range is given up before a jump, so not all of the lag is won.
+    assert!(seeing < 0.9 * blind, "{seeing} against {blind}");
 }
 
 #[test]
