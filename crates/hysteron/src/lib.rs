@@ -72,8 +72,8 @@ pub use inspect::{
 pub use model::{
     Band, BandEvaluation, Confidence, CreepTerm, Criterion, Excitation, FirstOrder, FitSummary,
     FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState,
-    Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth, Solver, Start, State,
-    Surroundings, Validation, Wanted,
+    Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth, Solver, Start,
+    State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,

@@ -14,8 +14,10 @@ use std::ops::Range;
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
 
-/// Loads closer than this share of the model's range are one load.
-const SAME: f64 = 0.01;
+/// A load that is known within this share of the model's range is that load: measured loads waver.
+const SAME: f64 = 0.1;
+/// At least this share of the samples is at a load that is known.
+const KNOWN: f64 = 0.75;
 /// A load rests if it stays for so many samples.
 const RESTS: usize = 10;
 /// With more loads than this, the loops could not be told apart.
@@ -36,32 +38,56 @@ pub(crate) struct Resting {
     stretches: Vec<Range<usize>>,
 }
 
-/// The loads at which the recording rests, ascending; none where they are too many.
+/// The loads of the fit at which the recording rests, ascending. None where the load moves, or has
+/// too many values.
 pub(crate) fn resting(view: &View<'_>) -> Option<Vec<Resting>> {
-    let (low, high) = view.source.load()?.range();
+    let dependence = view.source.load()?;
+    let (low, high) = dependence.range();
     let loads = view.recording.load.as_ref()?;
-    let near = |a: f64, b: f64| (a - b).abs() <= SAME * (high - low);
-    let mut found: Vec<Resting> = Vec::new();
-    let mut start = 0;
-    for n in 1..=loads.len() {
-        if loads.get(n).is_some_and(|load| near(*load, loads[start])) {
-            continue;
-        }
-        let (load, stretch) = (loads[start], start..n);
-        start = n;
-        if stretch.len() < RESTS {
-            continue;
-        }
-        match found.iter_mut().find(|resting| near(resting.load, load)) {
-            Some(resting) => resting.stretches.push(stretch),
-            None => found.push(Resting {
-                load,
-                stretches: vec![stretch],
-            }),
-        }
+    let known = match &dependence.curves {
+        Some(curves) => curves.loads.clone(),
+        None => apart(loads, SAME * (high - low)),
+    };
+    if !(1..=MOST).contains(&known.len()) {
+        return None;
     }
-    found.sort_by(|a, b| a.load.total_cmp(&b.load));
-    (1..=MOST).contains(&found.len()).then_some(found)
+    let away = |at: usize, load: f64| (known[at] - load).abs();
+    let nearest = |load: &f64| {
+        let by = |a: &usize, b: &usize| away(*a, *load).total_cmp(&away(*b, *load));
+        (0..known.len()).min_by(by).unwrap_or(0)
+    };
+    let at: Vec<usize> = loads.iter().map(nearest).collect();
+    let near = at.iter().zip(loads);
+    let near = near.filter(|(at, load)| away(**at, **load) <= SAME * (high - low));
+    if (near.count() as f64) < KNOWN * loads.len() as f64 {
+        return None;
+    }
+    let mut found: Vec<Resting> = (known.iter())
+        .map(|&load| Resting {
+            load,
+            stretches: Vec::new(),
+        })
+        .collect();
+    let mut start = 0;
+    for n in 1..=at.len() {
+        if at.get(n) == Some(&at[start]) {
+            continue;
+        }
+        if n - start >= RESTS {
+            found[at[start]].stretches.push(start..n);
+        }
+        start = n;
+    }
+    found.retain(|resting| !resting.stretches.is_empty());
+    (!found.is_empty()).then_some(found)
+}
+
+/// The middles of groups of loads that lie further apart than `gap`.
+fn apart(loads: &[f64], gap: f64) -> Vec<f64> {
+    let mut sorted = loads.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let groups = sorted.chunk_by(|a, b| b - a <= gap);
+    groups.map(|group| group[group.len() / 2]).collect()
 }
 
 pub(super) fn svg(view: &View<'_>) -> Option<String> {
