@@ -137,8 +137,9 @@ def stages(folder):
         {"offset": offset, "weights": [factor * mu for mu in weights[::way]]}
         for offset, factor, way in [(3.5, 1.0, 1), (3.0, 1.25, -1), (4.25, 1.5, 1)]
     ]
-    for parts in (constant, by_load):
-        every_stage(folder, parts)
+    for name, parts in (("constant", constant), ("by_load", by_load)):
+        (folder / name).mkdir()
+        every_stage(folder / name, parts)
 
 
 def every_stage(folder, parts):

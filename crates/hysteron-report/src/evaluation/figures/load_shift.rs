@@ -30,7 +30,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let mut sheet = view.sheet(Figure::LoadShift, WIDTH);
     sheet.legend(&[
         Key::Line(CURVE, "shift of the model".into()),
-        Key::Marker(Marker::Disc, format!("{} of the fit", quantity.name), ""),
+        Key::Marker(Marker::Disc, "points of its curve".into(), ""),
     ]);
     let left = MARGIN + left_of(&y, PLOT_HEIGHT);
     let area = Rect {
