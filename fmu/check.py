@@ -130,8 +130,20 @@ def series(fmus, folder):
 
 
 def stages(folder):
-    """A model with a body, a load, spacing, creep and lag: the command's numbers, bit for bit."""
+    """Models with a body, a load, spacing, creep and lag: the command's numbers, bit for bit."""
     weights = [1.0, 0.5, 1.0, 0.0, 0.5, 1.0]
+    constant = [{"offset": 3.5, "weights": weights}]
+    by_load = [
+        {"offset": offset, "weights": [factor * mu for mu in weights[::way]]}
+        for offset, factor, way in [(3.5, 1.0, 1), (3.0, 1.25, -1), (4.25, 1.5, 1)]
+    ]
+    for name, parts in (("constant", constant), ("by_load", by_load)):
+        (folder / name).mkdir()
+        every_stage(folder / name, parts)
+
+
+def every_stage(folder, parts):
+    weights = parts[0]["weights"]
     curves = {"loads": [0, 200], "shifts": [0, 8], "gains": [1, 1.2], "offsets": [0, 0.3]}
     model = folder / "every.json"
     model.write_text(
@@ -157,7 +169,7 @@ def stages(folder):
                     "unit": "MPa",
                     "min": 0,
                     "max": 200,
-                    "parts": [{"offset": 3.5, "weights": weights}],
+                    "parts": parts,
                     "curves": curves,
                 },
                 "spacing": [30, 50, 58, 80],

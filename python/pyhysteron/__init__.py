@@ -22,6 +22,7 @@ from ._hysteron import (
     __version__ as __version__,
     Adapted,
     Adaptive,
+    AdaptiveLoad,
     Comparison,
     Design,
     Inverse,
@@ -74,6 +75,7 @@ _LAZY = ("blocks", "plot", "sklearn")
 __all__ = [
     "Adapted",
     "Adaptive",
+    "AdaptiveLoad",
     "Comparison",
     "Design",
     "Inverse",

@@ -39,6 +39,7 @@ __all__ = [
     "Action",
     "Adapted",
     "Adaptive",
+    "AdaptiveLoad",
     "Comparison",
     "Controller",
     "Design",
@@ -212,6 +213,47 @@ class Adaptive:
     def __deepcopy__(self, _memo: object) -> Adaptive: ...
 
 @final
+class AdaptiveLoad:
+    def __new__(
+        cls,
+        model: Model,
+        *,
+        load: float | None = None,
+        start: Literal["off", "on"] = "off",
+        noise: float | None = None,
+        spread: float | None = None,
+        dead_zone: float | None = None,
+        movement: float | None = None,
+        gate: float | None = None,
+        burst: int | None = None,
+    ) -> AdaptiveLoad: ...
+    @property
+    def shift(self) -> float: ...
+    @property
+    def deviation(self) -> float: ...
+    @property
+    def load(self) -> float | _MaybeNone: ...
+    @property
+    def offline(self) -> Model: ...
+    def align(self) -> None: ...
+    def copy(self) -> AdaptiveLoad: ...
+    def freeze(self, frozen: bool = True) -> None: ...
+    def model(self) -> Model: ...
+    def reset(self, *, on: bool = False) -> None: ...
+    def simulate(self, input: float, *, dt: float | None = None) -> float: ...
+    def solve(
+        self,
+        target: float,
+        *,
+        dt: float | None = None,
+        heading: _Heading = None,
+        tolerance: float = 0.0,
+    ) -> tuple[float, int]: ...
+    def step(self, input: float, measured: float, *, dt: float | None = None) -> Learning: ...
+    def __copy__(self) -> AdaptiveLoad: ...
+    def __deepcopy__(self, _memo: object) -> AdaptiveLoad: ...
+
+@final
 class Comparison:
     @property
     def title(self) -> str: ...
@@ -271,6 +313,7 @@ class Controller:
         input: float | None = None,
         *,
         heading: _Heading = None,
+        ahead: ArrayLike | None = None,
     ) -> Action: ...
     def step_command(self, command: float, output: float, input: float | None = None) -> Action: ...
 

@@ -276,3 +276,51 @@ def test_what_adapt_refuses(arguments, options, error, text):
     with pytest.raises(error) as raised:
         pyhysteron.adapt(model(), *arguments, **options)
     assert text in str(raised.value)
+
+
+class TestLoad:
+    """A load that nobody measures."""
+
+    def model(self, low=20.0):
+        return pyhysteron.Model(np.full(15, 1.0), (low, low + 60))
+
+    def follow(self, adaptive, shift, count=500):
+        plant = self.model(20.0 + shift).start()
+        for n in range(count):
+            temperature = 55 - 45 * np.cos(0.05 * n)
+            adaptive.step(temperature, plant.step(temperature))
+
+    @pytest.mark.parametrize("shift", [-9.0, 0.0, 8.0])
+    def test_the_shift_is_found(self, shift):
+        adaptive = pyhysteron.AdaptiveLoad(self.model())
+        self.follow(adaptive, shift)
+        assert adaptive.shift == pytest.approx(shift, abs=0.1)
+        assert adaptive.deviation < 2
+        assert adaptive.load is None and adaptive.offline == self.model()
+        low, high = adaptive.model().range
+        assert (low, high) == pytest.approx((20 + adaptive.shift, 80 + adaptive.shift))
+
+    def test_a_copy_goes_its_own_way(self):
+        adaptive = pyhysteron.AdaptiveLoad(self.model())
+        other = copy.deepcopy(adaptive)
+        self.follow(adaptive, 8.0)
+        assert other.shift == 0 and adaptive.copy().shift == adaptive.shift
+
+    def test_frozen_it_learns_nothing(self):
+        adaptive = pyhysteron.AdaptiveLoad(self.model())
+        adaptive.freeze()
+        self.follow(adaptive, 8.0, 100)
+        assert adaptive.shift == 0
+        adaptive.freeze(False)
+        self.follow(adaptive, 8.0)
+        assert adaptive.shift == pytest.approx(8, abs=0.1)
+
+    def test_what_it_does_not_use_is_refused(self):
+        with pytest.raises(pyhysteron.FitError):
+            pyhysteron.AdaptiveLoad(self.model(), gain=0.3)
+        with pytest.raises(pyhysteron.FitError):
+            pyhysteron.AdaptiveLoad(self.model(), load=100.0)
+        with pytest.raises(TypeError):
+            pyhysteron.AdaptiveLoad(self.model(), lode=100.0)
+        with pytest.raises(ValueError, match="unknown"):
+            pyhysteron.AdaptiveLoad(self.model(), start="unknown")

@@ -201,6 +201,11 @@
 #define HYSTERON_INTERNAL 106
 
 /**
+ * The largest number of parts of weights that depend on the load.
+ */
+#define HYSTERON_PARTS 8
+
+/**
  * The largest number of creep terms.
  */
 #define HYSTERON_CREEP_TERMS 4
@@ -332,6 +337,11 @@ typedef struct HysteronCoreEstimator HysteronCoreEstimator;
 typedef struct HysteronCoreModel HysteronCoreModel;
 
 /**
+ * An estimator of the shift, in the caller's memory.
+ */
+typedef struct HysteronCoreShift HysteronCoreShift;
+
+/**
  * The stages around the operators, in the caller's memory.
  */
 typedef struct HysteronCoreStages HysteronCoreStages;
@@ -427,6 +437,67 @@ typedef struct HysteronLearning {
 } HysteronLearning;
 
 /**
+ * Options of the estimator of the shift: of a load that nobody measures.
+ * `hysteron_shift_usual` and `hysteron_core_shift_usual` write those that follow from a model.
+ */
+typedef struct HysteronShiftOptions {
+  /**
+   * Standard deviation of a reading's error, model error included, in the output's unit; above
+   * 0.
+   */
+  double noise;
+  /**
+   * Standard deviation of the shift at the start and after a jump, in the unit of the
+   * temperature; above 0.
+   */
+  double spread;
+  /**
+   * Standard deviation of the change of the shift while the temperature moves by one level, in
+   * the unit of the temperature, from 0.
+   */
+  double walk;
+  /**
+   * The largest shift to either side, in the unit of the temperature; above 0.
+   */
+  double reach;
+  /**
+   * Errors up to this are noise, in the output's unit, from 0.
+   */
+  double dead_zone;
+  /**
+   * Levels between two samples that are learned from, from 0.
+   */
+  double movement;
+  /**
+   * Readings with a surprise above so many times the usual one are refused, from 2. 0: none is.
+   */
+  double gate;
+  /**
+   * So many refused readings in a row that agree are a jump of the load, from 1.
+   */
+  uint32_t burst;
+} HysteronShiftOptions;
+
+/**
+ * What the estimator of the shift found.
+ */
+typedef struct HysteronShift {
+  /**
+   * The shift of the axis from the load that it departs from, in the unit of the temperature.
+   */
+  double shift;
+  /**
+   * Standard deviation of the shift, as the filter believes it.
+   */
+  double deviation;
+  /**
+   * The load that the shift tells. `NAN` for a model whose shift says nothing of the load.
+   * Beyond the model's loads it is the outermost one.
+   */
+  double load;
+} HysteronShift;
+
+/**
  * The constants of the stages around the operators. All zeros, and `sign` 1, is a model without
  * stages.
  *
@@ -513,6 +584,32 @@ typedef struct HysteronStages {
    * Time constant of a lag of the whole in seconds; 0 for none.
    */
   double lag;
+  /**
+   * Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
+   * that do not. `offset` and the weights of the model have no effect then.
+   */
+  size_t part_count;
+  /**
+   * Number of weights of one part: `K (K + 1) / 2`.
+   */
+  size_t part_weight_count;
+  /**
+   * The output of each part where its sum is zero.
+   */
+  const double *part_offsets;
+  /**
+   * The weights of the parts, one part after the other. Their factors are the Bernstein
+   * polynomials of the load.
+   */
+  const double *part_weights;
+  /**
+   * The load of the first part, where `part_count` is not 0. A smaller load acts as this one.
+   */
+  double load_min;
+  /**
+   * The load of the last part, above `load_min`. A larger load acts as this one.
+   */
+  double load_max;
 } HysteronStages;
 
 /**
@@ -730,6 +827,76 @@ int32_t hysteron_adaptive_keep(uint64_t adaptive);
 int32_t hysteron_adaptive_roll_back(uint64_t adaptive);
 
 /**
+ * Makes a model that follows a load that nobody measures. It follows the shift of the axis alone;
+ * the weights stay, or are those of the load that the shift tells.
+ *
+ * `load` is the load to start at, `NAN` for the middle of the model's range. `options` may be null
+ * for the usual ones (`hysteron_shift_usual`). All operators are off.
+ */
+int32_t hysteron_adaptive_load_new(uint64_t model,
+                                   double load,
+                                   const struct HysteronShiftOptions *options,
+                                   uint64_t *adaptive_load);
+
+/**
+ * Frees the handle.
+ */
+int32_t hysteron_adaptive_load_free(uint64_t adaptive_load);
+
+/**
+ * Moves to `input`, predicts the output there, and learns from the output `measured`. `dt` is as
+ * for `hysteron_step_in`. After an error nothing has changed.
+ */
+int32_t hysteron_adaptive_load_step(uint64_t adaptive_load,
+                                    double input,
+                                    double dt,
+                                    double measured,
+                                    struct HysteronLearning *learning);
+
+/**
+ * Moves to `input` and writes the output predicted there, without learning.
+ */
+int32_t hysteron_adaptive_load_simulate(uint64_t adaptive_load, double input, double dt, double *output);
+
+/**
+ * As `hysteron_inverse_step_in`, at the present shift. The inverse has a state of its own, separate
+ * from the state that follows the plant.
+ */
+int32_t hysteron_adaptive_load_inverse_step(uint64_t adaptive_load,
+                                            double target,
+                                            int32_t heading,
+                                            double tolerance,
+                                            double dt,
+                                            double *input,
+                                            int32_t *status);
+
+/**
+ * Writes the shift, and the load that it tells.
+ */
+int32_t hysteron_adaptive_load_shift(uint64_t adaptive_load, struct HysteronShift *shift);
+
+/**
+ * Makes a model with the present shift, which depends on no load. Free it with
+ * `hysteron_model_free`.
+ */
+int32_t hysteron_adaptive_load_model(uint64_t adaptive_load, uint64_t *model);
+
+/**
+ * Switches all operators off, those of the inverse too. The shift stays.
+ */
+int32_t hysteron_adaptive_load_reset(uint64_t adaptive_load);
+
+/**
+ * Sets the state of the inverse to that of the measured input.
+ */
+int32_t hysteron_adaptive_load_align(uint64_t adaptive_load);
+
+/**
+ * Stops learning (`frozen` not 0), or resumes it (0).
+ */
+int32_t hysteron_adaptive_load_freeze(uint64_t adaptive_load, int32_t frozen);
+
+/**
  * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
  * be aligned like a `uint64_t`.
  */
@@ -739,6 +906,9 @@ size_t hysteron_core_stages_size(const struct HysteronStages *stages);
  * Makes stages around the operators of `model` in `memory`. The constants are copied, with their
  * arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
  * model of as many levels.
+ *
+ * Where the weights depend on the load, the operators are those of `model`, and its weights have
+ * no effect.
  */
 int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
                                   const struct HysteronStages *constants,
@@ -751,9 +921,13 @@ int32_t hysteron_core_stages_init(const struct HysteronCoreModel *model,
  * are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
  * what the stages remember, zeros before the first sample. `clipped` may be null. After an error
  * nothing has moved.
+ *
+ * Where the weights depend on the load, the call first gives `model` those of this load, in
+ * `O(K²)` if the load has changed. Stages and model are then changed, so only one thread at a time
+ * may use them. Otherwise they are only read. Several states may take turns.
  */
-int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
-                                  const struct HysteronCoreModel *model,
+int32_t hysteron_core_stages_step(struct HysteronCoreStages *stages,
+                                  struct HysteronCoreModel *model,
                                   struct HysteronCoreState *state,
                                   struct HysteronStageState *memory,
                                   double input,
@@ -766,8 +940,8 @@ int32_t hysteron_core_stages_step(const struct HysteronCoreStages *stages,
  * Finds the input for the output `target` and moves there. Arguments are as for
  * `hysteron_inverse_step_in`; `limits` may be null for none. After an error nothing has moved.
  */
-int32_t hysteron_core_stages_inverse_step(const struct HysteronCoreStages *stages,
-                                          const struct HysteronCoreModel *model,
+int32_t hysteron_core_stages_inverse_step(struct HysteronCoreStages *stages,
+                                          struct HysteronCoreModel *model,
                                           struct HysteronCoreState *state,
                                           struct HysteronStageState *memory,
                                           double target,
@@ -1006,6 +1180,87 @@ int32_t hysteron_model_weights(uint64_t model, double *weights, size_t capacity,
 int32_t hysteron_model_quantity(uint64_t model, int32_t quantity, char *text, size_t size, size_t *needed);
 
 /**
+ * Writes the usual options for `model` between `stages`.
+ */
+int32_t hysteron_core_shift_usual(const struct HysteronCoreModel *model,
+                                  const struct HysteronCoreStages *stages,
+                                  struct HysteronShiftOptions *options);
+
+/**
+ * Size in bytes of an estimator of the shift. The memory has to be aligned like a `uint64_t`.
+ */
+size_t hysteron_core_shift_size(void);
+
+/**
+ * Makes an estimator of the shift for `model` between `stages`, in `memory`. `options` may be null
+ * for the usual ones. A model without stages takes stages of zeros with the sign 1.
+ */
+int32_t hysteron_core_shift_init(const struct HysteronCoreModel *model,
+                                 const struct HysteronCoreStages *stages,
+                                 const struct HysteronShiftOptions *options,
+                                 void *memory,
+                                 size_t bytes,
+                                 struct HysteronCoreShift **shift);
+
+/**
+ * Moves by one sample, predicts the output, and learns from the output `measured`. Arguments are
+ * as for `hysteron_core_stages_step`, but `load` is the load that the shift departs from: always
+ * the same, `NAN` for a model without a load. After an error nothing has changed.
+ */
+int32_t hysteron_core_shift_step(struct HysteronCoreShift *shift,
+                                 struct HysteronCoreStages *stages,
+                                 struct HysteronCoreModel *model,
+                                 struct HysteronCoreState *state,
+                                 struct HysteronStageState *memory,
+                                 double input,
+                                 double dt,
+                                 double load,
+                                 double measured,
+                                 struct HysteronLearning *learning);
+
+/**
+ * As `hysteron_core_stages_inverse_step`, at the present shift from the load `load`. `state` and
+ * `memory` are those of the inverse: the plant is elsewhere.
+ */
+int32_t hysteron_core_shift_inverse_step(const struct HysteronCoreShift *shift,
+                                         struct HysteronCoreStages *stages,
+                                         struct HysteronCoreModel *model,
+                                         struct HysteronCoreState *state,
+                                         struct HysteronStageState *memory,
+                                         double target,
+                                         int32_t heading,
+                                         double tolerance,
+                                         double dt,
+                                         double load,
+                                         const struct HysteronLimits *limits,
+                                         double *input,
+                                         int32_t *status);
+
+/**
+ * Writes the shift, and the load that it tells, for a model that was told the load `load`.
+ */
+int32_t hysteron_core_shift_read(const struct HysteronCoreShift *shift,
+                                 const struct HysteronCoreStages *stages,
+                                 double load,
+                                 struct HysteronShift *found);
+
+/**
+ * Takes `value` for the shift, as uncertain as at the start. Beyond the reach it is the nearest one
+ * within.
+ */
+int32_t hysteron_core_shift_reset(struct HysteronCoreShift *shift, double value);
+
+/**
+ * Stops learning (`frozen` not 0), or resumes it (0).
+ */
+int32_t hysteron_core_shift_freeze(struct HysteronCoreShift *shift, int32_t frozen);
+
+/**
+ * Writes the usual options for `model`.
+ */
+int32_t hysteron_shift_usual(uint64_t model, struct HysteronShiftOptions *options);
+
+/**
  * Saves what body, creep and lag remember. Together with `hysteron_state_save` it is the whole
  * state. A model without stages needs it not.
  */
@@ -1026,9 +1281,6 @@ int32_t hysteron_state_temperature(uint64_t state, double *temperature);
 /**
  * Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
  * those of the model: they end when it and its states are freed.
- *
- * A model whose weights depend on a load has other constants at each load: take it at one load
- * (`hysteron_model_at_load`).
  */
 int32_t hysteron_model_stages(uint64_t model, struct HysteronStages *stages);
 

@@ -3,13 +3,14 @@
 use crate::fault::{Result, guard_plain};
 use crate::limits::HysteronLimits;
 use crate::memory::{HysteronCoreModel, HysteronCoreState};
+use crate::parts::{ByLoad, GivenParts};
 use crate::pointer::Arguments;
-use crate::room::{Kind, size};
+use crate::room::{Kind, Object, size};
 use crate::stage_state::HysteronStageState;
 use crate::stages::{HysteronStages, copied, numbers};
 use crate::surroundings::given;
 use crate::types::{self, clipped as clipped_constant, status as status_constant};
-use hysteron_core::{Error, Model, Sample, Stages, Wanted};
+use hysteron_core::{Error, Sample, Stages, Wanted, operator_count};
 use std::ffi::c_void;
 
 /// The stages around the operators, in the caller's memory.
@@ -22,17 +23,62 @@ impl Kind for HysteronCoreStages {
 
 /// Stages that were checked for a plane of so many levels.
 pub(crate) struct Chain {
-    stages: Stages<'static, f64>,
+    pub(crate) stages: Stages<'static, f64>,
     levels: usize,
+    by_load: Option<ByLoad>,
 }
 
-impl Chain {
-    fn of<C: AsRef<[f64]>>(&self, model: &Model<f64, C>) -> Result<&Stages<'static, f64>> {
-        match model.plane().levels() == self.levels {
-            true => Ok(&self.stages),
-            false => Err(Error::StateMismatch.into()),
-        }
+/// Brings the operators to a load, where their weights depend on it. Returns the stages with the
+/// offset at that load.
+///
+/// A model whose weights do not depend on the load is only read, so others may read it too.
+pub(crate) fn placed(
+    chain: &mut Object<HysteronCoreStages>,
+    model: &mut Object<HysteronCoreModel>,
+    state: &mut <HysteronCoreState as Kind>::Content,
+    load: Option<f64>,
+) -> Result<Stages<'static, f64>> {
+    let stages = chain.get().stages;
+    if chain.get().by_load.is_none() {
+        return Ok(stages);
     }
+    let offset = match &mut chain.get_mut().by_load {
+        Some(by_load) => by_load.place(model.get_mut(), state, load)?,
+        None => stages.offset,
+    };
+    Ok(Stages { offset, ..stages })
+}
+
+/// The range of the loads, where the weights depend on the load.
+pub(crate) fn weights_range(chain: &Chain) -> Option<(f64, f64)> {
+    chain.by_load.as_ref().map(ByLoad::range)
+}
+
+/// Refuses the inverse of operators of another plane, and of weights below zero.
+pub(crate) fn invertible(
+    chain: &Object<HysteronCoreStages>,
+    model: &Object<HysteronCoreModel>,
+) -> Result<()> {
+    check_levels(chain.get(), model.get())?;
+    model.get().inverse()?;
+    let by_load = chain.get().by_load.as_ref();
+    by_load.map_or(Ok(()), ByLoad::check_inverse)
+}
+
+pub(crate) fn check_levels(
+    chain: &Chain,
+    model: &<HysteronCoreModel as Kind>::Content,
+) -> Result<()> {
+    match model.plane().levels() == chain.levels {
+        true => Ok(()),
+        false => Err(Error::StateMismatch.into()),
+    }
+}
+
+/// How many numbers the constants take in memory.
+fn all_numbers(stages: &Stages<'_, f64>, parts: Option<&GivenParts<'_>>) -> Option<usize> {
+    let parts = parts.map_or(Some(0), GivenParts::numbers)?;
+    numbers(stages).checked_add(parts)
 }
 
 /// Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
@@ -41,14 +87,19 @@ impl Chain {
 pub unsafe extern "C" fn hysteron_core_stages_size(stages: *const HysteronStages) -> usize {
     // SAFETY: the contract of the crate.
     let constants = unsafe { Arguments::default().stages(stages) };
-    constants.map_or(0, |constants| {
-        size::<HysteronCoreStages, f64>(numbers(&constants)).unwrap_or(0)
-    })
+    let size = |(stages, parts): (Stages<'_, f64>, Option<GivenParts<'_>>)| {
+        let count = all_numbers(&stages, parts.as_ref())?;
+        size::<HysteronCoreStages, f64>(count)
+    };
+    constants.ok().and_then(size).unwrap_or(0)
 }
 
 /// Makes stages around the operators of `model` in `memory`. The constants are copied, with their
 /// arrays. `HYSTERON_STAGE` for a constant out of its range. The stages may be used with every
 /// model of as many levels.
+///
+/// Where the weights depend on the load, the operators are those of `model`, and its weights have
+/// no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_init(
     model: *const HysteronCoreModel,
@@ -60,7 +111,7 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
     guard_plain(|| {
         let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate.
-        let (model, room, out, constants) = unsafe {
+        let (model, room, out, (constants, parts)) = unsafe {
             (
                 arguments.object_ref(model, "model")?,
                 arguments.room(memory, bytes)?,
@@ -69,10 +120,22 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
             )
         };
         constants.check(model)?;
-        room.fill(numbers(&constants), &out, |place| {
+        let levels = model.plane().levels();
+        if let Some(found) = parts.as_ref().map(|parts| parts.each) {
+            let expected = operator_count(levels);
+            if found != expected {
+                return Err(Error::WeightCount { expected, found }.into());
+            }
+        }
+        let count = all_numbers(&constants, parts.as_ref());
+        let count = count.ok_or(Error::Stage { stage: "parts" })?;
+        room.fill(count, &out, |place| {
+            let (place, rest) = place.split_at_mut(numbers(&constants));
+            let by_load = parts.map(|parts| parts.built(model, rest)).transpose()?;
             Ok(Chain {
                 stages: copied(&constants, place),
-                levels: model.plane().levels(),
+                levels,
+                by_load,
             })
         })
     })
@@ -82,10 +145,14 @@ pub unsafe extern "C" fn hysteron_core_stages_init(
 /// are as for `hysteron_step_in`; a load beyond the curves has their outermost values. `memory` is
 /// what the stages remember, zeros before the first sample. `clipped` may be null. After an error
 /// nothing has moved.
+///
+/// Where the weights depend on the load, the call first gives `model` those of this load, in
+/// `O(K²)` if the load has changed. Stages and model are then changed, so only one thread at a time
+/// may use them. Otherwise they are only read. Several states may take turns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_step(
-    stages: *const HysteronCoreStages,
-    model: *const HysteronCoreModel,
+    stages: *mut HysteronCoreStages,
+    model: *mut HysteronCoreModel,
     state: *mut HysteronCoreState,
     memory: *mut HysteronStageState,
     input: f64,
@@ -97,10 +164,10 @@ pub unsafe extern "C" fn hysteron_core_stages_step(
     guard_plain(|| {
         let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate; every bit pattern is a value of each field.
-        let (chain, model, state, (memory, after), output, clipped) = unsafe {
+        let (mut chain, mut model, state, (memory, after), output, clipped) = unsafe {
             (
-                arguments.object_ref(stages, "stages")?,
-                arguments.object_ref(model, "model")?,
+                arguments.object_at(stages, "stages")?,
+                arguments.object_at(model, "model")?,
                 arguments.object(state, "state")?,
                 arguments.replaced(memory, "memory")?,
                 arguments.out(output, "output")?,
@@ -110,7 +177,10 @@ pub unsafe extern "C" fn hysteron_core_stages_step(
         let mut memory = memory.core()?;
         let (dt, load) = (given(dt), given(load));
         let sample = Sample { input, dt, load };
-        let step = chain.of(model)?.step(model, state, &mut memory, sample)?;
+        check_levels(chain.get(), model.get())?;
+        chain.get().stages.accepts(&memory, sample)?;
+        let stages = placed(&mut chain, &mut model, state, load)?;
+        let step = stages.step(model.get(), state, &mut memory, sample)?;
         after.set(memory.to_numbers().into());
         output.set(step.output);
         if let Some(clipped) = clipped {
@@ -124,8 +194,8 @@ pub unsafe extern "C" fn hysteron_core_stages_step(
 /// `hysteron_inverse_step_in`; `limits` may be null for none. After an error nothing has moved.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_stages_inverse_step(
-    stages: *const HysteronCoreStages,
-    model: *const HysteronCoreModel,
+    stages: *mut HysteronCoreStages,
+    model: *mut HysteronCoreModel,
     state: *mut HysteronCoreState,
     memory: *mut HysteronStageState,
     target: f64,
@@ -140,10 +210,10 @@ pub unsafe extern "C" fn hysteron_core_stages_inverse_step(
     guard_plain(|| {
         let mut arguments = Arguments::default();
         // SAFETY: the contract of the crate; every bit pattern is a value of each field.
-        let (chain, model, state, (memory, after), input, status, limits) = unsafe {
+        let (mut chain, mut model, state, (memory, after), input, status, limits) = unsafe {
             (
-                arguments.object_ref(stages, "stages")?,
-                arguments.object_ref(model, "model")?,
+                arguments.object_at(stages, "stages")?,
+                arguments.object_at(model, "model")?,
                 arguments.object(state, "state")?,
                 arguments.replaced(memory, "memory")?,
                 arguments.out(input, "input")?,
@@ -161,7 +231,15 @@ pub unsafe extern "C" fn hysteron_core_stages_inverse_step(
             horizon: limits.horizon,
             temperature: limits.temperature(),
         };
-        let (stages, inverse) = (chain.of(model)?, model.inverse()?);
+        invertible(&chain, &model)?;
+        let sample = Sample {
+            input: target,
+            dt: wanted.dt,
+            load: wanted.load,
+        };
+        chain.get().stages.accepts(&memory, sample)?;
+        let stages = placed(&mut chain, &mut model, state, wanted.load)?;
+        let inverse = model.get().inverse()?;
         let solution = stages.invert(&inverse, state, &mut memory, wanted)?;
         after.set(memory.to_numbers().into());
         input.set(solution.input);

@@ -20,6 +20,8 @@
 #[cfg(feature = "handles")]
 mod adaptive;
 #[cfg(feature = "handles")]
+mod adaptive_load;
+#[cfg(feature = "handles")]
 mod chain;
 mod codes;
 #[cfg(feature = "handles")]
@@ -36,9 +38,15 @@ mod limits;
 mod memory;
 #[cfg(feature = "handles")]
 mod model;
+#[cfg(feature = "handles")]
+mod parts;
 mod pointer;
 #[cfg(feature = "handles")]
 mod room;
+#[cfg(feature = "handles")]
+mod shift;
+#[cfg(feature = "handles")]
+mod shift_options;
 #[cfg(feature = "handles")]
 mod stage_state;
 #[cfg(feature = "handles")]
@@ -53,6 +61,8 @@ mod types;
 #[cfg(feature = "handles")]
 pub use adaptive::*;
 #[cfg(feature = "handles")]
+pub use adaptive_load::*;
+#[cfg(feature = "handles")]
 pub use chain::*;
 pub use codes::*;
 #[cfg(feature = "handles")]
@@ -64,6 +74,12 @@ pub use limits::*;
 pub use memory::*;
 #[cfg(feature = "handles")]
 pub use model::*;
+#[cfg(feature = "handles")]
+pub use parts::*;
+#[cfg(feature = "handles")]
+pub use shift::*;
+#[cfg(feature = "handles")]
+pub use shift_options::*;
 #[cfg(feature = "handles")]
 pub use stage_state::*;
 #[cfg(feature = "handles")]

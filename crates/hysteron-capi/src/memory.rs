@@ -4,7 +4,8 @@
 //! and it is gone when the memory is. Where an initialisation fails in memory that has an object,
 //! that object either stays as it is or is refused from then on (`HYSTERON_HANDLE`). Outputs are
 //! `Σ μ γ` of the operators, without offset and sign. Only one thread at a time may use an object
-//! that is changed: a state, and model and estimator while weights are learned.
+//! that is changed: a state, model and estimator while weights are learned, and model and stages
+//! whose weights depend on the load.
 
 use crate::fault::guard_plain;
 use crate::pointer::Arguments;

@@ -9,7 +9,7 @@ use std::ffi::{CStr, c_char};
 use std::ops::Range;
 
 /// The largest number of pointers of a function.
-const MOST: usize = 12;
+const MOST: usize = 14;
 
 /// The pointers of one call. Each is checked, and refused if it shares memory with one before it.
 ///

@@ -63,6 +63,20 @@ impl Arguments {
         unsafe { Ok(&*self.content::<K>(pointer.cast_mut(), name)?) }
     }
 
+    /// An object that is changed only if the call finds that it has to.
+    ///
+    /// # Safety
+    /// As for [`Arguments::object_ref`] while it is read, and as for [`Arguments::object`] once it
+    /// is changed.
+    pub(crate) unsafe fn object_at<K: Kind>(
+        &mut self,
+        pointer: *mut K,
+        name: &'static str,
+    ) -> Result<Object<K>> {
+        // SAFETY: the caller's promise.
+        unsafe { Ok(Object(self.content::<K>(pointer, name)?)) }
+    }
+
     /// # Safety
     /// As for [`Arguments::object_ref`].
     unsafe fn content<K: Kind>(
@@ -90,6 +104,23 @@ impl Arguments {
         check(head, "memory")?;
         self.claim(head.addr(), bytes, "memory")?;
         Ok(Room { head, bytes })
+    }
+}
+
+/// An object that was found to be there.
+pub(crate) struct Object<K: Kind>(*mut K::Content);
+
+impl<K: Kind> Object<K> {
+    /// To read it.
+    pub(crate) fn get(&self) -> &K::Content {
+        // SAFETY: the contract of `Arguments::object_at`.
+        unsafe { &*self.0 }
+    }
+
+    /// To change it.
+    pub(crate) fn get_mut(&mut self) -> &mut K::Content {
+        // SAFETY: the contract of `Arguments::object_at`.
+        unsafe { &mut *self.0 }
     }
 }
 

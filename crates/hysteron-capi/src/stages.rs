@@ -3,9 +3,10 @@
 use crate::codes::HYSTERON_VALUE;
 use crate::fault::{Fault, Result, guard};
 use crate::model::MODELS;
+use crate::parts::GivenParts;
 use crate::pointer::Arguments;
 use crate::types::sign as sign_of;
-use hysteron::{Error, Model, Sign};
+use hysteron::{Model, Sign};
 use hysteron_core::{Axis, Body, Creep, Load, Stages};
 use std::ptr::null;
 
@@ -58,6 +59,20 @@ pub struct HysteronStages {
     pub creep_taus: *const f64,
     /// Time constant of a lag of the whole in seconds; 0 for none.
     pub lag: f64,
+    /// Number of parts of weights that depend on the load, up to `HYSTERON_PARTS`; 0 for weights
+    /// that do not. `offset` and the weights of the model have no effect then.
+    pub part_count: usize,
+    /// Number of weights of one part: `K (K + 1) / 2`.
+    pub part_weight_count: usize,
+    /// The output of each part where its sum is zero.
+    pub part_offsets: *const f64,
+    /// The weights of the parts, one part after the other. Their factors are the Bernstein
+    /// polynomials of the load.
+    pub part_weights: *const f64,
+    /// The load of the first part, where `part_count` is not 0. A smaller load acts as this one.
+    pub load_min: f64,
+    /// The load of the last part, above `load_min`. A larger load acts as this one.
+    pub load_max: f64,
 }
 
 /// The arrays of stages.
@@ -116,8 +131,8 @@ pub(crate) fn copied(stages: &Stages<'_, f64>, place: &'static mut [f64]) -> Sta
 }
 
 impl Arguments {
-    /// The constants of stages and the arrays that they point to. Take them last, so that shared
-    /// memory is found first.
+    /// The constants of stages and the arrays that they point to, with the parts of the weights.
+    /// Take them last, so that shared memory is found first.
     ///
     /// # Safety
     /// `stages` is null or valid for a read; each of its pointers is null or valid for reads of as
@@ -125,7 +140,7 @@ impl Arguments {
     pub(crate) unsafe fn stages<'a>(
         &mut self,
         stages: *const HysteronStages,
-    ) -> Result<Stages<'a, f64>> {
+    ) -> Result<(Stages<'a, f64>, Option<GivenParts<'a>>)> {
         // SAFETY: the caller's promise; every bit pattern is a value of each field.
         let given = unsafe { self.value(stages, "stages")? };
         let curve = |values: *const f64| {
@@ -163,41 +178,54 @@ impl Arguments {
             1 => Some(body),
             _ => return Err(Fault::Call(HYSTERON_VALUE, "body")),
         };
-        Ok(Stages {
+        let stages = Stages {
             body,
             axis: Axis { load, spacing },
             creep,
             lag: given.lag,
             offset: given.offset,
             falling: sign_of(given.sign)? == Sign::Negative,
-        })
+        };
+        if given.part_count == 0 {
+            return Ok((stages, None));
+        }
+        let (count, each) = (given.part_count, given.part_weight_count);
+        let all = count.checked_mul(each);
+        let all = all.ok_or(Fault::Call(HYSTERON_VALUE, "part_count"))?;
+        // SAFETY: the caller's promise.
+        let (offsets, weights) = unsafe {
+            (
+                self.array(given.part_offsets, count, "part_offsets")?,
+                self.array(given.part_weights, all, "part_weights")?,
+            )
+        };
+        let range = (given.load_min, given.load_max);
+        let parts = GivenParts {
+            range,
+            offsets,
+            weights,
+            each,
+        };
+        Ok((stages, Some(parts)))
     }
 }
 
 /// Writes the constants of the stages of `model`, for `hysteron_core_stages_init`. The arrays are
 /// those of the model: they end when it and its states are freed.
-///
-/// A model whose weights depend on a load has other constants at each load: take it at one load
-/// (`hysteron_model_at_load`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_model_stages(model: u64, stages: *mut HysteronStages) -> i32 {
     guard(|| {
         // SAFETY: the contract of the crate.
         let stages = unsafe { Arguments::default().out(stages, "stages")? };
-        stages.set(of(&*MODELS.get(model, "model")?)?);
+        stages.set(of(&*MODELS.get(model, "model")?));
         Ok(())
     })
 }
 
-fn of(model: &Model) -> Result<HysteronStages> {
-    if model
-        .load
-        .as_ref()
-        .is_some_and(|load| load.parts().len() > 1)
-    {
-        let what = "offset or weights of the model depend on the load: take it at one load";
-        return Err(Error::Fit(what.into()).into());
-    }
+fn of(model: &Model) -> HysteronStages {
+    let by_load = model.load.as_ref().filter(|load| load.parts().len() > 1);
+    let (part_offsets, part_weights) = by_load.map_or((&[][..], &[][..]), |load| load.joined());
+    let (load_min, load_max) = by_load.map_or((0.0, 0.0), |load| load.range());
     let Stages {
         body,
         axis: Axis { load, spacing },
@@ -220,7 +248,7 @@ fn of(model: &Model) -> Result<HysteronStages> {
             values.as_ptr()
         }
     };
-    Ok(HysteronStages {
+    HysteronStages {
         body: body.is_some().into(),
         sign: if falling { -1 } else { 1 },
         offset,
@@ -240,5 +268,15 @@ fn of(model: &Model) -> Result<HysteronStages> {
         creep: start(creep.coefficients),
         creep_taus: start(creep.taus),
         lag,
-    })
+        part_count: part_offsets.len(),
+        part_weight_count: if by_load.is_some() {
+            model.weights().len()
+        } else {
+            0
+        },
+        part_offsets: start(part_offsets),
+        part_weights: start(part_weights),
+        load_min,
+        load_max,
+    }
 }

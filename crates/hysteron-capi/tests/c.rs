@@ -272,6 +272,21 @@ fn the_page_on_c() {
     for name in names {
         run(&mut shell(name));
     }
+    // The third one follows a load, and finds it.
+    let program = page.split("```c\n").nth(3).unwrap();
+    let program = program.split("```").next().unwrap();
+    std::fs::write(folder.path().join("spring.c"), program).unwrap();
+    run(&mut shell(commands));
+    for name in names {
+        let told = shell(name).output().unwrap();
+        let told = String::from_utf8(told.stdout).unwrap();
+        let load = told
+            .split("load of ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next());
+        let load: f64 = load.unwrap().parse().unwrap();
+        assert!((load - 150.0).abs() < 5.0, "{told}");
+    }
     assert!(commands.contains(&native_libraries()), "{commands}");
 }
 

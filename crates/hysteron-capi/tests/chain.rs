@@ -2,151 +2,17 @@
 //! without an allocation.
 #![allow(clippy::unwrap_used)]
 
+mod own;
 mod whole;
 
 use hysteron_capi::*;
-use std::ffi::{CString, c_void};
+use own::{NONE, Own, constants, ok, parsed};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use serde_json::{Value, json};
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 use whole::{BY_LOAD, Series, WHOLE, series};
-
-const NONE: f64 = f64::NAN;
-
-fn ok(code: i32) {
-    assert_eq!(code, HYSTERON_OK);
-}
-
-/// Operators and stages of a model by handle, in memory of this program.
-struct Own {
-    handle: u64,
-    memory: [Vec<u64>; 3],
-    model: *mut HysteronCoreModel,
-    state: *mut HysteronCoreState,
-    stages: *mut HysteronCoreStages,
-    past: HysteronStageState,
-}
-
-fn constants(handle: u64) -> HysteronStages {
-    // SAFETY: all fields are numbers, or pointers that may be null.
-    let mut constants: HysteronStages = unsafe { zeroed() };
-    // SAFETY: live memory.
-    ok(unsafe { hysteron_model_stages(handle, &mut constants) });
-    constants
-}
-
-fn parsed(text: &str) -> u64 {
-    let (text, mut handle) = (CString::new(text).unwrap(), 0);
-    // SAFETY: live memory.
-    ok(unsafe { hysteron_model_parse(text.as_ptr(), &mut handle) });
-    handle
-}
-
-impl Own {
-    fn new(handle: u64) -> Self {
-        let mut own = Self {
-            handle,
-            memory: [const { Vec::new() }; 3],
-            model: null_mut(),
-            state: null_mut(),
-            stages: null_mut(),
-            past: HysteronStageState::default(),
-        };
-        let constants = constants(handle);
-        // SAFETY: live memory of the sizes given.
-        unsafe {
-            let mut info: HysteronModelInfo = zeroed();
-            ok(hysteron_model_info(handle, &mut info));
-            let mut weights = vec![0.0; info.weights];
-            let (mut count, at) = (0, weights.as_mut_ptr());
-            ok(hysteron_model_weights(handle, at, info.weights, &mut count));
-            let sizes = [
-                hysteron_core_model_size(info.levels, 1),
-                hysteron_core_state_size(info.levels),
-                hysteron_core_stages_size(&constants),
-            ];
-            own.memory = sizes.map(|bytes| vec![0; bytes / 8]);
-            let [model, state, stages] = own.places();
-            ok(hysteron_core_model_init(
-                model,
-                sizes[0],
-                info.operator_kind,
-                info.min,
-                info.max,
-                info.levels,
-                weights.as_ptr(),
-                count,
-                &mut own.model,
-            ));
-            ok(hysteron_core_state_init(
-                own.model,
-                state,
-                sizes[1],
-                &mut own.state,
-            ));
-            ok(hysteron_core_stages_init(
-                own.model,
-                &constants,
-                stages,
-                sizes[2],
-                &mut own.stages,
-            ));
-        }
-        own
-    }
-
-    fn places(&mut self) -> [*mut c_void; 3] {
-        self.memory
-            .each_mut()
-            .map(|memory| memory.as_mut_ptr().cast())
-    }
-
-    fn step(&mut self, input: f64, dt: f64, load: f64) -> (i32, f64) {
-        let mut output = 7.0;
-        // SAFETY: live memory.
-        let code = unsafe {
-            hysteron_core_stages_step(
-                self.stages,
-                self.model,
-                self.state,
-                &mut self.past,
-                input,
-                dt,
-                load,
-                &mut output,
-                null_mut(),
-            )
-        };
-        (code, output)
-    }
-
-    fn invert(
-        &mut self,
-        target: f64,
-        dt: f64,
-        load: f64,
-        limits: *const HysteronLimits,
-    ) -> (i32, f64, i32) {
-        let (mut input, mut status) = (7.0, 7);
-        // SAFETY: live memory.
-        let code = unsafe {
-            hysteron_core_stages_inverse_step(
-                self.stages,
-                self.model,
-                self.state,
-                &mut self.past,
-                target,
-                HYSTERON_HOLD,
-                0.0,
-                dt,
-                load,
-                limits,
-                &mut input,
-                &mut status,
-            )
-        };
-        (code, input, status)
-    }
-}
 
 #[test]
 fn the_path_is_that_of_a_state_by_handle() {
@@ -331,26 +197,174 @@ fn constants_are_checked() {
     }
 }
 
+/// The file of a model with every stage or none, and weights of `parts` parts over the load.
+fn by_load(seed: u64, parts: usize, alone: bool) -> String {
+    let mut file: Value = serde_json::from_str(WHOLE).unwrap();
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut numbers =
+        |count: usize| -> Vec<f64> { (0..count).map(|_| random.random_range(0.0..2.0)).collect() };
+    let part = |_| json!({"offset": numbers(1)[0], "weights": numbers(6)});
+    file["load"]["parts"] = (0..parts).map(part).collect();
+    if alone {
+        for stage in ["thermal", "drive", "spacing", "creep", "lag", "start"] {
+            file.as_object_mut().unwrap().remove(stage);
+        }
+        file["load"].as_object_mut().unwrap().remove("curves");
+    }
+    file.to_string()
+}
+
+/// Two states by handle, and two over one model in own memory, whose weights follow the load of
+/// whoever moves.
 #[test]
-fn weights_by_load_have_no_one_set_of_constants() {
-    let handle = parsed(BY_LOAD);
-    // SAFETY: all fields are numbers, or pointers that may be null.
-    let mut constants: HysteronStages = unsafe { zeroed() };
-    let mut at_load = 0;
-    // SAFETY: live memory.
-    unsafe {
-        assert_eq!(hysteron_model_stages(handle, &mut constants), HYSTERON_FIT);
-        ok(hysteron_model_at_load(handle, 120.0, &mut at_load));
+fn weights_follow_the_load() {
+    let mut files: Vec<String> = vec![BY_LOAD.into()];
+    files.extend((2..=8).map(|parts| by_load(parts as u64, parts, parts % 3 == 0)));
+    for file in files {
+        let handle = parsed(&file);
+        let mut own = Own::new(handle);
+        let bytes = hysteron_core_state_size(3);
+        let mut room = vec![0_u64; bytes / 8];
+        let (mut second, mut past) = (null_mut(), HysteronStageState::default());
+        let (mut states, mut limits) = ([0; 2], unsafe { zeroed::<HysteronLimits>() });
+        // SAFETY: live memory of the sizes given.
+        unsafe {
+            let place = room.as_mut_ptr().cast();
+            ok(hysteron_core_state_init(
+                own.model,
+                place,
+                bytes,
+                &mut second,
+            ));
+            ok(hysteron_model_limits(handle, &mut limits));
+            for state in &mut states {
+                ok(hysteron_state_new(handle, state));
+                ok(hysteron_state_start(*state, HYSTERON_START_OFF));
+            }
+        }
+        let Series {
+            input,
+            target,
+            mut load,
+            step,
+            ..
+        } = series(9, 400);
+        // Temperatures where there is no body.
+        let scale = if limits.drive_max.is_finite() {
+            1.0
+        } else {
+            80.0
+        };
+        let mut now = 0;
+        for n in 0..input.len() {
+            if n % 4 < 2 {
+                load[n] = load[n.saturating_sub(1)];
+            }
+            if n % 7 > 3 {
+                now = 1 - now;
+                std::mem::swap(&mut own.state, &mut second);
+                std::mem::swap(&mut own.past, &mut past);
+            }
+            let (mut expected, mut status) = (0.0, 0);
+            if n % 5 < 3 {
+                let input = scale * input[n];
+                let (state, place) = (states[now], &mut expected);
+                // SAFETY: live memory.
+                ok(unsafe { hysteron_step_in(state, input, step[n], load[n], place, null_mut()) });
+                let (code, found) = own.step(input, step[n], load[n]);
+                assert_eq!((code, found.to_bits()), (HYSTERON_OK, expected.to_bits()));
+                continue;
+            }
+            // SAFETY: live memory.
+            ok(unsafe {
+                hysteron_inverse_step_in(
+                    states[now],
+                    target[n],
+                    HYSTERON_HOLD,
+                    0.0,
+                    step[n],
+                    load[n],
+                    null(),
+                    &mut expected,
+                    &mut status,
+                )
+            });
+            let found = own.invert(target[n], step[n], load[n], &limits);
+            assert_eq!(found, (HYSTERON_OK, expected, status), "{file}");
+        }
     }
-    let mut own = Own::new(at_load);
-    let mut state = 0;
-    // SAFETY: live memory.
-    ok(unsafe { hysteron_state_new(at_load, &mut state) });
-    let Series { input, step, .. } = series(7, 100);
-    for (&input, &dt) in input.iter().zip(&step) {
-        let mut output = 0.0;
-        // SAFETY: live memory.
-        ok(unsafe { hysteron_step_in(state, input, dt, NONE, &mut output, null_mut()) });
-        assert_eq!(own.step(input, dt, NONE), (HYSTERON_OK, output));
+}
+
+/// Loads beyond the range act as its ends; what is not a load is refused, and nothing moves.
+#[test]
+fn loads_beyond_the_weights() {
+    let handle = parsed(&by_load(3, 4, true));
+    let (mut own, mut twin) = (Own::new(handle), Own::new(handle));
+    for (n, (load, end)) in [(-1e9, 50.0), (f64::MAX, 200.0), (49.0, 50.0)]
+        .into_iter()
+        .enumerate()
+    {
+        let input = 20.0 + 9.0 * n as f64;
+        assert_eq!(own.step(input, NONE, load), twin.step(input, NONE, end));
+        for load in [NONE, f64::INFINITY] {
+            assert_eq!(own.step(55.0, NONE, load), (HYSTERON_LOAD, 7.0));
+            assert_eq!(own.invert(1.0, NONE, load, null()), (HYSTERON_LOAD, 7.0, 7));
+        }
     }
+}
+
+#[test]
+fn parts_are_checked() {
+    let handle = parsed(&by_load(3, 4, false));
+    let mut own = Own::new(handle);
+    let place = own.places()[2];
+    let bytes = 8 * own.memory[2].len();
+    let mut make = |change: &dyn Fn(&mut HysteronStages)| {
+        let mut constants = constants(handle);
+        change(&mut constants);
+        // SAFETY: live memory of the sizes given.
+        unsafe { hysteron_core_stages_init(own.model, &constants, place, bytes, &mut own.stages) }
+    };
+    static NAN: [f64; 24] = [NONE; 24];
+    static FEW: [f64; 24] = [1.0; 24];
+    assert_eq!(make(&|c| c.part_weight_count = 5), HYSTERON_WEIGHT_COUNT);
+    assert_eq!(make(&|c| c.part_weight_count = usize::MAX), HYSTERON_VALUE);
+    assert_eq!(make(&|c| c.part_count = usize::MAX), HYSTERON_VALUE);
+    assert_eq!(make(&|c| c.part_weights = null()), HYSTERON_NULL);
+    assert_eq!(make(&|c| c.part_offsets = null()), HYSTERON_NULL);
+    assert_eq!(make(&|c| c.part_offsets = c.part_weights), HYSTERON_OVERLAP);
+    assert_eq!(make(&|c| c.load_max = c.load_min), HYSTERON_STAGE);
+    assert_eq!(make(&|c| c.load_min = NONE), HYSTERON_STAGE);
+    assert_eq!(make(&|c| c.part_offsets = NAN.as_ptr()), HYSTERON_STAGE);
+    assert_eq!(
+        make(&|c| c.part_weights = NAN.as_ptr()),
+        HYSTERON_WEIGHT_NOT_FINITE
+    );
+    ok(make(&|c| c.part_weights = FEW.as_ptr()));
+    ok(make(&|c| c.part_count = 0));
+
+    let mut constants = constants(handle);
+    // SAFETY: live memory, which the constants describe.
+    let size = |constants: &HysteronStages| unsafe { hysteron_core_stages_size(constants) };
+    assert_eq!(size(&constants), bytes);
+    for each in [0, 1, 5] {
+        constants.part_weight_count = each;
+        assert_eq!(size(&constants), 0, "{each}");
+    }
+    static MANY: [f64; 54] = [1.0; 54];
+    (constants.part_count, constants.part_weight_count) = (9, 6);
+    (constants.part_offsets, constants.part_weights) = (FEW.as_ptr(), MANY.as_ptr());
+    assert_eq!(size(&constants), 0);
+
+    // One part below zero, where the sum is not.
+    let mut weights = FEW;
+    weights[7] = -0.1;
+    static BELOW: std::sync::OnceLock<[f64; 24]> = std::sync::OnceLock::new();
+    let below = BELOW.get_or_init(|| weights);
+    ok(make(&|c| c.part_weights = below.as_ptr()));
+    assert_eq!(own.step(0.5, NONE, 60.0).0, HYSTERON_OK);
+    assert_eq!(
+        own.invert(0.5, 0.1, 60.0, null()).0,
+        HYSTERON_NEGATIVE_WEIGHTS
+    );
 }

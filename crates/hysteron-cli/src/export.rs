@@ -40,6 +40,7 @@ fn c(args: &args::ExportC) -> Result<()> {
             "flash_bytes": memory.constants,
             "ram_bytes": {
                 "state": memory.state,
+                "mixed": memory.mixed,
                 "turns": memory.turns,
                 "adaptation": memory.adaptation,
             },
@@ -61,6 +62,13 @@ fn c(args: &args::ExportC) -> Result<()> {
         memory.constants,
         memory.state + memory.turns
     ));
+    if memory.mixed > 0 {
+        lines.push(format!(
+            "the weights depend on the load: {} of the bytes of each state hold those of the \
+             present load",
+            memory.mixed
+        ));
+    }
     if let Some(bytes) = memory.adaptation {
         lines.push(format!("{bytes} bytes more for a model that learns"));
     }

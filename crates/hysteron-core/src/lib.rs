@@ -59,8 +59,8 @@ pub use plane::{Clipped, Plane, operator_count, operator_index, operators};
 pub use scalar::Real;
 pub use solution::{Solution, Status};
 pub use stages::{
-    Axis, Body, Creep, Decay, Load, Loaded, MAX_CREEP, Rates, Sample, StageState, Stages, Wanted,
-    mix,
+    Axis, Body, Creep, Decay, Load, Loaded, MAX_CREEP, MAX_PARTS, Parts, Placed, Rates, Sample,
+    StageState, Stages, Wanted, bernstein, mix,
 };
 pub use state::{State, turn_capacity};
 pub use target::{Direction, Target};

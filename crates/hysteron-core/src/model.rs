@@ -352,6 +352,11 @@ impl<T: Real, C: AsRef<[T]>> Model<T, C> {
         }
     }
 
+    /// Tells apart the weights that the model had.
+    pub(crate) fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
     /// Checks that a state has the model's number of levels and operator.
     #[inline(always)]
     pub(crate) fn fits<S>(&self, state: &State<T, S>) -> Result<(), Error>

@@ -497,3 +497,49 @@ fn options_out_of_range_are_refused_by_name() {
     assert_eq!(none.check(), Err(Error::Adaptation { option: "burst" }));
     assert_eq!(usual.check(), Ok(()));
 }
+
+/// The load for the weights follows the load found in steps of 1/256 of the range, and stays within
+/// the range.
+#[test]
+fn weights_are_renewed_where_the_load_moved() {
+    let plane = Plane::new(20.0_f64, 80.0, 4).unwrap();
+    let model = Model::new(plane, Operator::Mkp, &[1.0; 10], vec![0.0; 15]).unwrap();
+    let load = Load {
+        loads: &[0.0, 100.0],
+        shifts: &[0.0, 10.0],
+        ..Load::NONE
+    };
+    let axis = Axis {
+        load,
+        ..Axis::PLAIN
+    };
+    let stages = Stages {
+        axis,
+        ..Stages::NONE
+    };
+    let options = ShiftOptions::usual(&model, &stages);
+    let mut estimator = ShiftEstimator::new(options, &model, &stages).unwrap();
+    let mut placed = 50.0;
+    // A range of loads of 64, so a step is 0.25.
+    let range = (20.0, 84.0);
+    for (shift, expected) in [
+        (0.0, 50.0),
+        (0.024, 50.0),
+        (0.026, 50.26),
+        (0.002, 50.26),
+        (0.0, 50.0),
+        (-0.5, 45.0),
+        (-4.9, 20.0),
+        (20.0, 84.0),
+        (3.38, 84.0),
+    ] {
+        estimator.reset(shift).unwrap();
+        placed = estimator.renewed(&load, Some(50.0), placed, range).unwrap();
+        assert!((placed - expected).abs() < 1e-9, "{shift}: {placed}");
+    }
+    // Without a curve of shifts no load is told.
+    let placed = estimator.renewed(&Load::NONE, None, 33.0, range).unwrap();
+    assert_eq!(placed, 33.0);
+    let refused = estimator.renewed(&load, None, 33.0, range);
+    assert_eq!(refused, Err(Error::Load));
+}

@@ -133,6 +133,8 @@ pub struct CMemory {
     pub constants: usize,
     /// A state: RAM.
     pub state: usize,
+    /// Of it, the operators at the present load, where the weights depend on the load.
+    pub mixed: usize,
     /// Its turning points: RAM.
     pub turns: usize,
     /// For a model that learns: the additional memory, without its turning points. RAM.

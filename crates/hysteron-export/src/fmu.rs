@@ -66,7 +66,7 @@ pub struct Fmu {
 /// Writes an FMU of `model` to `target`, whose path must end with `.fmu`. A path alone replaces
 /// whatever file is there.
 ///
-/// A model that depends on time takes the communication step as its time step. One with curves over
+/// A model that depends on time takes the communication step as its time step. One that depends on
 /// a load has the load as an input.
 ///
 /// ```
@@ -83,7 +83,7 @@ pub struct Fmu {
 /// ```
 ///
 /// # Errors
-/// [`Error::Export`] for a model whose weights depend on a load, a name that is no C
+/// [`Error::Export`] for weights of more than the seventh order in a load, a name that is no C
 /// identifier or a path that does not end with `.fmu`; [`Error::Core`] for the inverse of a model
 /// with weights below zero; [`Error::File`].
 pub fn fmu<'a>(

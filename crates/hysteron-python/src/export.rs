@@ -122,8 +122,7 @@ impl Model {
     /// Raises
     /// ------
     /// ExportError
-    ///     For weights that depend on a load, and for an
-    ///     invalid name or path.
+    ///     For an invalid name or path, and for weights of more than the seventh order in a load.
     /// CoreError
     ///     For the inverse of a model with weights below zero.
     /// FileError

@@ -3,6 +3,7 @@
 mod action;
 mod adapt;
 mod adaptive;
+mod adaptive_load;
 mod around;
 mod array;
 mod choices;
@@ -54,6 +55,8 @@ mod _hysteron {
     use crate::adapt::{Adapted, adapt};
     #[pymodule_export]
     use crate::adaptive::Adaptive;
+    #[pymodule_export]
+    use crate::adaptive_load::AdaptiveLoad;
     #[pymodule_export]
     use crate::compare::compare;
     #[pymodule_export]

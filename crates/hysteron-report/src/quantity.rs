@@ -41,6 +41,15 @@ impl Labelled {
         }
     }
 
+    /// A difference of two values under another name: of temperatures in °C, it is in K.
+    pub(crate) fn difference(&self, name: &str) -> Self {
+        let mut difference = self.renamed(name);
+        if difference.unit.as_deref() == Some("°C") {
+            difference.unit = Some("K".into());
+        }
+        difference
+    }
+
     /// Axis label: `temperature [°C]`; `factor` (for example `10⁻³`) stands before the unit.
     pub(crate) fn axis(&self, factor: Option<&str>) -> String {
         match (factor, self.unit.as_deref()) {

@@ -1,9 +1,10 @@
 //! The two blocks: model and inverse, with offset and sign.
 
+use super::by_load::ByLoad;
 use super::stages::Constants;
 use super::{Problem, Result};
 use hysteron_core::{
-    Clipped, Direction, Model, Output, Sample, Solution, StageState, Target, Turn, Wanted,
+    Clipped, Direction, Model, Output, Placed, Sample, Solution, StageState, Target, Turn, Wanted,
     turn_capacity,
 };
 
@@ -12,6 +13,15 @@ use hysteron_core::{
 pub(crate) struct State {
     pub(crate) operators: hysteron_core::State<f64, Vec<Turn<f64>>>,
     pub(crate) stages: StageState<f64>,
+    /// The model at the present load, where the weights depend on the load.
+    pub(crate) mixed: Option<Mixed>,
+}
+
+/// Operators at one load.
+#[derive(Debug, Clone)]
+pub(crate) struct Mixed {
+    model: Model<f64, Vec<f64>>,
+    placed: Option<Placed<f64>>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +46,9 @@ pub(crate) struct Block {
     pub(crate) sign: f64,
     /// `None` for operators alone.
     pub(crate) stages: Option<Constants>,
+    /// Weights that depend on the load. `model` is then that of the first part, and `stages` is
+    /// there.
+    pub(crate) by_load: Option<ByLoad>,
     /// Turning points and input of the operators at the start; `None` for all of them off.
     pub(crate) start: Option<(Vec<f64>, f64)>,
     /// The start values of signal and load in the FMU's description.
@@ -82,7 +95,7 @@ impl Block {
     /// Whether there is a load among the variables.
     pub(crate) fn is_loaded(&self) -> bool {
         let stages = self.stages.as_ref();
-        stages.is_some_and(|stages| !stages.loads.is_empty())
+        self.by_load.is_some() || stages.is_some_and(|stages| !stages.loads.is_empty())
     }
 
     /// Whether there is a temperature among the variables.
@@ -102,6 +115,10 @@ impl Block {
         Ok(State {
             operators,
             stages: StageState::default(),
+            mixed: self.by_load.as_ref().map(|_| Mixed {
+                model: self.model.clone(),
+                placed: None,
+            }),
         })
     }
 
@@ -141,9 +158,8 @@ impl Block {
     }
 
     fn forward(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Output<f64>> {
-        let (operators, memory) = (&mut state.operators, &mut state.stages);
         let Some(stages) = &self.stages else {
-            let step = self.model.step(operators, inputs.signal)?;
+            let step = self.model.step(&mut state.operators, inputs.signal)?;
             let output = self.offset + self.sign * step.output;
             return Ok(Output { output, ..step });
         };
@@ -152,15 +168,20 @@ impl Block {
             dt: Some(dt),
             load: Some(inputs.load),
         };
-        let stages = stages.core(self.offset, self.sign);
-        Ok(stages.step(&self.model, operators, memory, sample)?)
+        let mut stages = stages.core(self.offset, self.sign);
+        stages.accepts(&state.stages, sample)?;
+        stages.offset = self.place(state, inputs.load)?;
+        let model = state
+            .mixed
+            .as_ref()
+            .map_or(&self.model, |mixed| &mixed.model);
+        Ok(stages.step(model, &mut state.operators, &mut state.stages, sample)?)
     }
 
     fn inverse(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<Solution<f64>> {
-        let inverse = self.model.inverse()?;
-        let (operators, memory) = (&mut state.operators, &mut state.stages);
         let Some(stages) = &self.stages else {
-            let solution = inverse.step(operators, self.inward(inputs))?;
+            let inverse = self.model.inverse()?;
+            let solution = inverse.step(&mut state.operators, self.inward(inputs))?;
             let status = match self.sign < 0.0 {
                 true => solution.status.mirrored(),
                 false => solution.status,
@@ -178,8 +199,24 @@ impl Block {
             drive: stages.drive,
             ..target.into()
         };
-        let stages = stages.core(self.offset, self.sign);
-        Ok(stages.invert(&inverse, operators, memory, wanted)?)
+        let mut stages = stages.core(self.offset, self.sign);
+        stages.offset = self.place(state, inputs.load)?;
+        let model = state
+            .mixed
+            .as_ref()
+            .map_or(&self.model, |mixed| &mixed.model);
+        let inverse = model.inverse()?;
+        Ok(stages.invert(&inverse, &mut state.operators, &mut state.stages, wanted)?)
+    }
+
+    /// Brings the operators to a load, where their weights depend on it, and returns the offset.
+    fn place(&self, state: &mut State, load: f64) -> Result<f64> {
+        let (Some(by_load), Some(mixed)) = (&self.by_load, &mut state.mixed) else {
+            return Ok(self.offset);
+        };
+        let Mixed { model, placed } = mixed;
+        let parts = by_load.core();
+        Ok(parts.place(model, &mut state.operators, placed, Some(load))?)
     }
 
     /// The target for the output without sign.

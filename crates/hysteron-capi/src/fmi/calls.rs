@@ -234,6 +234,7 @@ mod tests {
             offset: 0.0,
             sign: 1.0,
             stages: None,
+            by_load: None,
             start: None,
             first: (0.0, 0.0),
         };

@@ -11,6 +11,7 @@
 compile_error!("handles stand where the standards have pointers: 64 bits are needed");
 
 mod block;
+mod by_load;
 mod calls;
 pub mod fmi2;
 pub mod fmi3;

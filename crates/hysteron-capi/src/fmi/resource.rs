@@ -35,11 +35,21 @@
 //! drive; the curves over the load; the corners of the grid; coefficients and time constants of the
 //! creep; the time constant of the lag.
 //!
+//! A model whose weights depend on the load has version 3. After `lag` it has the range of the loads
+//! and the offset of each part, and then the weights of the parts, one after the other:
+//!
+//! ```text
+//! range 50.0 200.0
+//! parts 1.0 2.5
+//! weights 420
+//! ```
+//!
 //! The last line has the number of lines before it and their FNV-1a checksum. Each number has the
 //! fewest digits that give the same number when it is read.
 
 use super::block::{Block, Kind};
-use super::stages::More;
+use super::by_load::ByLoad;
+use super::stages::{Constants, More};
 use super::{Problem, Result, checksum};
 use hysteron_core::{Model, Operator, Plane, operator_count, table_len};
 use std::path::Path;
@@ -49,6 +59,8 @@ const FILE: &str = "model.txt";
 const HEAD: &str = "hysteron-fmu 1";
 /// The first line of a model with stages or with a start.
 const HEAD_STAGES: &str = "hysteron-fmu 2";
+/// That of a model whose weights depend on the load.
+const HEAD_PARTS: &str = "hysteron-fmu 3";
 
 /// Reads the model in the folder of the FMU's resources. Errors name file and line.
 pub(crate) fn read(folder: &Path) -> Result<Block> {
@@ -155,7 +167,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         line: 0,
     };
     let head = lines.next()?;
-    if head != HEAD && head != HEAD_STAGES {
+    if ![HEAD, HEAD_STAGES, HEAD_PARTS].contains(&head) {
         let head: String = head.chars().take(2 * HEAD.len()).collect();
         return lines.fault(format!("`{head}` where `{HEAD}` is expected"));
     }
@@ -186,35 +198,50 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         "-1" => -1.0,
         other => return lines.fault(format!("the sign {other} is neither 1 nor -1")),
     };
-    let more = match head == HEAD_STAGES {
-        true => Some(More::read(&mut lines)?),
+    let more = match head == HEAD {
+        true => None,
+        false => Some(More::read(&mut lines)?),
+    };
+    let by_load = match head == HEAD_PARTS {
+        true => Some(ByLoad::read(&mut lines)?),
         false => None,
     };
     let [count] = lines.entry("weights")?;
-    if lines.number::<usize>(count)? != operator_count(levels) {
-        let needed = operator_count(levels);
+    let count: usize = lines.number(count)?;
+    let (each, parts) = (
+        operator_count(levels),
+        by_load.as_ref().map_or(1, ByLoad::count),
+    );
+    if count != parts * each {
+        let needed = parts * each;
         return lines.fault(format!(
-            "{count} weights where K(K+1)/2 = {needed} are needed"
+            "{count} weights where {needed} are needed: K(K+1)/2 of each of {parts} part(s)"
         ));
     }
-    // The vector grows with the lines. A number in the file alone allocates nothing.
-    let mut weights = Vec::new();
-    for _ in 0..operator_count(levels) {
-        let line = lines.next()?;
-        weights.push(lines.finite(line)?);
+    // The vectors grow with the lines. A number in the file alone allocates nothing.
+    let mut models = Vec::new();
+    for _ in 0..parts {
+        let mut weights = Vec::new();
+        for _ in 0..each {
+            let line = lines.next()?;
+            weights.push(lines.finite(line)?);
+        }
+        let table = vec![0.0; table_len(levels)];
+        let model = Model::new(plane, operator, &weights, table)
+            .or_else(|error| lines.fault(error.to_string()))?;
+        if kind == Kind::Inverse {
+            model
+                .inverse()
+                .or_else(|error| lines.fault(error.to_string()))?;
+        }
+        models.push(model);
     }
     let end = lines.next()?;
     if !end.starts_with("end ") {
         return lines.fault("more lines than weights");
     }
-    let table = vec![0.0; table_len(levels)];
-    let model = Model::new(plane, operator, &weights, table)
-        .or_else(|error| lines.fault(error.to_string()))?;
-    if kind == Kind::Inverse {
-        model
-            .inverse()
-            .or_else(|error| lines.fault(error.to_string()))?;
-    }
+    let by_load = by_load.map(|by_load| by_load.with(&models));
+    let model = models.swap_remove(0);
     let mut block = Block {
         kind,
         token: token.into(),
@@ -222,6 +249,7 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         offset,
         sign,
         stages: None,
+        by_load,
         start: None,
         first: match kind {
             Kind::Forward => (plane.bottom(), 0.0),
@@ -233,8 +261,12 @@ fn parse(bytes: &[u8]) -> Parsed<Block> {
         let stages = more.stages.core(offset, sign);
         let checked = stages.check(&block.model);
         checked.or_else(|error| lines.fault(error.to_string()))?;
+        let by_load = block.by_load.as_ref();
+        let checked = by_load.map_or(Ok(()), |by_load| by_load.core().check(&block.model));
+        checked.or_else(|error| lines.fault(error.to_string()))?;
         (block.start, block.first) = (more.start, more.first);
-        block.stages = Some(more.stages).filter(|stages| !stages.is_none());
+        let needed = |stages: &Constants| !stages.is_none() || block.by_load.is_some();
+        block.stages = Some(more.stages).filter(needed);
     }
     if let Err(problem) = block.start(false) {
         return lines.fault(problem.0);
@@ -322,8 +354,9 @@ mod tests {
     #[test]
     fn a_fault_with_the_right_checksum_is_named() {
         let cases = [
-            (1, "hysteron-fmu 3", "`hysteron-fmu 3` where"),
+            (1, "hysteron-fmu 4", "`hysteron-fmu 4` where"),
             (1, "hysteron-fmu 2", "`first` is expected"),
+            (1, "hysteron-fmu 3", "`first` is expected"),
             (2, "block sideways", "no block"),
             (2, "block", "`block` and 1 value"),
             (4, "operator", "`operator` and 1 value"),
@@ -357,6 +390,38 @@ mod tests {
         let mut lines = LINES;
         (lines[4], lines[6]) = ("plane 20.0 80.0 46340", "weights 1073720970");
         assert!(parse(closed(&lines).as_bytes()).unwrap_err().line >= 11);
+    }
+
+    #[test]
+    fn parts_of_the_weights() {
+        let more = "first 20.0 60.0\nstart\nbody\ndrive\nloads\nshifts\nscales\ngains\noffsets\n\
+                    spacing\ncreep\ntaus\nlag 0.0\nrange 50.0 200.0\nparts 1.0 2.5";
+        let with = |replaced: (&str, &str)| {
+            let mut lines: Vec<&str> = LINES[..6].to_vec();
+            lines[0] = "hysteron-fmu 3";
+            lines.extend(more.split('\n'));
+            lines.extend(["weights 6", "0.1", "0.0", "1e-3", "0.5", "0.25", "2.0"]);
+            let at = lines.iter().position(|line| *line == replaced.0).unwrap();
+            lines[at] = replaced.1;
+            parse(closed(&lines).as_bytes())
+        };
+        let block = with(("0.5", "0.5")).unwrap();
+        assert!(block.is_loaded() && block.by_load.unwrap().count() == 2);
+        let many = "parts 1 2 3 4 5 6 7 8 9";
+        for (line, replaced, expected) in [
+            ("range 50.0 200.0", "range 200.0 200.0", "in order"),
+            ("range 50.0 200.0", "range 50.0 NaN", "not a finite"),
+            ("range 50.0 200.0", "range 50.0", "in order"),
+            ("range 50.0 200.0", "range -1.7e308 1.7e308", "`load`"),
+            ("parts 1.0 2.5", "parts", "1 to 8 numbers"),
+            ("parts 1.0 2.5", many, "1 to 8 numbers"),
+            ("parts 1.0 2.5", "parts 1.0", "are needed"),
+            ("weights 6", "weights 3", "are needed"),
+            ("0.25", "-0.25", "negative"),
+        ] {
+            let fault = with((line, replaced)).unwrap_err();
+            assert!(fault.problem.contains(expected), "{replaced}: {fault:?}");
+        }
     }
 
     #[cfg(unix)]

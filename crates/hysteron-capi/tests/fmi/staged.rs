@@ -37,6 +37,24 @@ fn model_without_body() -> Model {
     model
 }
 
+/// Every stage, or none of them, and weights of the order `count - 1` in the load.
+fn by_load(seed: u64, count: usize, alone: bool) -> Model {
+    let mut rng = StdRng::seed_from_u64(seed);
+    let mut file: serde_json::Value = serde_json::from_str(&every_stage().to_json()).unwrap();
+    let mut weights = || -> Vec<f64> { (0..10).map(|_| rng.random_range(0.0..1.0)).collect() };
+    let parts: Vec<Vec<f64>> = (0..count).map(|_| weights()).collect();
+    let part =
+        |weights| serde_json::json!({"offset": rng.random_range(2.0..4.0), "weights": weights});
+    file["load"]["parts"] = parts.into_iter().map(part).collect();
+    if alone {
+        for stage in ["thermal", "drive", "spacing", "creep", "lag", "start"] {
+            file.as_object_mut().unwrap().remove(stage);
+        }
+        file["load"].as_object_mut().unwrap().remove("curves");
+    }
+    Model::from_json(&file.to_string()).unwrap()
+}
+
 /// Random samples: signal, load and step size, some of them without length.
 fn samples(seed: u64, low: f64, high: f64) -> Vec<(f64, f64, f64)> {
     let mut rng = StdRng::seed_from_u64(seed);
@@ -102,6 +120,9 @@ fn the_model_with_every_stage_to_the_last_bit() {
     for (model, low, high) in [
         (every_stage(), -0.1, 1.1),
         (model_without_body(), 20.0, 95.0),
+        (by_load(1, 2, false), -0.1, 1.1),
+        (by_load(2, 8, false), -0.1, 1.1),
+        (by_load(3, 3, true), 0.0, 4.5),
     ] {
         for fmi in [Fmi::V2, Fmi::V3] {
             let fmu = Unpacked::new(&model, false, fmi);
@@ -128,7 +149,13 @@ fn the_model_with_every_stage_to_the_last_bit() {
 #[test]
 #[cfg_attr(miri, ignore = "it is about digits, and takes Miri hours")]
 fn its_inverse_to_the_last_bit() {
-    for model in [every_stage(), model_without_body()] {
+    for model in [
+        every_stage(),
+        model_without_body(),
+        by_load(4, 2, false),
+        by_load(5, 6, false),
+        by_load(6, 4, true),
+    ] {
         let (a, b) = model.output_range();
         for fmi in [Fmi::V2, Fmi::V3] {
             let fmu = Unpacked::new(&model, true, fmi);
@@ -150,7 +177,8 @@ fn its_inverse_to_the_last_bit() {
                 seen[usize::try_from(status + 1).unwrap()] = true;
                 (found.input.to_bits(), status, state.temperature().to_bits())
             });
-            assert!(seen[1] && seen[4], "reached and limited: {seen:?}");
+            let limited = seen[4] || !model.is_timed();
+            assert!(seen[1] && limited, "reached and limited: {seen:?}");
         }
     }
 }
@@ -178,5 +206,22 @@ fn start_values_and_what_is_refused() {
             assert_eq!((c.set(LOAD, 100.0), c.step(0.0, 0.1)), (0, 0));
             c.free();
         }
+    }
+}
+
+/// Beyond the range of the loads the weights are those of its nearest end.
+#[test]
+fn loads_outside_act_as_the_ends() {
+    let fmu = Unpacked::new(&by_load(7, 3, true), false, Fmi::V3);
+    for (load, end) in [(-1e9, 0.0), (200.001, 200.0), (f64::MAX, 200.0)] {
+        let at = |load: f64| {
+            let c = fmu.instance();
+            assert_eq!((c.set(SIGNAL, 2.7), c.set(LOAD, load)), (0, 0));
+            assert_eq!(c.initialise(0.0), 0);
+            let outputs = c.outputs();
+            c.free();
+            outputs
+        };
+        assert_eq!(at(load), at(end));
     }
 }

@@ -1,10 +1,12 @@
 //! The table: one row for a function.
 
 use super::Argument::{
-    Characters, Constants, Doubles, Estimator, Integers, Json, Learning, Limits, Memory, Model,
-    Options, Path, StageState, Stages, State, Word,
+    Characters, Constants, Doubles, Estimator, Found, Integers, Json, Learning, Limits, Memory,
+    Model, Options, Path, Shift, ShiftOptions, StageState, Stages, State, Word,
 };
-use super::{Call, LEVELS, WEIGHTS, estimator_size, model_size, stages_size, state_size};
+use super::{
+    Call, LEVELS, WEIGHTS, estimator_size, model_size, shift_size, stages_size, state_size,
+};
 use hysteron_capi::*;
 
 /// One number, of whatever value.
@@ -36,6 +38,10 @@ macro_rules! calls {
 calls! {
     hysteron_adaptive_inverse_step(input: ONE, status: Integers(1)) |h|
         (h.adaptive, 1.0, HYSTERON_HOLD, 0.0, input.cast(), status.cast());
+    hysteron_adaptive_load_inverse_step(input: ONE, status: Integers(1)) |h|
+        (h.follower, 1.0, HYSTERON_HOLD, 0.0, f64::NAN, input.cast(), status.cast());
+    hysteron_adaptive_load_new(options: ShiftOptions, adaptive_load: Word) |h|
+        (h.model, f64::NAN, options.cast(), adaptive_load.cast());
     hysteron_adaptive_new(options: Options, adaptive: Word) |h|
         (h.model, options.cast(), adaptive.cast());
     hysteron_core_estimator_init(
@@ -57,6 +63,29 @@ calls! {
     );
     hysteron_core_run(model: Model, state: State, input: SERIES, output: SERIES) |_h|
         (model.cast(), state.cast(), input.cast(), output.cast(), 3);
+    hysteron_core_shift_init(
+        model: Model, stages: Stages, options: ShiftOptions, memory: Memory(shift_size), shift: Word
+    ) |_h| (
+        model.cast(), stages.cast(), options.cast(), memory, shift_size(), shift.cast()
+    );
+    hysteron_core_shift_inverse_step(
+        shift: Shift, stages: Stages, model: Model, state: State, memory: StageState,
+        limits: Limits, input: ONE, status: Integers(1)
+    ) |_h| (
+        shift.cast(), stages.cast(), model.cast(), state.cast(), memory.cast(), 1.0, HYSTERON_HOLD,
+        0.0, 0.1, f64::NAN, limits.cast(), input.cast(), status.cast()
+    );
+    hysteron_core_shift_read(shift: Shift, stages: Stages, found: Found) |_h|
+        (shift.cast(), stages.cast(), f64::NAN, found.cast());
+    hysteron_core_shift_step(
+        shift: Shift, stages: Stages, model: Model, state: State, memory: StageState,
+        learning: Learning
+    ) |_h| (
+        shift.cast(), stages.cast(), model.cast(), state.cast(), memory.cast(), 0.5, 0.1, f64::NAN,
+        1.0, learning.cast()
+    );
+    hysteron_core_shift_usual(model: Model, stages: Stages, options: ShiftOptions) |_h|
+        (model.cast(), stages.cast(), options.cast());
     hysteron_core_stages_init(
         model: Model, constants: Constants, memory: Memory(stages_size), stages: Word
     ) |_h| (model.cast(), constants.cast(), memory, stages_size(), stages.cast());

@@ -47,6 +47,10 @@ pub enum Argument {
     State,
     Estimator,
     Stages,
+    Shift,
+    /// Options of the estimator of the shift, and what it found.
+    ShiftOptions,
+    Found,
     Memory(fn() -> usize),
 }
 
@@ -57,6 +61,7 @@ pub struct Handles {
     pub state: u64,
     pub loaded: u64,
     pub adaptive: u64,
+    pub follower: u64,
 }
 
 impl Handles {
@@ -64,7 +69,7 @@ impl Handles {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
         let (mut model, mut state, mut adaptive) = (0, 0, 0);
-        let (mut other, mut loaded) = (0, 0);
+        let (mut other, mut loaded, mut follower) = (0, 0, 0);
         let count = WEIGHTS.len();
         // SAFETY: live memory of the sizes given.
         let made = unsafe {
@@ -84,15 +89,17 @@ impl Handles {
                 hysteron_adaptive_new(model, std::ptr::null(), &mut adaptive),
                 hysteron_model_parse(LOADED_TEXT.as_ptr(), &mut other),
                 hysteron_state_new(other, &mut loaded),
+                hysteron_adaptive_load_new(model, f64::NAN, std::ptr::null(), &mut follower),
             ]
         };
-        assert_eq!(made, [HYSTERON_OK; 5]);
+        assert_eq!(made, [HYSTERON_OK; 6]);
         Self {
             folder,
             model,
             state,
             loaded,
             adaptive,
+            follower,
         }
     }
 
@@ -109,6 +116,23 @@ pub fn options() -> HysteronAdaptation {
     let filled = unsafe { hysteron_adaptation_default(HYSTERON_GRADIENT, &mut options) };
     assert_eq!(filled, HYSTERON_OK);
     options
+}
+
+pub fn shift_options() -> HysteronShiftOptions {
+    HysteronShiftOptions {
+        noise: 0.1,
+        spread: 0.2,
+        walk: 0.0,
+        reach: 1.0,
+        dead_zone: 0.0,
+        movement: 0.05,
+        gate: 12.0,
+        burst: 8,
+    }
+}
+
+pub fn shift_size() -> usize {
+    hysteron_core_shift_size()
 }
 
 pub fn model_size() -> usize {
@@ -162,6 +186,9 @@ impl Argument {
             Self::State => state_size(),
             Self::Estimator => estimator_size(),
             Self::Stages => stages_size(),
+            Self::Shift => shift_size(),
+            Self::ShiftOptions => size_of::<HysteronShiftOptions>(),
+            Self::Found => size_of::<HysteronShift>(),
             Self::Memory(bytes) => bytes(),
         }
     }
@@ -177,7 +204,7 @@ impl Argument {
     pub fn is_object(self) -> bool {
         matches!(
             self,
-            Self::Model | Self::State | Self::Estimator | Self::Stages
+            Self::Model | Self::State | Self::Estimator | Self::Stages | Self::Shift
         )
     }
 
@@ -207,6 +234,11 @@ impl Argument {
             Self::Limits => unsafe { place.cast::<HysteronLimits>().write(LIMITS) },
             // SAFETY: the place has room for it.
             Self::Constants => unsafe { place.cast::<HysteronStages>().write(constants()) },
+            // SAFETY: the place has room for it.
+            Self::ShiftOptions => unsafe {
+                place.cast::<HysteronShiftOptions>().write(shift_options());
+            },
+            Self::Shift => core_shift(model.get(), place),
             Self::Stages => core_stages(model.get(), place),
             Self::Model => model.0 = core_model(place),
             Self::State => core_state(model.get(), place),
@@ -284,5 +316,23 @@ fn core_stages(model: *mut HysteronCoreModel, place: *mut c_void) {
     let (constants, bytes) = (constants(), stages_size());
     // SAFETY: the place has the size asked for.
     let made = unsafe { hysteron_core_stages_init(model, &constants, place, bytes, &mut stages) };
+    assert_eq!(made, HYSTERON_OK);
+}
+
+fn core_shift(model: *mut HysteronCoreModel, place: *mut c_void) {
+    let mut room = vec![0_u64; stages_size().div_ceil(8)];
+    core_stages(model, room.as_mut_ptr().cast());
+    let mut shift = null_mut();
+    // SAFETY: the place has the size asked for.
+    let made = unsafe {
+        hysteron_core_shift_init(
+            model,
+            room.as_ptr().cast(),
+            &shift_options(),
+            place,
+            shift_size(),
+            &mut shift,
+        )
+    };
     assert_eq!(made, HYSTERON_OK);
 }

@@ -86,8 +86,7 @@ pub(crate) struct ExportFmu {
     /// Name of the block, a C identifier [default: sf_MKP, with --inverse sf_Inverse_MKP]
     #[arg(long)]
     pub(crate) name: Option<String>,
-    /// Take the model at this load. Needed where the weights depend on the load; otherwise the load
-    /// is an input of the block
+    /// Take the model at this load; without it the load is an input of the block
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
     pub(crate) load: Option<f64>,
     #[command(flatten)]

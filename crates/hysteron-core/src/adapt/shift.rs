@@ -28,6 +28,9 @@ const FLAT: usize = 4;
 /// An error of so many standard deviations says that the shift is less certain than thought.
 const UNLIKELY: usize = 3;
 
+/// The weights are renewed where the load moved by the range of loads divided by this.
+const RENEWALS: usize = 256;
+
 /// Follows the shift `δ` of the operators' axis under a load that nobody measures.
 ///
 /// Each sample is first predicted, then learned from, as with [`Estimator`](crate::Estimator). A
@@ -221,6 +224,33 @@ impl<T: Real> ShiftEstimator<T> {
     /// As [`Load::at`].
     pub fn load(&self, load: &Load<'_, T>, told: Option<T>) -> Result<Option<T>, Error> {
         Ok(load.of_shift(load.at(told)?.shift + self.shift))
+    }
+
+    /// The load for [`Parts::place`](crate::Parts::place), where the weights depend on the load: at
+    /// first the load `told`, then what the call before returned, `placed`.
+    ///
+    /// It stays until the load that the shift tells is away by 1/256 of the `range` of loads, so
+    /// that weights are mixed seldom.
+    ///
+    /// # Errors
+    /// As [`Load::at`].
+    pub fn renewed(
+        &self,
+        load: &Load<'_, T>,
+        told: Option<T>,
+        placed: T,
+        range: (T, T),
+    ) -> Result<T, Error> {
+        let (low, high) = range;
+        let Some(found) = self.load(load, told)? else {
+            return Ok(placed);
+        };
+        let found = found.clamp(low, high);
+        let moved = (found - placed).max(placed - found);
+        Ok(match moved > (high - low) / T::from_index(RENEWALS) {
+            true => found,
+            false => placed,
+        })
     }
 
     /// The values of the load's curves, at the present shift from the load `told`.

@@ -7,6 +7,7 @@
 //! - [`Body`]: first-order heating and cooling, from the drive to the temperature.
 //! - [`Axis`]: the load shifts the temperature axis; the spacing places the levels.
 //! - [`Load`]: what the load does to axis, stroke and offset.
+//! - [`Parts`]: weights that depend on the load.
 //! - [`Creep`]: the output goes on moving after the operators have come to rest.
 //! - [`Stages`]: the whole chain. It steps forward, and its inverse is exact for the sample.
 //!
@@ -18,6 +19,7 @@ mod body;
 mod chain;
 mod invert;
 mod mix;
+mod parts;
 
 pub use after::{Creep, MAX_CREEP};
 pub use axis::{Axis, Load, Loaded};
@@ -25,3 +27,4 @@ pub use body::{Body, Decay};
 pub use chain::{Rates, Sample, StageState, Stages};
 pub use invert::Wanted;
 pub use mix::mix;
+pub use parts::{MAX_PARTS, Parts, Placed, bernstein};

@@ -182,6 +182,7 @@ impl<T: Number> Constants<T> {
                 + stages
                 + (table + start + if adaptation { weights } else { 0 }) * T::BYTES,
             state,
+            mixed,
             turns: turn_capacity(self.core.plane().levels()) * 2 * T::BYTES,
             adaptation: adaptation.then(|| adaptive - state + self.adaptation_numbers() * T::BYTES),
         }

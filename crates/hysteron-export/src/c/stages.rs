@@ -2,7 +2,7 @@
 
 use super::constants::{Constants, Number, unfit};
 use hysteron::{Error, Model, Remedy, Result, Setting};
-use hysteron_core::{Axis, Body, Creep, Load, MAX_CREEP, Real, Stages, table_len};
+use hysteron_core::{Axis, Body, Creep, Load, MAX_CREEP, MAX_PARTS, Real, Stages, table_len};
 
 /// How a model with stages runs on the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,9 +14,6 @@ pub struct CSampling {
     /// for a model with stages.
     pub drive: Option<(f64, f64)>,
 }
-
-/// The largest number of parts, `HYS_MOST_PARTS`.
-const MAX_PARTS: usize = 8;
 
 /// Weights that depend on the load: the constants of `hys_parts`.
 pub(super) struct Parts<T> {

@@ -18,7 +18,10 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
         Sign::Positive => 1,
         Sign::Negative => -1,
     };
-    let (offset, weights) = (model.offset(), model.weights());
+    // Those of the parts, one after the other, where they depend on the load.
+    let parts = staged::parts(model);
+    let weights = parts.map_or(model.weights(), |load| load.joined().1);
+    let offset = model.offset();
     let (version, more) = match staged::is_plain(model) {
         true => (1, String::new()),
         false => {
@@ -27,7 +30,8 @@ pub(super) fn of(model: &Model, inverse: bool, token: &str) -> Result<String> {
                 true => staged::first_target(model)?,
                 false => input,
             };
-            (2, staged::lines(model, (signal, load)))
+            let version = if parts.is_some() { 3 } else { 2 };
+            (version, staged::lines(model, (signal, load)))
         }
     };
     let mut text = format!(

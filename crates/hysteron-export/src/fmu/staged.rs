@@ -1,26 +1,28 @@
 //! What an FMU of a model with stages has more.
 
-use hysteron::{Error, Model, Remedy, Result, Sample, Setting};
+use hysteron::{Error, LoadDependence, Model, Remedy, Result, Sample, Setting};
+use hysteron_core::MAX_PARTS;
 use std::fmt::Write;
 
-/// Refuses a model whose weights depend on the load.
+/// The weights that depend on the load, if they do.
+pub(super) fn parts(model: &Model) -> Option<&LoadDependence> {
+    model.load.as_ref().filter(|load| load.parts().len() > 1)
+}
+
+/// Refuses a model that no binary takes.
 pub(super) fn check(model: &Model) -> Result<()> {
-    match model.load.as_ref().filter(|load| load.parts().len() > 1) {
-        None => Ok(()),
-        Some(load) => {
-            let name = &load.quantity.name;
-            let what = format!(
-                "the model has other weights at each load `{name}`, and a block has one set"
-            );
-            let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
-            Err(Error::Export(what).remedied(remedy))
-        }
+    let count = parts(model).map_or(1, |load| load.parts().len());
+    if count <= MAX_PARTS {
+        return Ok(());
     }
+    let what = format!("the weights have {count} parts over the load, and a block has {MAX_PARTS}");
+    let remedy = Remedy::new("export it at one load with {}", [Setting::any("load")]);
+    Err(Error::Export(what).remedied(remedy))
 }
 
 /// Whether the load is an input of the block.
 pub(super) fn is_loaded(model: &Model) -> bool {
-    !model.stages().axis.load.loads.is_empty()
+    !model.stages().axis.load.loads.is_empty() || parts(model).is_some()
 }
 
 /// Whether the model has nothing but operators, all of them off at the start.
@@ -94,8 +96,18 @@ pub(super) fn lines(model: &Model, first: (f64, f64)) -> String {
         ("taus", stages.creep.taus),
         ("lag", &[stages.lag]),
     ];
+    let parts = parts(model).map_or_else(Vec::new, |load| {
+        let (low, high) = load.range();
+        vec![
+            ("range", vec![low, high]),
+            ("parts", load.joined().0.to_vec()),
+        ]
+    });
+    let parts = parts
+        .iter()
+        .map(|(key, numbers)| (*key, numbers.as_slice()));
     let mut text = String::new();
-    for (key, numbers) in entries {
+    for (key, numbers) in entries.into_iter().chain(parts) {
         text += key;
         for number in numbers {
             // The shortest that reads back as the same number. Writing to a text cannot fail.

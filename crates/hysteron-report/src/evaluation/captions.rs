@@ -1,7 +1,9 @@
 //! Titles and captions: what each figure shows, with its numbers.
 
 use crate::evaluation::figure::Figure;
-use crate::evaluation::figures::{SHOWN, choices_hidden, classes_counted, dead_band_shown};
+use crate::evaluation::figures::{
+    SHOWN, choices_hidden, classes_counted, dead_band_shown, resting_loads,
+};
 use crate::evaluation::view::View;
 use crate::number::{capitalised, percent};
 use crate::number::{count, significant};
@@ -15,6 +17,14 @@ pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
     let title = match figure {
         Figure::LoadLoops => match view.source.load() {
             Some(load) => format!("major loops by {}", load.quantity.name),
+            None => String::new(),
+        },
+        Figure::LoadShift => match view.source.load() {
+            Some(load) => format!("shift by {}", load.quantity.name),
+            None => String::new(),
+        },
+        Figure::LoadMeasured => match view.source.load() {
+            Some(load) => format!("{output} over {input}, by {}", load.quantity.name),
             None => String::new(),
         },
         Figure::Excitation => "What is known of each operator".into(),
@@ -38,6 +48,8 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
     let (input, output, recorded) = (&view.input.name, &view.output.name, view.recorded());
     let caption = match figure {
         Figure::LoadLoops => load_loops(view),
+        Figure::LoadShift => load_shift(view),
+        Figure::LoadMeasured => load_measured(view),
         Figure::Excitation => excitation(view),
         Figure::StandardErrors => standard_errors(view),
         Figure::CrossValidation => cross_validation(view),
@@ -94,29 +106,64 @@ fn load_loops(view: &View<'_>) -> String {
     let Some(load) = view.source.load() else {
         return String::new();
     };
-    let what = format!(
+    format!(
         "One model that depends on the {}: the whole loop at the smallest, the middle and the \
          largest that it was identified at.",
         load.quantity.name
+    )
+}
+
+/// The slope of the shift, both ways: the field states that of the phase diagram, load per
+/// temperature.
+fn load_shift(view: &View<'_>) -> String {
+    let load = view.source.load();
+    let Some((load, curves)) = load.and_then(|load| Some((load, load.curves.as_ref()?))) else {
+        return String::new();
+    };
+    let (name, slope) = (&load.quantity.name, curves.slope());
+    let what = format!(
+        "By how much the {name} shifts the loop along the {}.",
+        view.input.name
     );
-    // The field states the slope of the phase diagram: load per temperature.
-    match load.curves.as_ref().map(hysteron::LoadCurves::slope) {
-        Some(slope) if slope != 0.0 => {
-            let unit = |quantity: &hysteron::Quantity| {
-                quantity
-                    .unit
-                    .clone()
-                    .unwrap_or_else(|| quantity.name.clone())
-            };
-            let (input, load) = (unit(view.source.input()), unit(&load.quantity));
-            format!(
-                "{what} It shifts the loop by {} {input}/{load} on average, {} {load}/{input}.",
-                significant(slope, 3),
-                significant(1.0 / slope, 3),
-            )
-        }
-        _ => what,
+    if slope == 0.0 {
+        return format!("{what} On average it does not.");
     }
+    let unit = |quantity: Labelled| quantity.unit.unwrap_or(quantity.name);
+    let input = unit(view.input.difference(&view.input.name));
+    let load = unit(Labelled::first([&load.quantity, &load.quantity], "load"));
+    let each = match curves.loads.len() {
+        2 => String::new(),
+        _ => {
+            let pairs = curves.loads.windows(2).zip(curves.shifts.windows(2));
+            let slopes = pairs.map(|(load, shift)| (shift[1] - shift[0]) / (load[1] - load[0]));
+            let (least, most) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), slope| {
+                (a.min(slope), b.max(slope))
+            });
+            let [least, most] = [least, most].map(|slope| significant(slope, 3));
+            format!(" From piece to piece it is {least} to {most} {input}/{load}.")
+        }
+    };
+    format!(
+        "{what} Its slope is {} {input}/{load} on average, or {} {load}/{input}.{each}",
+        significant(slope, 3),
+        significant(1.0 / slope, 3),
+    )
+}
+
+fn load_measured(view: &View<'_>) -> String {
+    let Some((load, found)) = view.source.load().zip(resting_loads(view)) else {
+        return String::new();
+    };
+    let loads = match found.len() {
+        1 => "one".to_owned(),
+        count => format!("{count} values"),
+    };
+    format!(
+        "The recording where the {} rests, at {loads} of it: {} loops, and over them what the \
+         model says of the same samples.",
+        load.quantity.name,
+        view.recorded(),
+    )
 }
 
 fn excitation(view: &View<'_>) -> String {

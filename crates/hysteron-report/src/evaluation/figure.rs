@@ -9,6 +9,10 @@ use std::fmt;
 pub enum Figure {
     /// Fig. 2: major loops at the smallest, the middle and the largest load.
     LoadLoops,
+    /// By how much a load shifts the axis of the input.
+    LoadShift,
+    /// Loops of the recording at each of its loads, measured and modelled.
+    LoadMeasured,
     /// Fig. 6: operator states on the plane at a few instants of the recording.
     PlaneEvolution,
     /// Fig. 8(a): which weights are not zero.
@@ -38,15 +42,17 @@ pub enum Figure {
 impl Figure {
     /// Every figure, in the order of the page: the fitted weights, both tests, then the memory
     /// behind them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::WeightsPlane,
         Self::WeightsMap,
+        Self::LoadShift,
         Self::LoadLoops,
         Self::Excitation,
         Self::StandardErrors,
         Self::CrossValidation,
         Self::OutputTime,
         Self::Loops,
+        Self::LoadMeasured,
         Self::OutputDiscrepancy,
         Self::InputTime,
         Self::InputDiscrepancy,
@@ -58,6 +64,8 @@ impl Figure {
     pub fn stem(self) -> &'static str {
         match self {
             Self::LoadLoops => "fig02-load-loops",
+            Self::LoadShift => "load-shift",
+            Self::LoadMeasured => "load-measured",
             Self::Excitation => "excitation",
             Self::StandardErrors => "standard-errors",
             Self::CrossValidation => "cross-validation",
@@ -86,7 +94,11 @@ impl Figure {
             Self::InputTime => "13",
             Self::InputDiscrepancy => "14",
             Self::DeadBand => "15",
-            Self::Excitation | Self::StandardErrors | Self::CrossValidation => return None,
+            Self::LoadShift
+            | Self::LoadMeasured
+            | Self::Excitation
+            | Self::StandardErrors
+            | Self::CrossValidation => return None,
         })
     }
 

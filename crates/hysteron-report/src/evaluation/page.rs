@@ -17,7 +17,7 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
         "The model",
         &[
             &[Figure::WeightsPlane, Figure::WeightsMap],
-            &[Figure::LoadLoops],
+            &[Figure::LoadShift, Figure::LoadLoops],
         ],
     ),
     (
@@ -32,6 +32,7 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
         &[
             &[Figure::OutputTime],
             &[Figure::Loops],
+            &[Figure::LoadMeasured],
             &[Figure::OutputDiscrepancy],
         ],
     ),

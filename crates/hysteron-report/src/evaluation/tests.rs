@@ -35,12 +35,17 @@ fn figures(fixture: &Fixture) -> Vec<(Figure, String)> {
 }
 
 /// Figures that need a model to say more than its weights.
-const OF_FITS: [Figure; 4] = [
+const OF_FITS: [Figure; 6] = [
+    Figure::LoadShift,
+    Figure::LoadMeasured,
     Figure::LoadLoops,
     Figure::Excitation,
     Figure::StandardErrors,
     Figure::CrossValidation,
 ];
+
+/// Figures of a model that depends on a load.
+const OF_LOADS: [Figure; 3] = [Figure::LoadShift, Figure::LoadMeasured, Figure::LoadLoops];
 
 /// Figures of any model.
 const PLAIN: usize = Figure::ALL.len() - OF_FITS.len();
@@ -60,15 +65,77 @@ fn a_model_that_says_more_has_more_figures() {
             .all(|figure| !drawn(&fixture).contains(figure))
     );
     fixture.identify();
-    let expected = Figure::ALL.into_iter().filter(|f| *f != Figure::LoadLoops);
-    assert_eq!(drawn(&fixture), expected.collect::<Vec<_>>());
+    let expected: Vec<Figure> = Figure::ALL
+        .into_iter()
+        .filter(|figure| !OF_LOADS.contains(figure))
+        .collect();
+    assert_eq!(drawn(&fixture), expected);
     let load = (0..600).map(|n| 6.0 + 0.01 * f64::from(n % 5));
     fixture.recording.load = Some(load.collect());
     fixture.identify();
     let found = drawn(&fixture);
-    assert!(OF_FITS.iter().all(|figure| found.contains(figure)));
+    assert!(found.contains(&Figure::LoadLoops));
+    // A load that changes with every sample has no loops of its own.
+    assert!(!found.contains(&Figure::LoadMeasured));
     // There is an inverse under a load that changes, too.
     assert!(found.contains(&Figure::InputTime));
+}
+
+/// A model with a shift on a recording at these loads, one after the other, of 200 samples each.
+fn loaded(loads: &[f64]) -> Fixture {
+    let mut fixture = sma(200 * loads.len());
+    let weights = fixture.model.weights();
+    let load = format!(
+        r#", "load": {{"name": "stress", "unit": "MPa", "min": 0, "max": 200,
+            "parts": [{{"offset": 0, "weights": {weights:?}}}],
+            "curves": {{"loads": [0, 100, 200], "shifts": [0, 10, 30]}}}}}}"#
+    );
+    let text = fixture
+        .model
+        .to_json()
+        .replace("\"version\": 1", "\"version\": 2");
+    let text = text.trim_end().strip_suffix('}').unwrap().to_owned() + &load;
+    fixture.model = hysteron::Model::from_json(&text).unwrap();
+    let load = loads.iter().flat_map(|load| [*load; 200]).collect();
+    fixture.recording.load = Some(load);
+    fixture.evaluate();
+    fixture
+}
+
+fn figure(fixture: &Fixture, figure: Figure) -> Option<String> {
+    report(fixture, "a wire").svg(figure).unwrap()
+}
+
+#[test]
+fn a_shift_is_drawn_with_its_slope_in_the_units_of_the_field() {
+    let fixture = loaded(&[50.0, 150.0]);
+    let shift = figure(&fixture, Figure::LoadShift).unwrap();
+    assert!(shift.contains("shift s [K]") && shift.contains("stress [MPa]"));
+    let folder = tempfile::tempdir().unwrap();
+    let written = report(&fixture, "a wire").write(folder.path()).unwrap();
+    let page = std::fs::read_to_string(&written[0]).unwrap();
+    // 30 K over 200 MPa; the pieces have 10 and 20 K over 100 MPa.
+    assert!(
+        page.contains("0.150 K/MPa on average, or 6.67 MPa/K"),
+        "{page}"
+    );
+    assert!(page.contains("0.100 to 0.200 K/MPa"));
+    assert_eq!(figure(&sma(200), Figure::LoadShift), None);
+}
+
+#[test]
+fn loops_of_each_load_are_drawn_where_it_rests() {
+    let measured = |loads: &[f64]| figure(&loaded(loads), Figure::LoadMeasured);
+    // Loads of the fit are 0, 100 and 200; measured ones waver.
+    let two = measured(&[3.0, 196.0, 1.0]).unwrap();
+    assert!(two.contains("measured 0") && two.contains("measured 200"));
+    assert!(!two.contains("measured 100"), "it was never there");
+    assert!(measured(&[100.0]).is_some());
+    assert_eq!(measured(&[50.0, 150.0]), None, "the fit knows no such load");
+    let mut moves = loaded(&[0.0]);
+    moves.recording.load = Some((0..200).map(f64::from).collect());
+    moves.evaluate();
+    assert_eq!(figure(&moves, Figure::LoadMeasured), None);
 }
 
 #[test]

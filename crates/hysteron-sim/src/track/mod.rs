@@ -99,6 +99,7 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
     let course = Course {
         reference: &reference,
         headings: &headings,
+        ahead: 0,
         events: &events,
     };
     let windows = score::windows(scenario);

@@ -29,30 +29,68 @@ struct Memory {
     lagged: f64,
 }
 
-/// The curves at one load.
+/// The curves at one load, and the offset of the weights there.
 struct Loaded {
     scale: f64,
     shift: f64,
     gain: f64,
     offset: f64,
+    base: f64,
 }
 
 /// A model, and its operators alone: their output is `Σ μ γ`.
 pub struct Chain<'m> {
     model: &'m Model,
-    operators: Model,
+    /// Operators and offset of each part; one part, where the weights do not depend on the load.
+    parts: Vec<(Model, f64)>,
     memory: Option<Memory>,
 }
 
 impl<'m> Chain<'m> {
     pub fn new(model: &'m Model) -> Result<Self> {
-        let (operator, plane) = (model.operator(), *model.plane());
-        let weights = model.weights().to_vec();
+        let part = |weights: &[f64], offset| Ok((operators(model, weights.to_vec())?, offset));
+        let parts: Result<Vec<_>> = match &model.load {
+            None => Ok(vec![part(model.weights(), model.offset())?]),
+            Some(load) => load
+                .parts()
+                .iter()
+                .map(|p| part(&p.weights, p.offset))
+                .collect(),
+        };
         Ok(Self {
             model,
-            operators: Model::new(operator, plane, weights, 0.0, Sign::Positive)?,
+            parts: parts?,
             memory: None,
         })
+    }
+
+    /// The factor of each part at a load: the Bernstein polynomials, as their formula is.
+    fn factors(&self, load: f64) -> Vec<f64> {
+        let degree = self.parts.len() - 1;
+        let (low, high) = self
+            .model
+            .load
+            .as_ref()
+            .map_or((0.0, 1.0), |load| load.range());
+        let s = (load - low) / (high - low);
+        let binomial = |k: usize| (0..k).fold(1, |c, i| c * (degree - i) / (i + 1)) as f64;
+        let power = |base: f64, exponent: usize| (0..exponent).fold(1.0, |p, _| p * base);
+        (0..=degree)
+            .map(|k| binomial(k) * power(s, k) * power(1.0 - s, degree - k))
+            .collect()
+    }
+
+    /// The sum of the parts' numbers at a load.
+    fn mixed(&self, load: f64, of: impl Fn(usize) -> f64) -> f64 {
+        let factors = self.factors(load).into_iter().enumerate();
+        factors.map(|(part, factor)| factor * of(part)).sum()
+    }
+
+    /// The operators with their weights at a load.
+    fn at(&self, load: f64) -> Result<Model> {
+        let weights = 0..self.model.weights().len();
+        let weights = weights.map(|n| self.mixed(load, |part| self.parts[part].0.weights()[n]));
+        operators(self.model, weights.collect())
     }
 
     /// The outputs for samples of the drive, from the first one on.
@@ -68,9 +106,14 @@ impl<'m> Chain<'m> {
         let seen: Vec<f64> = seen
             .map(|(&temperature, sample)| self.seen(&self.loaded(sample.load), temperature))
             .collect();
-        let sums = plain::forward(&self.operators, &seen)?;
-        let outputs = samples.iter().zip(temperatures).zip(sums);
-        let outputs = outputs.map(|((sample, temperature), sum)| {
+        let sums = self
+            .parts
+            .iter()
+            .map(|(part, _)| plain::forward(part, &seen));
+        let sums = sums.collect::<Result<Vec<_>>>()?;
+        let outputs = samples.iter().zip(temperatures).enumerate();
+        let outputs = outputs.map(|(n, (sample, temperature))| {
+            let sum = self.mixed(sample.load, |part| sums[part][n]);
             let loaded = self.loaded(sample.load);
             let (settled, crept) = self.settled(loaded.gain * sum, sample.dt);
             self.memory = Some(Memory {
@@ -85,12 +128,11 @@ impl<'m> Chain<'m> {
 
     /// Drive and status for each sample: −1 below reach at rest, 1 above, 3 not in this sample.
     pub fn inverse(mut self, aims: &[Aim]) -> Result<Vec<(f64, i8)>> {
-        let operators = self.operators.clone();
-        let mut search = Search::new(&operators)?;
+        let mut search = Search::new(&self.parts[0].0)?;
         aims.iter().map(|aim| self.step(&mut search, aim)).collect()
     }
 
-    fn step(&mut self, search: &mut Search<'_>, aim: &Aim) -> Result<(f64, i8)> {
+    fn step(&mut self, search: &mut Search, aim: &Aim) -> Result<(f64, i8)> {
         let Sample {
             value: target,
             dt,
@@ -98,10 +140,12 @@ impl<'m> Chain<'m> {
         } = aim.sample;
         let loaded = self.loaded(load);
         let sign = self.model.sign().factor();
-        let wanted = sign * (target - loaded.offset - self.model.offset());
+        let wanted = sign * (target - loaded.offset - loaded.base);
+        let operators = self.at(load)?;
+        search.weigh(&operators)?;
         let settled = |sum: f64| self.settled(loaded.gain * sum, dt).0;
         let slope = settled(1.0) - settled(0.0);
-        let (off, on) = self.operators.output_range();
+        let (off, on) = operators.output_range();
         let seen = if slope > 0.0 {
             let sum = root(settled, wanted);
             // Where the sum is what it was but for rounding, it is just that.
@@ -201,6 +245,7 @@ impl<'m> Chain<'m> {
             shift: of(|curves| &curves.shifts, 0.0),
             gain: of(|curves| &curves.gains, 1.0),
             offset: of(|curves| &curves.offsets, 0.0),
+            base: self.mixed(load, |part| self.parts[part].1),
         }
     }
 
@@ -242,8 +287,14 @@ impl<'m> Chain<'m> {
     }
 
     fn outward(&self, loaded: &Loaded, sum: f64) -> f64 {
-        loaded.offset + self.model.offset() + self.model.sign().factor() * sum
+        loaded.offset + loaded.base + self.model.sign().factor() * sum
     }
+}
+
+/// Operators with these weights, alone.
+fn operators(model: &Model, weights: Vec<f64>) -> Result<Model> {
+    let (operator, plane) = (model.operator(), *model.plane());
+    Model::new(operator, plane, weights, 0.0, Sign::Positive)
 }
 
 /// Outputs closer than this share of the range are the same: rounding, with room for the search.
@@ -251,13 +302,21 @@ const SAME: f64 = 1e-11;
 
 /// The size of the output at most, for tolerances.
 pub fn size(model: &Model) -> f64 {
-    let total: f64 = model.weights().iter().sum();
+    let parts = model.load.as_ref().map_or(&[][..], |load| load.parts());
+    let parts = parts
+        .iter()
+        .map(|part| size_of(model, &part.weights, part.offset));
+    parts.fold(size_of(model, model.weights(), model.offset()), f64::max)
+}
+
+fn size_of(model: &Model, weights: &[f64], offset: f64) -> f64 {
+    let total: f64 = weights.iter().sum();
     let sure = if model.operator() == Operator::Mkp {
         1.0
     } else {
         2.0
     };
-    sure * total + model.offset().abs()
+    sure * total + offset.abs()
 }
 
 /// The piecewise linear function through these points. Beyond the ends it goes on straight.

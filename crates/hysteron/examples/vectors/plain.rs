@@ -26,31 +26,48 @@ pub struct Wanted {
 
 /// The inverse as a search over the definition: the whole history runs again for each input that is
 /// tried.
-pub struct Search<'m> {
-    model: &'m Model,
+pub struct Search {
+    model: Model,
     history: Vec<f64>,
     input: f64,
     output: f64,
     /// Direction of the output's branch, and the output where the branch began.
     branch: (i8, f64),
+    /// How many inputs came before the branch.
+    begun: usize,
     /// Input and output where the output is least, and where it is greatest.
     ends: [(f64, f64); 2],
 }
 
-impl<'m> Search<'m> {
-    pub fn new(model: &'m Model) -> Result<Self> {
+impl Search {
+    pub fn new(model: &Model) -> Result<Self> {
+        let bottom = model.plane().bottom();
+        let mut search = Self {
+            model: model.clone(),
+            history: Vec::new(),
+            input: bottom,
+            output: 0.0,
+            branch: (0, 0.0),
+            begun: 0,
+            ends: [(0.0, 0.0); 2],
+        };
+        search.weigh(model)?;
+        Ok(search)
+    }
+
+    /// Goes on with the weights of `model`. The operators stay as they are.
+    pub fn weigh(&mut self, model: &Model) -> Result<()> {
+        self.model.clone_from(model);
         let (bottom, max) = (model.plane().bottom(), model.plane().max());
         let off = (bottom, forward(model, &[bottom])?[0]);
         let on = (max, forward(model, &[max])?[0]);
-        let ends = if off.1 < on.1 { [off, on] } else { [on, off] };
-        Ok(Self {
-            model,
-            history: Vec::new(),
-            input: bottom,
-            output: off.1,
-            branch: (0, off.1),
-            ends,
-        })
+        self.ends = if off.1 < on.1 { [off, on] } else { [on, off] };
+        let after = |inputs: &[f64]| -> Result<f64> {
+            Ok(forward(model, inputs)?.last().copied().unwrap_or(off.1))
+        };
+        self.output = after(&self.history)?;
+        self.branch.1 = after(&self.history[..self.begun])?;
+        Ok(())
     }
 
     /// The input for the next target, and the status: −1 below reach, 1 above, 0 reached. Goes
@@ -132,7 +149,7 @@ impl<'m> Search<'m> {
 
     fn after(&self, input: f64) -> Result<f64> {
         let way: Vec<f64> = self.history.iter().copied().chain([input]).collect();
-        let outputs = forward(self.model, &way)?;
+        let outputs = forward(&self.model, &way)?;
         Ok(outputs[outputs.len() - 1])
     }
 
@@ -144,6 +161,7 @@ impl<'m> Search<'m> {
             let direction = if upwards { 1 } else { -1 };
             if direction != self.branch.0 {
                 self.branch = (direction, self.output);
+                self.begun = self.history.len();
             }
         }
         self.history.push(input);

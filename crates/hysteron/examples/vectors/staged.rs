@@ -20,6 +20,8 @@ enum Stage {
     Spacing,
     Creep,
     Lag,
+    /// Weights and offset of the second order in the load.
+    Weights,
 }
 
 const EVERY: [Stage; 5] = [
@@ -53,6 +55,10 @@ pub fn all() -> Result<Vec<(String, String)>> {
     both("chain-mkp-5", Mkp, &EVERY, line)?;
     both("chain-kp-5", Kp, &EVERY, (-3.5, Negative))?;
     both("chain-relay-5", Relay, &EVERY, line)?;
+    both("weights-mkp-5", Mkp, &[Stage::Weights], line)?;
+    let whole = [&EVERY[..], &[Stage::Weights]].concat();
+    both("chain-weights-mkp-5", Mkp, &whole, line)?;
+    both("chain-weights-kp-5", Kp, &whole, (-3.5, Negative))?;
     Ok(files)
 }
 
@@ -88,6 +94,21 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
                 ]);
             }
             Stage::Lag => text["lag"] = 0.0625.into(),
+            Stage::Weights => {
+                let part = |part: usize| {
+                    let factor = |n: usize| 1.0 + ((n + 3 * part) % 4) as f64 / 4.0;
+                    let weights = plain.weights().iter().enumerate();
+                    let weights: Vec<f64> = weights.map(|(n, mu)| factor(n) * mu).collect();
+                    let offset = plain.offset() + [0.0, 1.5, -0.25][part];
+                    json!({"offset": offset, "weights": weights})
+                };
+                let load = &mut text["load"];
+                if load.is_null() {
+                    *load = json!({"name": "stress", "unit": "MPa"});
+                    (load["min"], load["max"]) = (LOADS.0.into(), LOADS.1.into());
+                }
+                load["parts"] = (0..3).map(part).collect();
+            }
         }
     }
     Model::from_json(&text.to_string())

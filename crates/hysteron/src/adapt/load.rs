@@ -4,10 +4,6 @@ use crate::error::{Error, Result};
 use crate::model::{Model, Sample, State, Wanted};
 use hysteron_core::{Learning, ShiftEstimator, ShiftOptions, Solution, Stages};
 
-/// The weights of a model that depend on the load are renewed where the load moved by this share of
-/// its range.
-const RENEWED: f64 = 1.0 / 256.0;
-
 /// A [`Model`] under a load that nobody measures, with its state.
 ///
 /// When the weight on the hook changes, the operators' axis shifts. This follows the shift alone,
@@ -104,7 +100,7 @@ impl AdaptiveLoad {
             } = state;
             estimator.step(stages, core, operators, memory, sample, measured)
         })?;
-        self.follow();
+        self.follow()?;
         Ok(learning)
     }
 
@@ -267,16 +263,15 @@ impl AdaptiveLoad {
     }
 
     /// Lets the weights follow the load.
-    fn follow(&mut self) {
-        if let (Some(load), Some(placed), Some(dependence)) =
-            (self.load(), self.placed, &self.offline.load)
-        {
-            let (low, high) = dependence.range();
-            let load = load.clamp(low, high);
-            if (load - placed).abs() > RENEWED * (high - low) {
-                self.placed = Some(load);
-            }
+    fn follow(&mut self) -> Result<()> {
+        if let (Some(placed), Some(dependence)) = (self.placed, &self.offline.load) {
+            let stages = self.offline.stages();
+            let load = &stages.axis.load;
+            let range = dependence.range();
+            let renewed = self.estimator.renewed(load, self.told, placed, range)?;
+            self.placed = Some(renewed);
         }
+        Ok(())
     }
 
     fn with_state<R>(

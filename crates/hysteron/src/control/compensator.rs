@@ -12,7 +12,7 @@
 
 use crate::adapt::{Adaptive, AdaptiveLoad};
 use crate::error::Result;
-use crate::model::{Model, Sample, Sign, State, Wanted};
+use crate::model::{Model, Policy, Sample, Sign, State, Wanted};
 use crate::series::Turning;
 use hysteron_core::{Direction, Outcome, Solution, Target};
 
@@ -129,7 +129,8 @@ impl Compensator {
 
     /// Finds the input that gives `target`, starting from the last input asked for. The heading of
     /// the target is used by *anticipate*. Reversals of the target up to `tolerance` are not
-    /// followed.
+    /// followed. `next` are the targets after this one, each after the time `dt`, for a fixed model
+    /// with a thermal body.
     ///
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite.
@@ -139,6 +140,7 @@ impl Compensator {
         heading: Option<Direction>,
         tolerance: f64,
         dt: Option<f64>,
+        next: &[f64],
     ) -> Result<Solution<f64>> {
         let branch = self.target.get_or_insert_with(|| Turning::new(tolerance));
         let turns = branch.push(target).is_some();
@@ -159,10 +161,30 @@ impl Compensator {
             Some((branch, _)) => rises != (branch == Direction::Rising),
             None => false,
         };
+        let told = tolerance;
         let tolerance = match heading {
             None if !turned => NOT_TURNED * tolerance,
             _ => tolerance,
         };
+        let after: Vec<Wanted> =
+            match &self.kind {
+                Kind::Fixed { model, .. } if model.thermal.is_some() => {
+                    let policy = match heading {
+                        Some(_) => Policy::Anticipate,
+                        None => Policy::Hold,
+                    };
+                    // *Hold* has no headings.
+                    let headings = policy.headings(next, told).into_iter();
+                    let ahead = headings.chain(std::iter::repeat(None)).zip(next).map(
+                        |(heading, &target)| Wanted {
+                            dt,
+                            ..Target::new(target).heading(heading).tolerance(told).into()
+                        },
+                    );
+                    ahead.collect()
+                }
+                _ => Vec::new(),
+            };
         let target = Target::new(target).heading(heading).tolerance(tolerance);
         match &self.kind {
             Kind::Fixed { model, .. } => {
@@ -170,7 +192,7 @@ impl Compensator {
                     dt,
                     ..target.into()
                 };
-                model.inverse()?.step(wanted, wanted_now)
+                model.inverse()?.step_ahead(wanted, wanted_now, &after)
             }
             Kind::Adaptive(adaptive) => adaptive.solve_from(&mut wanted.operators, target),
             Kind::Load(adaptive) => {

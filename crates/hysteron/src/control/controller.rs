@@ -114,7 +114,45 @@ impl Controller {
     /// # Errors
     /// [`crate::Error::Core`] for a target that is not finite; nothing is changed then.
     pub fn step(&mut self, target: Reference, reading: Reading) -> Result<Action> {
+        self.step_ahead(target, &[], reading)
+    }
+
+    /// As [`Controller::step`], for a reference that is known ahead: `next` has its values at the
+    /// samples after this one. The feedforward of a fixed model with a thermal body may then start
+    /// to heat or to cool before they are due ([`crate::Inverse::step_ahead`]). Earlier targets are
+    /// missed by up to a tenth of the range for that. Other feedforward takes no notice of them.
+    ///
+    /// As many samples as heating or cooling through the range takes are enough.
+    ///
+    /// ```
+    /// use hysteron::control::{Compensator, Controller, Reading, Reference, Scheme};
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
+    /// let plane = Plane::new(30.0, 90.0, 6)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![0.2; 21], 0.0, Sign::Positive)?;
+    /// model.thermal = Some(FirstOrder { gain: 100.0, ..FirstOrder::default() });
+    /// let scheme = Scheme {
+    ///     compensator: Some(Compensator::fixed(&model)?),
+    ///     ..Scheme::new(0.2, (0.0, 1.0))
+    /// };
+    /// let mut controller = Controller::new(scheme)?;
+    /// let reading = Reading { output: 0.0, input: None };
+    /// let target = Reference { output: 0.1, heading: None };
+    /// let action = controller.step_ahead(target, &[0.1, 2.0, 4.0], reading)?;
+    /// assert!(action.drive >= 0.0);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Controller::step`], also for a target ahead.
+    pub fn step_ahead(
+        &mut self,
+        target: Reference,
+        next: &[f64],
+        reading: Reading,
+    ) -> Result<Action> {
         refuse_not_finite(target.output)?;
+        next.iter()
+            .try_for_each(|&output| refuse_not_finite(output))?;
         let (output, input) = self.read(reading);
         let mut status = LoopStatus::default();
         if let Some(compensator) = &mut self.scheme.compensator {
@@ -130,7 +168,7 @@ impl Controller {
             }
             self.lost |= input == Some(Sensed::Broken);
         }
-        let command = self.command(target, output.value(), &mut status)?;
+        let command = self.command(target, next, output.value(), &mut status)?;
         Ok(self.act(command, self.prediction, (output, input), status))
     }
 
@@ -210,6 +248,7 @@ impl Controller {
     fn command(
         &mut self,
         target: Reference,
+        next: &[f64],
         measured: Option<f64>,
         status: &mut LoopStatus,
     ) -> Result<f64> {
@@ -225,6 +264,7 @@ impl Controller {
                     heading,
                     scheme.tolerance,
                     Some(scheme.interval_s),
+                    next,
                 )?;
                 status.out_of_reach = solution.status.is_out_of_reach();
                 solution.input

@@ -39,7 +39,7 @@
 //! })?;
 //! let reference = (0..1000).map(|n| 36.0 - 24.0 * (0.03 * f64::from(n)).cos());
 //! let reference: Vec<f64> = reference.collect();
-//! let course = Course { reference: &reference, headings: &[], events: &[] };
+//! let course = Course { reference: &reference, headings: &[], ahead: 0, events: &[] };
 //! let trace = run(&mut new()?, &mut controller, &course, Progress::NONE)?;
 //! let late = 200..1000; // after the start
 //! let largest = late.map(|n| (trace.output[n] - reference[n]).abs()).fold(0.0, f64::max);

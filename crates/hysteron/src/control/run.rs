@@ -14,6 +14,9 @@ pub struct Course<'a> {
     /// The direction of the reference at each sample ([`crate::headings`]), for *anticipate*.
     /// Samples beyond the end of this slice have none.
     pub headings: &'a [Option<Direction>],
+    /// How many samples of the reference the controller is told ahead
+    /// ([`Controller::step_ahead`]); 0 for none.
+    pub ahead: usize,
     /// Disturbances in order. Each acts before the sample with this index, counted from 0.
     pub events: &'a [(usize, Disturbance)],
 }
@@ -42,7 +45,9 @@ pub fn run(
         let truth = plant.truth();
         let reading = plant.read();
         let heading = course.headings.get(n).copied().flatten();
-        let action = controller.step(Reference { output, heading }, reading)?;
+        let next = course.reference[n + 1..].iter().take(course.ahead);
+        let next: Vec<f64> = next.copied().collect();
+        let action = controller.step_ahead(Reference { output, heading }, &next, reading)?;
         plant.write(action.drive);
         plant.advance(controller.interval_s());
         trace.record(count, output, (reading, truth), (controller, &action));

@@ -315,6 +315,50 @@ impl Inverse<'_> {
         Ok(found)
     }
 
+    /// As [`Inverse::step`], for a reference that is known ahead: `next` has the targets after this
+    /// one, each with its time step. The drive of a model with a thermal body may start before they
+    /// are due, as with [`Inverse::previewed`]. A model without a body takes no notice of them.
+    ///
+    /// A step costs as many steps as there are targets ahead, and memory for them.
+    ///
+    /// ```
+    /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign, Status, Target, Wanted};
+    /// let plane = Plane::new(40.0, 60.0, 2)?;
+    /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 3], 0.0, Sign::Positive)?;
+    /// model.thermal = Some(FirstOrder { gain: 100.0, ..FirstOrder::default() });
+    /// let inverse = model.inverse()?.drive_range(0.0, 1.0)?;
+    /// let wanted = |output| Wanted { dt: Some(0.2), ..Target::new(output).into() };
+    /// let (mut blind, mut sees) = (model.start(), model.start());
+    /// let held = inverse.step(&mut blind, wanted(0.0))?;
+    /// let early = inverse.step_ahead(&mut sees, wanted(0.0), &[wanted(0.0), wanted(2.9)])?;
+    /// assert!(early.input > held.input);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Inverse::step`], also for a target ahead. The state then stays as it is.
+    pub fn step_ahead(
+        &self,
+        state: &mut State,
+        wanted: impl Into<Wanted>,
+        next: &[Wanted],
+    ) -> Result<Solution<f64>> {
+        let wanted = wanted.into();
+        if self.model.thermal.is_none() || next.is_empty() {
+            return self.step(state, wanted);
+        }
+        let inner = self.model.without_body();
+        let ahead = state.clone();
+        let mut preview = Preview::new(self.model, &inner, self.drive, f64::INFINITY, ahead)?;
+        for wanted in std::iter::once(&wanted).chain(next) {
+            preview.push(*wanted)?;
+        }
+        match preview.next() {
+            Some((wanted, asked)) => preview.step(self, state, wanted, asked),
+            None => self.step(state, wanted),
+        }
+    }
+
     /// As [`Inverse::series`], with the direction that each target takes next. A target without one
     /// (`None`, or beyond the end of `headings`) is held.
     ///

@@ -166,6 +166,8 @@ pub struct LoadDependence {
     pub curves: Option<LoadCurves>,
     /// The Everett table of each part.
     tables: Vec<Vec<f64>>,
+    /// Offsets and weights of the parts, one part after the other.
+    joined: (Vec<f64>, Vec<f64>),
     /// Whether a weight of a part is below zero.
     negative: bool,
 }
@@ -189,9 +191,12 @@ impl LoadDependence {
                 .map_err(|error| (n, error))
         });
         let operators = operators.collect::<std::result::Result<Vec<_>, _>>()?;
+        let offsets = parts.iter().map(|part| part.offset).collect();
+        let weights = parts.iter().flat_map(|part| part.weights.iter().copied());
         Ok(Self {
             quantity,
             range,
+            joined: (offsets, weights.collect()),
             parts,
             curves: None,
             negative: operators
@@ -248,6 +253,23 @@ impl LoadDependence {
     #[must_use]
     pub fn parts(&self) -> &[LoadPart] {
         &self.parts
+    }
+
+    /// The offsets of the parts, and their weights, one part after the other: for interfaces that
+    /// carry arrays.
+    ///
+    /// ```
+    /// let model = hysteron::Model::from_json(r#"{"format": "hysteron-model", "version": 2,
+    ///     "operator": "mkp", "plane": {"min": 1, "max": 2, "levels": 2}, "weights": [1, 1, 1],
+    ///     "load": {"min": 0, "max": 9, "parts": [
+    ///         {"offset": 0, "weights": [1, 0, 1]}, {"offset": 4, "weights": [1, 2, 1]}]}}"#)?;
+    /// let (offsets, weights) = model.load.as_ref().unwrap().joined();
+    /// assert_eq!((offsets, weights), (&[0.0, 4.0][..], &[1.0, 0.0, 1.0, 1.0, 2.0, 1.0][..]));
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn joined(&self) -> (&[f64], &[f64]) {
+        (&self.joined.0, &self.joined.1)
     }
 
     /// The factor of each part at a load: the values of the Bernstein polynomials.
@@ -387,20 +409,10 @@ pub(crate) fn no_load() -> Error {
     Error::Fit("this model does not depend on a load: leave the load out".into())
 }
 
-/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`. They are not negative and sum to one.
-/// So non-negative coefficients give non-negative weights at every load in the range (Farouki
-/// 2012).
+/// The Bernstein polynomials of `degree` at `s` in `[0, 1]`.
 pub(crate) fn bernstein(degree: usize, s: f64) -> Vec<f64> {
-    // De Casteljau's algorithm.
-    let mut values = vec![1.0];
-    for _ in 0..degree {
-        let mut next = vec![0.0; values.len() + 1];
-        for (k, value) in values.iter().enumerate() {
-            next[k] += (1.0 - s) * value;
-            next[k + 1] += s * value;
-        }
-        values = next;
-    }
+    let mut values = vec![0.0; degree + 1];
+    hysteron_core::bernstein(s, &mut values);
     values
 }
 

@@ -180,7 +180,7 @@ impl State {
                 &factors,
             )?;
             let parts = dependence.parts().iter().zip(&factors);
-            mixed.offset = parts.map(|(part, factor)| factor * part.offset).sum();
+            mixed.offset = parts.fold(0.0, |sum, (part, factor)| sum + factor * part.offset);
             mixed.load = load;
         }
         Ok(self.mixed.take())

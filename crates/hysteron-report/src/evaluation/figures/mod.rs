@@ -6,6 +6,8 @@ mod discrepancy;
 mod evolution;
 mod excitation_map;
 mod load_loops;
+mod load_measured;
+mod load_shift;
 mod loops;
 mod over_time;
 mod standard_errors;
@@ -17,6 +19,7 @@ pub use excitation_map::excitation_map;
 pub(crate) use close_up::find as dead_band_shown;
 pub(crate) use cross_validation::{SHOWN, choices_hidden};
 pub(crate) use excitation_map::counts as classes_counted;
+pub(crate) use load_measured::resting as resting_loads;
 
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -28,6 +31,8 @@ pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
         Figure::WeightsPlane => Some(weights_plane::svg(view)),
         Figure::WeightsMap => Some(weights_map::svg(view)),
         Figure::LoadLoops => load_loops::svg(view),
+        Figure::LoadShift => load_shift::svg(view),
+        Figure::LoadMeasured => load_measured::svg(view),
         Figure::Excitation => excitation_map::of_model(view),
         Figure::StandardErrors => standard_errors::svg(view),
         Figure::CrossValidation => cross_validation::svg(view),
