@@ -5,6 +5,8 @@
 mod folder;
 #[path = "../genuine/mod.rs"]
 mod genuine;
+#[path = "../coverage/synthetic.rs"]
+mod synthetic;
 
 use hysteron::{Fit, Model, Recording, Start, branches, evaluate_from, usual_tolerance};
 use std::error::Error;
@@ -92,7 +94,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    Ok(())
+    println!();
+    synthetic::print()
 }
 
 /// Over all branches but the first, each held out with its quarter. `None` if there are fewer than

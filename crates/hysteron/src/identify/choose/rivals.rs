@@ -75,9 +75,9 @@ fn pieces(recordings: &[Recording], folds: &[Option<usize>], fold: usize) -> Vec
     let mut pieces = Vec::new();
     for (recording, folds) in with_folds(recordings, folds) {
         let mut start = 0;
-        for n in 0..=recording.len() {
-            let kept = n < recording.len() && folds[n].is_some_and(|other| other != fold);
-            if !kept {
+        // One more than there are, so that the last run ends.
+        for (n, other) in folds.iter().chain([&None]).enumerate() {
+            if other.is_none_or(|other| other == fold) {
                 // A single sample has no direction.
                 if n > start + 1 {
                     pieces.extend(recording.only(|k| (start..n).contains(&k)));
