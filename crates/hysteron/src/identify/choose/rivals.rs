@@ -75,8 +75,8 @@ fn pieces(recordings: &[Recording], folds: &[Option<usize>], fold: usize) -> Vec
     let mut pieces = Vec::new();
     for (recording, folds) in with_folds(recordings, folds) {
         let mut start = 0;
-        for n in 0..=recording.len() {
-            let kept = n < recording.len() && folds[n].is_some_and(|other| other != fold);
+        for (n, other) in folds.iter().copied().chain([None]).enumerate() {
+            let kept = other.is_some_and(|other| other != fold);
             if !kept {
                 // A single sample has no direction.
                 if n > start + 1 {
