@@ -230,7 +230,7 @@ def test_repeats_widen_the_band_and_leave_the_weights(recording, truth):
         assert wide.evaluate(shifted, start="unknown").band.coverage_percent > 90
     assert one.evaluate(shifted, start="unknown").band.coverage_percent < 50
     for bad in (recording.input, 3, [recording, 3]):
-        with pytest.raises(TypeError, match="`repeats` is .*Recording is needed"):
+        with pytest.raises(TypeError, match="(?s)`repeats` is .*Recording is needed"):
             pyhysteron.fit(recording, repeats=bad, **options)
 
 

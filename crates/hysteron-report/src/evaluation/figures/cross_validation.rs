@@ -25,7 +25,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let of_levels = |k: usize| format!("{k} levels");
     let lines: Vec<(String, Vec<Option<f64>>)> = match smooth.len() {
         // With one strength only, the levels take its place below.
-        1 => vec![("error left out".into(), errors.concat())],
+        1 => vec![("error".into(), errors.concat())],
         _ => levels.iter().copied().map(of_levels).zip(errors).collect(),
     };
     let (name, labels): (&str, Vec<String>) = match smooth.len() {
