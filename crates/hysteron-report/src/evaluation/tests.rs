@@ -93,7 +93,7 @@ fn loaded(loads: &[f64]) -> Fixture {
     let text = fixture
         .model
         .to_json()
-        .replace("\"version\": 1", "\"version\": 2");
+        .replace("\"version\":1,", "\"version\":2,");
     let text = text.trim_end().strip_suffix('}').unwrap().to_owned() + &load;
     fixture.model = hysteron::Model::from_json(&text).unwrap();
     let load = loads.iter().flat_map(|load| [*load; 200]).collect();

@@ -30,7 +30,7 @@ const MODELLED: Stroke = Stroke {
 };
 
 /// The colours of measured loops, one for each load.
-const COLOURS: [usize; MOST] = [2, 1, 4, 3, 6, 5];
+const COLOURS: [usize; MOST] = [2, 1, 5, 4, 3, 0];
 
 /// A load of the recording, and where it rests there.
 pub(crate) struct Resting {
