@@ -1,9 +1,9 @@
 //! How good a candidate is: one number of levels with one smoothness.
 
 use crate::error::Result;
-use crate::identify::choose::sums::{Reduced, Sums, centred};
 use crate::identify::options::Prior;
 use crate::identify::weights::problem::Problem;
+use crate::identify::weights::sums::{Reduced, Sums, centred};
 use crate::model::{Sign, Smooth, Solver};
 use crate::parallel;
 use crate::progress::Progress;
@@ -43,10 +43,7 @@ impl<'a> Level<'a> {
         let target = centred(&problem, sign);
         let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
         let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
-        let own: Vec<Sums> = parallel::map(count, |fold| {
-            let of: Vec<f64> = folds.iter().map(|f| f64::from(*f == Some(fold))).collect();
-            Sums::new(&problem, &target, &of, Progress::new(&told))
-        })?;
+        let own = Sums::of_groups(&problem, &target, folds, count, Progress::new(&told))?;
         let mut all = own[0].clone();
         own[1..].iter().for_each(|fold| all.add(fold));
         let folds = own.into_iter().map(|own| {

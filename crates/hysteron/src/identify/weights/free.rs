@@ -52,14 +52,52 @@ impl FreeColumns {
 
     /// Fits the free columns to `residual`, subtracts them from it, and returns their coefficients.
     pub(crate) fn take_off(&self, residual: &mut [f64]) -> Vec<f64> {
-        let products: Vec<f64> = self.columns.iter().map(|z| dot(z, residual)).collect();
-        let values: Vec<f64> = self.inverse.iter().map(|row| dot(row, &products)).collect();
+        let values = self.values(&self.products(residual));
         for (z, value) in self.columns.iter().zip(&values) {
             for (r, z) in residual.iter_mut().zip(z) {
                 *r -= value * z;
             }
         }
         values
+    }
+
+    /// `Aᵀ z` for each free column `z`.
+    pub(crate) fn mixed(
+        &self,
+        regressor: &Regressor,
+        experiment: &Experiment,
+    ) -> Result<Vec<Vec<f64>>> {
+        let columns = self.columns.iter();
+        columns.map(|z| regressor.adjoint(experiment, z)).collect()
+    }
+
+    /// `Zᵀ r`.
+    pub(crate) fn products(&self, residual: &[f64]) -> Vec<f64> {
+        self.columns.iter().map(|z| dot(z, residual)).collect()
+    }
+
+    /// `Zᵀ r` over the samples of each of `units` units.
+    pub(crate) fn unit_products(
+        &self,
+        residual: &[f64],
+        unit: &[Option<usize>],
+        units: usize,
+    ) -> Vec<Vec<f64>> {
+        let of = |z: &Vec<f64>| {
+            let mut sums = vec![0.0; units];
+            for ((z, r), unit) in z.iter().zip(residual).zip(unit) {
+                if let Some(unit) = unit {
+                    sums[*unit] += z * r;
+                }
+            }
+            sums
+        };
+        self.columns.iter().map(of).collect()
+    }
+
+    /// The coefficients `(Zᵀ Z)⁻¹ p` for the products `p = Zᵀ r`.
+    pub(crate) fn values(&self, products: &[f64]) -> Vec<f64> {
+        self.inverse.iter().map(|row| dot(row, products)).collect()
     }
 
     /// Subtracts `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` from the Gram matrix.
@@ -69,11 +107,7 @@ impl FreeColumns {
         regressor: &Regressor,
         experiment: &Experiment,
     ) -> Result<()> {
-        let sums: Vec<Vec<f64>> = self
-            .columns
-            .iter()
-            .map(|z| regressor.adjoint(experiment, z))
-            .collect::<Result<_>>()?;
+        let sums = self.mixed(regressor, experiment)?;
         let count = regressor.columns().len();
         for (a, left) in sums.iter().enumerate() {
             for (b, right) in sums.iter().enumerate() {

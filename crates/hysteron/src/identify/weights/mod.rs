@@ -2,7 +2,8 @@
 //!
 //! `experiment` joins the recordings and `problem` sets up the fit. `sparse` and `rows` apply the
 //! regressor of one recording without forming it; `regressor` combines recordings, starts and
-//! loads. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
+//! loads. `sums` are the products of groups of samples, from which a fit and its error follow without
+//! the samples. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
 //! equations with `nnls`, `pivoting` and `cholesky`.
 
 pub(super) mod cholesky;
@@ -17,3 +18,5 @@ pub(super) mod rows;
 pub(super) mod smoothness;
 pub(super) mod solve;
 pub(super) mod sparse;
+pub(super) mod sums;
+pub(super) mod units;

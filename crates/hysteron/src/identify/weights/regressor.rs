@@ -41,7 +41,7 @@ impl Column {
         Self { part, operator, on }
     }
 
-    fn initial_in(&self, recording: usize) -> Initial {
+    pub(super) fn initial_in(&self, recording: usize) -> Initial {
         if self.on >> recording & 1 == 1 {
             Initial::On
         } else {
@@ -110,6 +110,10 @@ impl Regressor {
         !self.open.is_empty()
     }
 
+    pub(super) fn form(&self) -> &SparseForm {
+        &self.form
+    }
+
     pub(crate) fn plane(&self) -> &Plane {
         self.form.plane()
     }
@@ -162,23 +166,70 @@ impl Regressor {
 
     /// `Aᵀ r`.
     pub(crate) fn adjoint(&self, experiment: &Experiment, residual: &[f64]) -> Result<Vec<f64>> {
-        let mut result = vec![0.0; self.columns.len()];
+        let all = self.adjoints(experiment, residual, 1, |_| Some(0))?;
+        Ok(all.into_iter().next().unwrap_or_default())
+    }
+
+    /// `Aᵀ r` over the samples of each of `count` groups. Samples without a group do not count.
+    pub(crate) fn adjoints(
+        &self,
+        experiment: &Experiment,
+        residual: &[f64],
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let mut results = vec![vec![0.0; self.columns.len()]; count];
         // Recordings in which all columns start in the same way share their sums.
         for recordings in self.alike(experiment) {
-            let products = self.products(experiment, recordings.clone(), residual)?;
-            for (result, column) in result.iter_mut().zip(&self.columns) {
-                *result += products.of(
-                    column.part,
-                    column.initial_in(recordings.start),
-                    column.operator,
-                );
+            let all = self.products(experiment, recordings.clone(), residual, count, &group)?;
+            for (result, products) in results.iter_mut().zip(all) {
+                for (result, column) in result.iter_mut().zip(&self.columns) {
+                    let from = column.initial_in(recordings.start);
+                    *result += products.of(column.part, from, column.operator);
+                }
             }
         }
-        Ok(result)
+        Ok(results)
+    }
+
+    /// For each of the coefficients `x`, `A x` at the samples of its group; zero at samples without
+    /// a group.
+    pub(crate) fn forwards(
+        &self,
+        experiment: &Experiment,
+        x: &[Vec<f64>],
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<f64>> {
+        let mut output = vec![0.0; experiment.input.len()];
+        for (s, range) in experiment.recordings.iter().enumerate() {
+            let starts = self.starts(s);
+            for (part, values) in experiment.parts.iter().enumerate() {
+                for &from in &starts {
+                    let corners = |x: &Vec<f64>| {
+                        let mut weights = vec![0.0; self.form.operators()];
+                        for (column, x) in self.columns.iter().zip(x) {
+                            if column.part == part && column.initial_in(s) == from {
+                                weights[column.operator] += x;
+                            }
+                        }
+                        self.form.corners_of(&mut weights);
+                        weights
+                    };
+                    let corners: Vec<Vec<f64>> = x.iter().map(corners).collect();
+                    let own = |n: usize| group(range.start + n);
+                    let add = |n: usize, h: f64| {
+                        output[range.start + n] += values[range.start + n] * h;
+                    };
+                    let input = &experiment.input[range.clone()];
+                    self.form.add_forward(input, from, &corners, own, add)?;
+                }
+            }
+        }
+        Ok(output)
     }
 
     /// Runs of recordings in which no column changes its start.
-    fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
+    pub(super) fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
         let count = experiment.recordings.len();
         // One recording per run, or all recordings in one run.
         let length = if self.unknown_start() {
@@ -190,7 +241,7 @@ impl Regressor {
     }
 
     /// The starts that columns have in the recording.
-    fn starts(&self, recording: usize) -> Vec<Initial> {
+    pub(super) fn starts(&self, recording: usize) -> Vec<Initial> {
         let has = |from: &Initial| {
             self.columns
                 .iter()
@@ -207,57 +258,79 @@ impl Regressor {
         experiment: &Experiment,
         recordings: Range<usize>,
         residual: &[f64],
-    ) -> Result<Products> {
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<Products>> {
         let starts = self.starts(recordings.start);
-        let mut sums = Vec::new();
+        let mut all = vec![Vec::new(); count];
         for values in &experiment.parts {
             for &from in &starts {
-                let mut w = vec![0.0; self.form.operators()];
+                let mut sums = vec![vec![0.0; self.form.operators()]; count];
                 for range in &experiment.recordings[recordings.clone()] {
                     let r = |n: usize| values[range.start + n] * residual[range.start + n];
-                    self.form
-                        .add_adjoint(&experiment.input[range.clone()], from, r, &mut w)?;
+                    let own = |n: usize| group(range.start + n);
+                    let input = &experiment.input[range.clone()];
+                    self.form.add_adjoints(input, from, r, own, &mut sums)?;
                 }
-                self.form.operators_of(&mut w);
-                sums.push(w);
+                for (all, mut w) in all.iter_mut().zip(sums) {
+                    self.form.operators_of(&mut w);
+                    all.push(w);
+                }
             }
         }
-        Ok(Products { starts, sums })
+        let products = |sums| Products {
+            starts: starts.clone(),
+            sums,
+        };
+        Ok(all.into_iter().map(products).collect())
     }
 
-    /// `Aᵀ diag(kept) A`, row by row.
+    /// `Aᵀ diag(kept) A`, row by row, where `kept` is 1 for samples that count and 0 for others.
     pub(crate) fn gram(
         &self,
         experiment: &Experiment,
         kept: Option<&[f64]>,
         progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
-        let (operators, count) = (self.form.operators(), self.columns.len());
-        let mut gram = Vec::new();
+        let group = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0).then_some(0);
+        let all = self.grams(experiment, 1, group, progress)?;
+        Ok(all.into_iter().next().unwrap_or_default())
+    }
+
+    /// `Aᵀ A` over the samples of each of `count` groups, row by row, in one pass over the samples.
+    /// Samples without a group do not count.
+    pub(crate) fn grams(
+        &self,
+        experiment: &Experiment,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let (operators, columns) = (self.form.operators(), self.columns.len());
+        let mut grams = vec![Vec::new(); count];
         for recordings in self.alike(experiment) {
             let starts = self.starts(recordings.start);
-            let groups =
+            let pairs =
                 (0..experiment.parts.len()).flat_map(|p| starts.iter().map(move |f| (p, *f)));
-            let groups: Vec<(usize, Initial)> = groups.collect();
-            for (g, &(p, from)) in groups.iter().enumerate() {
-                for &(q, other) in &groups[g..] {
-                    let mut block = vec![0.0; operators * operators];
+            let pairs: Vec<(usize, Initial)> = pairs.collect();
+            for (g, &(p, from)) in pairs.iter().enumerate() {
+                for &(q, other) in &pairs[g..] {
+                    let mut blocks = vec![vec![0.0; operators * operators]; count];
                     for range in &experiment.recordings[recordings.clone()] {
                         let scale = |n: usize| {
                             let n = range.start + n;
-                            experiment.parts[p][n]
-                                * experiment.parts[q][n]
-                                * kept.map_or(1.0, |kept| kept[n])
+                            experiment.parts[p][n] * experiment.parts[q][n]
                         };
+                        let own = |n: usize| group(range.start + n);
                         let input = &experiment.input[range.clone()];
+                        let starts = (from, other);
                         self.form
-                            .add_outer(input, (from, other), scale, &mut block, progress)?;
+                            .add_outer(input, starts, scale, own, &mut blocks, progress)?;
                     }
-                    self.form.gram_of(&mut block);
-                    if groups.len() == 1 && !self.unknown_start() {
-                        return Ok(block);
+                    blocks.iter_mut().for_each(|block| self.form.gram_of(block));
+                    if pairs.len() == 1 && !self.unknown_start() {
+                        return Ok(blocks);
                     }
-                    gram.resize(count * count, 0.0);
                     let members = |part, from| {
                         let columns = self.columns.iter().enumerate();
                         columns
@@ -267,20 +340,23 @@ impl Regressor {
                             .map(|(n, c)| (n, c.operator))
                             .collect::<Vec<_>>()
                     };
-                    let right = members(q, other);
-                    for (a, i) in members(p, from) {
-                        for &(b, j) in &right {
-                            let value = block[i * operators + j];
-                            gram[a * count + b] += value;
-                            if (p, from) != (q, other) {
-                                gram[b * count + a] += value;
+                    let (left, right) = (members(p, from), members(q, other));
+                    for (gram, block) in grams.iter_mut().zip(blocks) {
+                        gram.resize(columns * columns, 0.0);
+                        for &(a, i) in &left {
+                            for &(b, j) in &right {
+                                let value = block[i * operators + j];
+                                gram[a * columns + b] += value;
+                                if (p, from) != (q, other) {
+                                    gram[b * columns + a] += value;
+                                }
                             }
                         }
                     }
                 }
             }
         }
-        Ok(gram)
+        Ok(grams)
     }
 
     /// For each operator and each function of the load, finds the pattern of starts that reduces
@@ -302,8 +378,12 @@ impl Regressor {
         let all: Vec<Products> = self
             .alike(experiment)
             .into_iter()
-            .map(|recordings| self.products(experiment, recordings, residual))
-            .collect::<Result<_>>()?;
+            .map(|recordings| {
+                let all = self.products(experiment, recordings, residual, 1, |_| Some(0))?;
+                Ok(all.into_iter().next())
+            })
+            .collect::<Result<Option<_>>>()?
+            .unwrap_or_default();
         let before = self.columns.len();
         for part in 0..experiment.parts.len() {
             for operator in 0..self.form.operators() {

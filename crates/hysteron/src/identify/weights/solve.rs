@@ -114,12 +114,31 @@ impl Penalised {
         Ok(x)
     }
 
+    /// The minimum over `x ≥ 0`, searched from zero, and by how much it reduces the penalised sum of
+    /// squares.
+    pub(crate) fn nonnegative(
+        &self,
+        right: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<(Vec<f64>, f64)> {
+        let x = self.minimum(right, &vec![0.0; right.len()], None, progress)?;
+        let moved = self.times(&x);
+        let gains = x.iter().zip(right).zip(&moved);
+        let gain = gains.map(|((x, b), m)| x * (2.0 * b - m)).sum();
+        Ok((x, gain))
+    }
+
     /// The factor of the whole matrix, for weights of either sign.
     pub(crate) fn factor(&self) -> Result<Llt<f64>> {
         let count = self.matrix.len().isqrt();
         let element = |i: usize, j: usize| self.matrix[i * count + j];
         let matrix = Mat::from_fn(count, count, element);
         matrix.llt(Side::Lower).map_err(|_| not_definite())
+    }
+
+    /// The tiny ridge that only makes the matrix definite.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.ridge - self.shrink
     }
 
     pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
@@ -238,6 +257,14 @@ impl<'a> NormalEquations<'a> {
             }
         }
         Ok(best)
+    }
+
+    /// `Aᵀ y` of the target without its free part, and the sum of squares of that.
+    pub(crate) fn right(&self, target: &[f64]) -> Result<(Vec<f64>, f64)> {
+        let none = vec![0.0; self.regressor.columns().len()];
+        let residual = self.solution(target, none)?.residual;
+        let squares = residual.iter().map(|r| r * r).sum();
+        Ok((self.regressor.adjoint(self.experiment, &residual)?, squares))
     }
 
     /// The solution `x` with its residual from `target`, after the best free columns are

@@ -121,30 +121,91 @@ impl SparseForm {
         Ok(output)
     }
 
-    /// Adds `Wᵀ r` to `sums`. [`SparseForm::operators_of`] turns the result into `Φᵀ r`.
-    pub(crate) fn add_adjoint(
+    /// Adds `Wᵀ r` over the samples of each group to its `sums`. Samples without a group do not
+    /// count. [`SparseForm::operators_of`] turns the results into `Φᵀ r`.
+    pub(crate) fn add_adjoints(
         &self,
         input: &[f64],
         from: Initial,
         residual: impl Fn(usize) -> f64,
-        sums: &mut [f64],
+        group: impl Fn(usize) -> Option<usize>,
+        sums: &mut [Vec<f64>],
     ) -> Result<()> {
         let mut rows = self.rows(from)?;
-        let mut held = 0.0;
+        let (mut held, mut at) = (0.0, None);
         for (n, &x) in input.iter().enumerate() {
-            if rows.leaves_branch(x)? {
-                rows.add_memory(held, sums);
-                rows.remember();
-                held = 0.0;
+            let left_branch = rows.leaves_branch(x)?;
+            let next = group(n);
+            if left_branch || next != at {
+                if let Some(at) = at {
+                    rows.add_memory(held, &mut sums[at]);
+                }
+                (held, at) = (0.0, next);
             }
+            if left_branch {
+                rows.remember();
+            }
+            let Some(at) = at else {
+                continue;
+            };
             let r = residual(n);
             held += r;
             for term in rows.branch() {
-                sums[term.place as usize] += term.factor * r;
+                sums[at][term.place as usize] += term.factor * r;
             }
         }
-        rows.add_memory(held, sums);
+        if let Some(at) = at {
+            rows.add_memory(held, &mut sums[at]);
+        }
         Ok(())
+    }
+
+    /// Adds `Φ μ` times `scale` to the output of each sample that has a group, with the `corners`
+    /// `S μ` of its group, see [`SparseForm::corners_of`].
+    pub(crate) fn add_forward(
+        &self,
+        input: &[f64],
+        from: Initial,
+        corners: &[Vec<f64>],
+        group: impl Fn(usize) -> Option<usize>,
+        mut add: impl FnMut(usize, f64),
+    ) -> Result<()> {
+        let mut rows = self.rows(from)?;
+        let (mut held, mut at) = (0.0, None);
+        for (n, &x) in input.iter().enumerate() {
+            let left_branch = rows.leaves_branch(x)?;
+            if left_branch {
+                rows.remember();
+            }
+            let next = group(n);
+            let Some(own) = next.map(|group| &corners[group]) else {
+                at = None;
+                continue;
+            };
+            let product = |term: &Term| term.factor * own[term.place as usize];
+            if left_branch || next != at {
+                held = rows.memory().iter().map(product).sum();
+                at = next;
+            }
+            add(n, held + rows.branch().iter().map(product).sum::<f64>());
+        }
+        Ok(())
+    }
+
+    /// `S μ` in place: the Everett corners `C[p][q] = Σ μ_ij` over `j ≤ p`, `i > q`, each at the
+    /// index of the weight `(q + 1, p)`.
+    pub(crate) fn corners_of(&self, mu: &mut [f64]) {
+        let levels = self.plane.levels();
+        for j in 1..=levels {
+            for i in (1..j).rev() {
+                mu[operator_index(i, j)] += mu[operator_index(i + 1, j)];
+            }
+        }
+        for j in 2..=levels {
+            for i in 1..j {
+                mu[operator_index(i, j)] += mu[operator_index(i, j - 1)];
+            }
+        }
     }
 
     /// `Sᵀ w` in place: operator `(i, j)` is part of every `C[p][q]` with `p ≥ j` and `q < i`.
@@ -152,14 +213,16 @@ impl SparseForm {
         transpose_sums(self.plane.levels(), w);
     }
 
-    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, where `W` and `W'` are the rows for
-    /// the two starts. [`SparseForm::gram_of`] turns the result into `Φᵀ diag(scale) Φ'`.
+    /// Adds `Wᵀ diag(scale) W'` over the samples of each group to its part of `grams`, `N × N` row
+    /// by row, where `W` and `W'` are the rows for the two starts. Samples without a group do not
+    /// count. [`SparseForm::gram_of`] turns the results into `Φᵀ diag(scale) Φ'`.
     pub(crate) fn add_outer(
         &self,
         input: &[f64],
         (left, right): (Initial, Initial),
         scale: impl Fn(usize) -> f64,
-        gram: &mut [f64],
+        group: impl Fn(usize) -> Option<usize>,
+        grams: &mut [Vec<f64>],
         progress: Progress<'_>,
     ) -> Result<()> {
         let count = self.operators();
@@ -167,6 +230,7 @@ impl SparseForm {
         // If both sides have the same rows, compute them once.
         let mut other = (left != right).then(|| self.rows(right)).transpose()?;
         let mut sums = BranchSums::default();
+        let mut at = None;
         for (n, &x) in input.iter().enumerate() {
             if n % REPORT == 0 {
                 progress.tell("samples", n as f64 / input.len() as f64)?;
@@ -175,24 +239,31 @@ impl SparseForm {
             if let Some(b) = &mut other {
                 left_branch |= b.leaves_branch(x)?;
             }
+            let next = group(n);
+            if left_branch || next != at {
+                if let Some(at) = at {
+                    let b = other.as_ref().unwrap_or(&a);
+                    sums.flush(a.memory(), b.memory(), &mut grams[at], count);
+                }
+                at = next;
+            }
             if left_branch {
-                let b = other.as_ref().unwrap_or(&a);
-                sums.flush(a.memory(), b.memory(), gram, count);
                 a.remember();
                 if let Some(b) = &mut other {
                     b.remember();
                 }
             }
-            let s = scale(n);
-            if s == 0.0 {
+            let Some(at) = at else {
                 continue;
-            }
+            };
             let t = a.branch();
             let u = other.as_ref().map_or(t, Rows::branch);
-            sums.add(s, &t, &u, gram, count);
+            sums.add(scale(n), &t, &u, &mut grams[at], count);
         }
-        let b = other.as_ref().unwrap_or(&a);
-        sums.flush(a.memory(), b.memory(), gram, count);
+        if let Some(at) = at {
+            let b = other.as_ref().unwrap_or(&a);
+            sums.flush(a.memory(), b.memory(), &mut grams[at], count);
+        }
         Ok(())
     }
 
@@ -377,22 +448,53 @@ mod tests {
         for (row, y) in phi[0].iter().zip(&forward) {
             assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
         }
-        let mut adjoint = vec![0.0; count];
-        form.add_adjoint(&input, left, |n| r[n], &mut adjoint)
+        // Groups change anywhere, also in the middle of a branch, and some samples have none.
+        let mut own = 0;
+        let group: Vec<Option<usize>> = input
+            .iter()
+            .map(|_| {
+                if rng.random_range(0..7) == 0 {
+                    own = rng.random_range(0..4);
+                }
+                (own < 3).then_some(own)
+            })
+            .collect();
+        let scale = |n: usize| r[n];
+        let mut adjoints = vec![vec![0.0; count]; 3];
+        form.add_adjoints(&input, left, scale, |n| group[n], &mut adjoints)
             .unwrap();
-        form.operators_of(&mut adjoint);
-        let mut gram = vec![0.0; count * count];
-        form.add_outer(&input, (left, right), |n| r[n], &mut gram, Progress::NONE)
+        let mut grams = vec![vec![0.0; count * count]; 3];
+        let starts = (left, right);
+        form.add_outer(&input, starts, scale, |n| group[n], &mut grams, Progress::NONE)
             .unwrap();
-        form.gram_of(&mut gram);
-        for a in 0..count {
-            let exact: f64 = phi[0].iter().zip(&r).map(|(row, r)| row[a] * r).sum();
-            assert!(close(exact, adjoint[a]));
-            for b in 0..count {
-                let rows = phi[0].iter().zip(&phi[1]).zip(&r);
-                let exact: f64 = rows.map(|((left, right), r)| left[a] * r * right[b]).sum();
-                assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
+        for (g, (adjoint, gram)) in adjoints.iter_mut().zip(&mut grams).enumerate() {
+            form.operators_of(adjoint);
+            form.gram_of(gram);
+            let inside = |n: &usize| group[*n] == Some(g);
+            for a in 0..count {
+                let own = (0..input.len()).filter(inside);
+                let exact: f64 = own.map(|n| phi[0][n][a] * r[n]).sum();
+                assert!(close(exact, adjoint[a]));
+                for b in 0..count {
+                    let own = (0..input.len()).filter(inside);
+                    let exact: f64 = own.map(|n| phi[0][n][a] * r[n] * phi[1][n][b]).sum();
+                    assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
+                }
             }
+        }
+        let weights = [1.0, -2.0, 0.5].map(|factor| mu.iter().map(|mu| factor * mu).collect());
+        let corners = weights.clone().map(|mut mu: Vec<f64>| {
+            form.corners_of(&mut mu);
+            mu
+        });
+        let mut found = vec![0.0; input.len()];
+        form.add_forward(&input, left, &corners, |n| group[n], |n, h| found[n] += h)
+            .unwrap();
+        for (n, row) in phi[0].iter().enumerate() {
+            let own = group[n].map_or(0.0, |g| {
+                row.iter().zip(&weights[g]).map(|(a, b)| a * b).sum()
+            });
+            assert!(close(own, found[n]), "K = {levels}, sample {n}");
         }
     }
 }

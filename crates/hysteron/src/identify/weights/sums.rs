@@ -6,13 +6,15 @@ use crate::identify::options::Prior;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::{Penalised, not_definite};
 use crate::model::{Sign, Solver};
+use crate::parallel;
 use crate::progress::Progress;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+use std::ops::Range;
 
 /// Sums over a group of samples, with `A` the regressor, `Z` the free columns and `y` the target.
 #[derive(Clone)]
-pub(super) struct Sums {
+pub(crate) struct Sums {
     /// `Aᵀ A`, row by row.
     gram: Vec<f64>,
     /// `Aᵀ z` for each free column `z`.
@@ -23,62 +25,105 @@ pub(super) struct Sums {
     free: Vec<Vec<f64>>,
     free_right: Vec<f64>,
     squares: f64,
-    pub(super) samples: f64,
+    pub(crate) samples: f64,
 }
 
 /// Coefficients of the regressor's columns and of the free columns.
-pub(super) struct Coefficients {
-    pub(super) x: Vec<f64>,
-    free: Vec<f64>,
+pub(crate) struct Coefficients {
+    pub(crate) x: Vec<f64>,
+    pub(crate) free: Vec<f64>,
 }
 
+/// Largest size of the Gram matrices that are summed in one pass, in bytes. More groups take
+/// further passes.
+const PASS_BYTES: usize = 256 << 20;
+
 impl Sums {
-    /// The sums over the samples with weight 1 in `of`. `target` should have no large offset,
-    /// because squares of it are subtracted from each other.
-    pub(super) fn new(
+    /// The sums over the samples of each of `count` groups. `group` has the group of each sample,
+    /// `None` for samples that do not count. `target` should have no large offset, because squares
+    /// of it are subtracted from each other.
+    pub(crate) fn of_groups(
         problem: &Problem,
         target: &[f64],
-        of: &[f64],
+        group: &[Option<usize>],
+        count: usize,
         progress: Progress<'_>,
-    ) -> Result<Self> {
+    ) -> Result<Vec<Self>> {
+        let passes = Self::passes(problem, count);
+        let all = parallel::map(passes.len(), |n| {
+            Self::of_some(problem, target, group, passes[n].clone(), progress)
+        })?;
+        Ok(all.into_iter().flatten().collect())
+    }
+
+    /// The groups of each pass, so that their Gram matrices take no more than 256 MiB.
+    pub(crate) fn passes(problem: &Problem, count: usize) -> Vec<Range<usize>> {
+        let matrix = 8 * problem.regressor.columns().len().pow(2);
+        let at_once = (PASS_BYTES / matrix.max(1)).clamp(1, count.max(1));
+        let starts = (0..count).step_by(at_once);
+        starts.map(|n| n..(n + at_once).min(count)).collect()
+    }
+
+    /// As [`Sums::of_groups`], for a range of the groups.
+    pub(crate) fn of_some(
+        problem: &Problem,
+        target: &[f64],
+        group: &[Option<usize>],
+        groups: Range<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Self>> {
         let (regressor, experiment) = (&problem.regressor, &problem.experiment);
-        let weighed = |values: &[f64]| -> Vec<f64> {
-            values
-                .iter()
-                .zip(of)
-                .map(|(value, of)| value * of)
-                .collect()
+        let columns: &[Vec<f64>] = match problem.options.offset {
+            Some(_) => &[],
+            None => &experiment.offsets,
         };
-        let columns = match problem.options.offset {
-            Some(_) => Vec::new(),
-            None => experiment.offsets.clone(),
+        let count = groups.len();
+        let own = |n: usize| {
+            let group = group[n]?.checked_sub(groups.start)?;
+            (group < count).then_some(group)
         };
-        let own: Vec<Vec<f64>> = columns.iter().map(|z| weighed(z)).collect();
-        let y = weighed(target);
-        Ok(Self {
-            gram: regressor.gram(experiment, Some(of), progress)?,
-            mixed: own
-                .iter()
-                .map(|z| regressor.adjoint(experiment, z))
-                .collect::<Result<_>>()?,
-            right: regressor.adjoint(experiment, &y)?,
-            free: own
-                .iter()
-                .map(|z| columns.iter().map(|other| dot(z, other)).collect())
-                .collect(),
-            free_right: own.iter().map(|z| dot(z, target)).collect(),
-            squares: dot(&y, target),
-            samples: of.iter().sum(),
-        })
+        let grams = regressor.grams(experiment, count, own, progress)?;
+        let rights = regressor.adjoints(experiment, target, count, own)?;
+        let mut all: Vec<Self> = grams
+            .into_iter()
+            .zip(rights)
+            .map(|(gram, right)| Self {
+                gram,
+                right,
+                mixed: Vec::new(),
+                free: vec![vec![0.0; columns.len()]; columns.len()],
+                free_right: vec![0.0; columns.len()],
+                squares: 0.0,
+                samples: 0.0,
+            })
+            .collect();
+        for z in columns {
+            let mixed = regressor.adjoints(experiment, z, count, own)?;
+            all.iter_mut().zip(mixed).for_each(|(own, m)| own.mixed.push(m));
+        }
+        for (n, y) in target.iter().enumerate() {
+            let Some(sums) = own(n).map(|group| &mut all[group]) else {
+                continue;
+            };
+            sums.squares += y * y;
+            sums.samples += 1.0;
+            for (a, left) in columns.iter().enumerate() {
+                sums.free_right[a] += left[n] * y;
+                for (b, right) in columns.iter().enumerate() {
+                    sums.free[a][b] += left[n] * right[n];
+                }
+            }
+        }
+        Ok(all)
     }
 
     /// The sums of both groups.
-    pub(super) fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.combine(other, 1.0);
     }
 
     /// The sums without those of a group that is part of this one.
-    pub(super) fn without(&self, other: &Self) -> Self {
+    pub(crate) fn without(&self, other: &Self) -> Self {
         let mut rest = self.clone();
         rest.combine(other, -1.0);
         rest
@@ -102,7 +147,7 @@ impl Sums {
     }
 
     /// The problem with the free columns eliminated.
-    pub(super) fn reduced(self) -> Result<Reduced> {
+    pub(crate) fn reduced(mut self) -> Result<Reduced> {
         let (count, free) = (self.right.len(), self.free.len());
         // Groups may have one load only. A small ridge makes the matrix definite, as in the fit.
         let matrix = Mat::from_fn(free, free, |a, b| {
@@ -122,7 +167,7 @@ impl Sums {
         let largest = (0..count)
             .map(|n| self.gram[n * count + n])
             .fold(0.0, f64::max);
-        let mut gram = self.gram.clone();
+        let mut gram = std::mem::take(&mut self.gram);
         for (a, left) in self.mixed.iter().enumerate() {
             for (b, other) in self.mixed.iter().enumerate() {
                 for (row, x) in gram.chunks_exact_mut(count).zip(left) {
@@ -132,7 +177,7 @@ impl Sums {
             }
         }
         let level = solved(&self.free_right);
-        let mut right = self.right.clone();
+        let mut right = std::mem::take(&mut self.right);
         for (mixed, level) in self.mixed.iter().zip(&level) {
             right
                 .iter_mut()
@@ -155,7 +200,7 @@ impl Sums {
     }
 
     /// The sum of squared errors of these coefficients over the group.
-    pub(super) fn error(&self, at: &Coefficients) -> f64 {
+    pub(crate) fn error(&self, at: &Coefficients) -> f64 {
         let count = at.x.len();
         let quadratic: f64 = self
             .gram
@@ -182,12 +227,12 @@ impl Sums {
 }
 
 /// A least-squares problem for the weights alone.
-pub(super) struct Reduced {
+pub(crate) struct Reduced {
     gram: Vec<f64>,
     right: Vec<f64>,
     /// Sum of squares of the target, without its best free part.
-    pub(super) squares: f64,
-    pub(super) samples: f64,
+    pub(crate) squares: f64,
+    pub(crate) samples: f64,
     /// The free coefficients are `level − movedᵀ x`.
     level: Vec<f64>,
     moved: Vec<Vec<f64>>,
@@ -195,7 +240,7 @@ pub(super) struct Reduced {
 }
 
 impl Reduced {
-    pub(super) fn penalised(&self, prior: Prior, problem: &Problem) -> Penalised {
+    pub(crate) fn penalised(&self, prior: Prior, problem: &Problem) -> Penalised {
         Penalised::new(
             self.gram.clone(),
             self.largest,
@@ -206,7 +251,7 @@ impl Reduced {
     }
 
     /// The weights of least penalised error, searched from `start`.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &self,
         penalised: &Penalised,
         solver: Solver,
@@ -218,32 +263,56 @@ impl Reduced {
             Solver::Nnls => None,
         };
         let x = penalised.minimum(&self.right, start, factor.as_ref(), progress)?;
+        Ok(self.with_free(x))
+    }
+
+    /// As [`Reduced::solve`], but of all solutions the one closest to `near`.
+    pub(crate) fn solve_near(
+        &self,
+        penalised: &Penalised,
+        solver: Solver,
+        near: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<Coefficients> {
+        let factor = match solver {
+            Solver::Ols => Some(penalised.factor()?),
+            Solver::Nnls => None,
+        };
+        let pull = penalised.rounding();
+        let right = self.right.iter().zip(near);
+        let right: Vec<f64> = right.map(|(b, x)| b + pull * x).collect();
+        let x = penalised.minimum(&right, near, factor.as_ref(), progress)?;
+        Ok(self.with_free(x))
+    }
+
+    /// With the best free coefficients for `x`.
+    fn with_free(&self, x: Vec<f64>) -> Coefficients {
         let mut free = self.level.clone();
         for (moved, x) in self.moved.iter().zip(&x) {
             free.iter_mut().zip(moved).for_each(|(f, m)| *f -= m * x);
         }
-        Ok(Coefficients { x, free })
+        Coefficients { x, free }
     }
 
     /// The penalised sum of squared errors at `x`.
-    pub(super) fn objective(&self, penalised: &Penalised, x: &[f64]) -> f64 {
+    pub(crate) fn objective(&self, penalised: &Penalised, x: &[f64]) -> f64 {
         let quadratic = dot(&penalised.times(x), x);
         (self.squares - 2.0 * dot(&self.right, x) + quadratic).max(0.0)
     }
 
     /// Subtracts the Gram matrix, so that the prior's matrix is left.
-    pub(super) fn take_off(&self, matrix: &mut [f64]) {
+    pub(crate) fn take_off(&self, matrix: &mut [f64]) {
         matrix.iter_mut().zip(&self.gram).for_each(|(m, g)| *m -= g);
     }
 
     /// Number of free columns.
-    pub(super) fn free(&self) -> f64 {
+    pub(crate) fn free(&self) -> f64 {
         self.level.len() as f64
     }
 }
 
 /// The target of a problem without its mean.
-pub(super) fn centred(problem: &Problem, sign: Sign) -> Vec<f64> {
+pub(crate) fn centred(problem: &Problem, sign: Sign) -> Vec<f64> {
     let mut target = problem.target(sign);
     if problem.options.offset.is_none() {
         let mean = target.iter().sum::<f64>() / target.len() as f64;
