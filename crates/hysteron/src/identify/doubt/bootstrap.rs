@@ -80,19 +80,23 @@ pub(crate) fn replicates(
         let products: Vec<f64> = of_free.iter().map(|sums| dot(sums, &signs)).collect();
         let moved = free.values(&products);
         let mut right = sums.with_signs(regressor, &signs);
-        for (column, value) in mixed.iter().zip(&moved) {
+        for (column, value) in mixed.columns.iter().zip(&moved) {
             let column = column.iter();
-            right.iter_mut().zip(column).for_each(|(b, z)| *b -= value * z);
+            right
+                .iter_mut()
+                .zip(column)
+                .for_each(|(b, z)| *b -= value * z);
         }
         right.iter_mut().zip(&middle).for_each(|(b, m)| *b += m);
         right.iter_mut().zip(&pull).for_each(|(b, p)| *b += p);
-        let x = equations
-            .penalised
-            .minimum(&right, &solution.x, factor.as_ref(), Progress::NONE)?;
+        let x =
+            equations
+                .penalised
+                .minimum(&right, &solution.x, factor.as_ref(), Progress::NONE)?;
         // The free columns have two parts: those of the noise, and the change caused by the new
         // weights.
         let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
-        let products: Vec<f64> = mixed.iter().map(|z| dot(z, &difference)).collect();
+        let products: Vec<f64> = mixed.columns.iter().map(|z| dot(z, &difference)).collect();
         let taken = free.values(&products);
         let free_values: Vec<f64> = (0..moved.len())
             .map(|n| solution.free[n] + moved[n] - taken[n])

@@ -8,15 +8,15 @@
 //! part of the weight can be moved to other operators without a change of the output.
 
 use crate::error::{Error, Result};
-use crate::identify::weights::sparse::{Initial, SparseForm};
+use crate::identify::weights::sparse::{Initial, SparseForm, Square};
 use crate::model::Excitation;
 use crate::model::Plane;
 use crate::progress::Progress;
 use crate::series::{NOISE, Turning, usual_tolerance};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
-use hysteron_core::Operator;
 use hysteron_core::Definition;
+use hysteron_core::Operator;
 
 /// Ridge `ε`. The centred Gram matrix counts samples. An operator that swings fully on its own for
 /// a few samples has an element of about 1. A spiral of [`crate::design()`] with ten samples per
@@ -136,14 +136,22 @@ pub(super) fn centred_gram(
     start: Initial,
 ) -> Result<Vec<f64>> {
     let count = form.operators();
-    let mut grams = [vec![0.0; count * count]];
+    let mut gram = vec![0.0; count * count];
     let mut all = [vec![0.0; count]];
     for input in inputs {
         let (one, group) = (|_| 1.0, |_| Some(0));
-        form.add_outer(input, (start, start), one, group, &mut grams, Progress::NONE)?;
+        let mut squares = [Square::new(&mut gram, count)];
+        form.add_outer(
+            input,
+            (start, start),
+            one,
+            group,
+            &mut squares,
+            Progress::NONE,
+        )?;
         form.add_adjoints(input, start, one, group, &mut all)?;
     }
-    let ([mut gram], [mut sums]) = (grams, all);
+    let [mut sums] = all;
     form.gram_of(&mut gram);
     form.operators_of(&mut sums);
     let samples = inputs.iter().map(|input| input.len()).sum::<usize>().max(1) as f64;

@@ -5,6 +5,7 @@
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::solve::Mixed;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -61,14 +62,14 @@ impl FreeColumns {
         values
     }
 
-    /// `Aᵀ z` for each free column `z`.
-    pub(crate) fn mixed(
-        &self,
-        regressor: &Regressor,
-        experiment: &Experiment,
-    ) -> Result<Vec<Vec<f64>>> {
+    /// `Aᵀ z` for each free column `z`, and the inverse.
+    pub(crate) fn mixed(&self, regressor: &Regressor, experiment: &Experiment) -> Result<Mixed> {
         let columns = self.columns.iter();
-        columns.map(|z| regressor.adjoint(experiment, z)).collect()
+        let columns = columns.map(|z| regressor.adjoint(experiment, z));
+        Ok(Mixed {
+            columns: columns.collect::<Result<_>>()?,
+            inverse: self.inverse.clone(),
+        })
     }
 
     /// `Zᵀ r`.
@@ -98,27 +99,6 @@ impl FreeColumns {
     /// The coefficients `(Zᵀ Z)⁻¹ p` for the products `p = Zᵀ r`.
     pub(crate) fn values(&self, products: &[f64]) -> Vec<f64> {
         self.inverse.iter().map(|row| dot(row, products)).collect()
-    }
-
-    /// Subtracts `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` from the Gram matrix.
-    pub(crate) fn eliminate_from(
-        &self,
-        gram: &mut [f64],
-        regressor: &Regressor,
-        experiment: &Experiment,
-    ) -> Result<()> {
-        let sums = self.mixed(regressor, experiment)?;
-        let count = regressor.columns().len();
-        for (a, left) in sums.iter().enumerate() {
-            for (b, right) in sums.iter().enumerate() {
-                let factor = self.inverse[a][b];
-                for (row, x) in gram.chunks_exact_mut(count).zip(left) {
-                    let scale = factor * x;
-                    row.iter_mut().zip(right).for_each(|(g, y)| *g -= scale * y);
-                }
-            }
-        }
-        Ok(())
     }
 }
 

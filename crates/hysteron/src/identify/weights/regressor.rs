@@ -12,13 +12,18 @@
 //! reduce the error.
 
 use crate::error::Result;
+use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
-use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
+use crate::identify::weights::gram::{Gram, MANY};
+use crate::identify::weights::layout::{Block, Layout};
+use crate::identify::weights::rows::Term;
+use crate::identify::weights::sparse::{Initial, OPEN, SparseForm, Square};
 use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Progress;
 use hysteron_core::Operator;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Largest number of recordings in one experiment: a pattern of starts has one bit for each.
 pub(crate) const MOST_RECORDINGS: usize = 64;
@@ -285,18 +290,6 @@ impl Regressor {
         Ok(all.into_iter().map(products).collect())
     }
 
-    /// `Aᵀ diag(kept) A`, row by row, where `kept` is 1 for samples that count and 0 for others.
-    pub(crate) fn gram(
-        &self,
-        experiment: &Experiment,
-        kept: Option<&[f64]>,
-        progress: Progress<'_>,
-    ) -> Result<Vec<f64>> {
-        let group = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0).then_some(0);
-        let all = self.grams(experiment, 1, group, progress)?;
-        Ok(all.into_iter().next().unwrap_or_default())
-    }
-
     /// `Aᵀ A` over the samples of each of `count` groups, row by row, in one pass over the samples.
     /// Samples without a group do not count.
     pub(crate) fn grams(
@@ -324,8 +317,12 @@ impl Regressor {
                         let own = |n: usize| group(range.start + n);
                         let input = &experiment.input[range.clone()];
                         let starts = (from, other);
+                        let mut squares: Vec<Square<'_>> = blocks
+                            .iter_mut()
+                            .map(|block| Square::new(block, operators))
+                            .collect();
                         self.form
-                            .add_outer(input, starts, scale, own, &mut blocks, progress)?;
+                            .add_outer(input, starts, scale, own, &mut squares, progress)?;
                     }
                     blocks.iter_mut().for_each(|block| self.form.gram_of(block));
                     if pairs.len() == 1 && !self.unknown_start() {
@@ -357,6 +354,88 @@ impl Regressor {
             }
         }
         Ok(grams)
+    }
+
+    /// As [`Regressor::grams`], in the form that solves faster.
+    pub(crate) fn compact_grams(
+        &self,
+        experiment: &Experiment,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Gram>> {
+        if self.columns.len() >= MANY
+            && let Some(all) = self.corner_grams(experiment, count, &group, progress)?
+        {
+            return Ok(Gram::of_corners(all));
+        }
+        let all = self.grams(experiment, count, group, progress)?;
+        Ok(all.into_iter().map(Gram::Dense).collect())
+    }
+
+    /// As [`Regressor::grams`], over corners; `None` where several recordings have unknown starts.
+    pub(super) fn corner_grams(
+        &self,
+        experiment: &Experiment,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<Vec<CornerGram>>> {
+        let Some((layout, blocks)) = self.layout(experiment) else {
+            return Ok(None);
+        };
+        let mut all: Vec<CornerSums> = (0..count).map(|_| CornerSums::default()).collect();
+        for (a, &(p, from)) in blocks.iter().enumerate() {
+            for (b, &(q, other)) in blocks.iter().enumerate().skip(a) {
+                let [left, right] = [a, b].map(|n| &layout.blocks[n].columns[..]);
+                let mirror = a != b;
+                let of = |sums| OfBlocks {
+                    sums,
+                    left,
+                    right,
+                    mirror,
+                };
+                let mut sums: Vec<OfBlocks<'_>> = all.iter_mut().map(of).collect();
+                for range in &experiment.recordings {
+                    let scale = |n: usize| {
+                        let n = range.start + n;
+                        experiment.parts[p][n] * experiment.parts[q][n]
+                    };
+                    let own = |n: usize| group(range.start + n);
+                    let input = &experiment.input[range.clone()];
+                    let starts = (from, other);
+                    self.form
+                        .add_outer(input, starts, scale, own, &mut sums, progress)?;
+                }
+            }
+        }
+        let all = all.into_iter().map(|sums| sums.into_gram(&layout));
+        Ok(Some(all.collect()))
+    }
+
+    /// The columns in blocks of one function of the load and one start, where every recording
+    /// starts in the same way.
+    fn layout(&self, experiment: &Experiment) -> Option<(Arc<Layout>, Vec<(usize, Initial)>)> {
+        if self.unknown_start() && experiment.recordings.len() > 1 {
+            return None;
+        }
+        let mut kinds: Vec<(usize, Initial)> = Vec::new();
+        let mut blocks: Vec<Block> = Vec::new();
+        for (n, column) in self.columns.iter().enumerate() {
+            let kind = (column.part, column.initial_in(0));
+            let place = kinds.iter().position(|other| *other == kind);
+            let place = place.unwrap_or_else(|| {
+                kinds.push(kind);
+                blocks.push(Block {
+                    part: column.part,
+                    columns: vec![Term::NOWHERE; self.form.operators()],
+                });
+                blocks.len() - 1
+            });
+            blocks[place].columns[column.operator] = n as u32;
+        }
+        let layout = Layout::new(&self.form, &self.columns, blocks)?;
+        Some((Arc::new(layout), kinds))
     }
 
     /// For each operator and each function of the load, finds the pattern of starts that reduces

@@ -213,8 +213,7 @@ impl SparseForm {
         transpose_sums(self.plane.levels(), w);
     }
 
-    /// Adds `Wᵀ diag(scale) W'` over the samples of each group to its part of `grams`, `N × N` row
-    /// by row, where `W` and `W'` are the rows for the two starts. Samples without a group do not
+    /// Adds `Wᵀ diag(scale) W'` over the samples of each group to its part of `grams`, where `W` and `W'` are the rows for the two starts. Samples without a group do not
     /// count. [`SparseForm::gram_of`] turns the results into `Φᵀ diag(scale) Φ'`.
     pub(crate) fn add_outer(
         &self,
@@ -222,10 +221,9 @@ impl SparseForm {
         (left, right): (Initial, Initial),
         scale: impl Fn(usize) -> f64,
         group: impl Fn(usize) -> Option<usize>,
-        grams: &mut [Vec<f64>],
+        grams: &mut [impl Accumulate],
         progress: Progress<'_>,
     ) -> Result<()> {
-        let count = self.operators();
         let mut a = self.rows(left)?;
         // If both sides have the same rows, compute them once.
         let mut other = (left != right).then(|| self.rows(right)).transpose()?;
@@ -243,7 +241,7 @@ impl SparseForm {
             if left_branch || next != at {
                 if let Some(at) = at {
                     let b = other.as_ref().unwrap_or(&a);
-                    sums.flush(a.memory(), b.memory(), &mut grams[at], count);
+                    sums.flush(a.memory(), b.memory(), &mut grams[at]);
                 }
                 at = next;
             }
@@ -258,11 +256,11 @@ impl SparseForm {
             };
             let t = a.branch();
             let u = other.as_ref().map_or(t, Rows::branch);
-            sums.add(scale(n), &t, &u, &mut grams[at], count);
+            sums.add(scale(n), &t, &u, &mut grams[at]);
         }
         if let Some(at) = at {
             let b = other.as_ref().unwrap_or(&a);
-            sums.flush(a.memory(), b.memory(), &mut grams[at], count);
+            sums.flush(a.memory(), b.memory(), &mut grams[at]);
         }
         Ok(())
     }
@@ -288,6 +286,30 @@ impl SparseForm {
     }
 }
 
+/// A matrix whose elements are sums.
+pub(crate) trait Accumulate {
+    fn add(&mut self, row: usize, column: usize, value: f64);
+}
+
+/// A square matrix, row by row.
+pub(crate) struct Square<'a> {
+    values: &'a mut [f64],
+    count: usize,
+}
+
+impl<'a> Square<'a> {
+    pub(crate) fn new(values: &'a mut [f64], count: usize) -> Self {
+        Self { values, count }
+    }
+}
+
+impl Accumulate for Square<'_> {
+    #[inline]
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.values[row * self.count + column] += value;
+    }
+}
+
 /// Sums over the samples of one branch. With `f`, `g` the factors of the turning points and `t`,
 /// `u` those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
 #[derive(Default)]
@@ -299,19 +321,11 @@ pub(crate) struct BranchSums {
 
 impl BranchSums {
     /// Adds a sample with the factors `t` and `u` of the branch, times `s`. Their own product goes
-    /// to `gram` at once, `count × count` row by row.
-    pub(crate) fn add(
-        &mut self,
-        s: f64,
-        t: &[Term; 3],
-        u: &[Term; 3],
-        gram: &mut [f64],
-        count: usize,
-    ) {
+    /// to `gram` at once.
+    pub(crate) fn add(&mut self, s: f64, t: &[Term; 3], u: &[Term; 3], gram: &mut impl Accumulate) {
         for t in t {
-            let row = &mut gram[t.place as usize * count..][..count];
             for u in u {
-                row[u.place as usize] += s * t.factor * u.factor;
+                gram.add(t.place as usize, u.place as usize, s * t.factor * u.factor);
             }
         }
         self.scale += s;
@@ -335,12 +349,15 @@ impl BranchSums {
     }
 
     /// Adds what depends on the turning points to `gram`, at the end of a branch.
-    pub(crate) fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
+    pub(crate) fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut impl Accumulate) {
         let mut outer = |a: &[Term], b: &[Term], scale: f64| {
             for a in a {
-                let row = &mut gram[a.place as usize * count..][..count];
                 for b in b {
-                    row[b.place as usize] += scale * a.factor * b.factor;
+                    gram.add(
+                        a.place as usize,
+                        b.place as usize,
+                        scale * a.factor * b.factor,
+                    );
                 }
             }
         };
@@ -465,8 +482,19 @@ mod tests {
             .unwrap();
         let mut grams = vec![vec![0.0; count * count]; 3];
         let starts = (left, right);
-        form.add_outer(&input, starts, scale, |n| group[n], &mut grams, Progress::NONE)
-            .unwrap();
+        let mut squares: Vec<Square<'_>> = grams
+            .iter_mut()
+            .map(|gram| Square::new(gram, count))
+            .collect();
+        form.add_outer(
+            &input,
+            starts,
+            scale,
+            |n| group[n],
+            &mut squares,
+            Progress::NONE,
+        )
+        .unwrap();
         for (g, (adjoint, gram)) in adjoints.iter_mut().zip(&mut grams).enumerate() {
             form.operators_of(adjoint);
             form.gram_of(gram);

@@ -3,8 +3,9 @@
 
 use crate::error::Result;
 use crate::identify::options::Prior;
+use crate::identify::weights::gram::Gram;
 use crate::identify::weights::problem::Problem;
-use crate::identify::weights::solve::{Penalised, not_definite};
+use crate::identify::weights::solve::{Mixed, Penalised, not_definite};
 use crate::model::{Sign, Solver};
 use crate::parallel;
 use crate::progress::Progress;
@@ -15,8 +16,8 @@ use std::ops::Range;
 /// Sums over a group of samples, with `A` the regressor, `Z` the free columns and `y` the target.
 #[derive(Clone)]
 pub(crate) struct Sums {
-    /// `Aᵀ A`, row by row.
-    gram: Vec<f64>,
+    /// `Aᵀ A`.
+    gram: Gram,
     /// `Aᵀ z` for each free column `z`.
     mixed: Vec<Vec<f64>>,
     /// `Aᵀ y`.
@@ -82,7 +83,7 @@ impl Sums {
             let group = group[n]?.checked_sub(groups.start)?;
             (group < count).then_some(group)
         };
-        let grams = regressor.grams(experiment, count, own, progress)?;
+        let grams = regressor.compact_grams(experiment, count, own, progress)?;
         let rights = regressor.adjoints(experiment, target, count, own)?;
         let mut all: Vec<Self> = grams
             .into_iter()
@@ -99,7 +100,9 @@ impl Sums {
             .collect();
         for z in columns {
             let mixed = regressor.adjoints(experiment, z, count, own)?;
-            all.iter_mut().zip(mixed).for_each(|(own, m)| own.mixed.push(m));
+            all.iter_mut()
+                .zip(mixed)
+                .for_each(|(own, m)| own.mixed.push(m));
         }
         for (n, y) in target.iter().enumerate() {
             let Some(sums) = own(n).map(|group| &mut all[group]) else {
@@ -133,7 +136,7 @@ impl Sums {
         let add = |to: &mut Vec<f64>, from: &Vec<f64>| {
             to.iter_mut().zip(from).for_each(|(t, f)| *t += factor * f);
         };
-        add(&mut self.gram, &other.gram);
+        self.gram.combine(factor, &other.gram);
         add(&mut self.right, &other.right);
         add(&mut self.free_right, &other.free_right);
         for (to, from) in self.mixed.iter_mut().zip(&other.mixed) {
@@ -164,18 +167,6 @@ impl Sums {
             let row = |a: usize| (0..free).map(|b| inverse[(a, b)] * values[b]).sum();
             (0..free).map(row).collect()
         };
-        let largest = (0..count)
-            .map(|n| self.gram[n * count + n])
-            .fold(0.0, f64::max);
-        let mut gram = std::mem::take(&mut self.gram);
-        for (a, left) in self.mixed.iter().enumerate() {
-            for (b, other) in self.mixed.iter().enumerate() {
-                for (row, x) in gram.chunks_exact_mut(count).zip(left) {
-                    let scale = inverse[(a, b)] * x;
-                    row.iter_mut().zip(other).for_each(|(g, y)| *g -= scale * y);
-                }
-            }
-        }
         let level = solved(&self.free_right);
         let mut right = std::mem::take(&mut self.right);
         for (mixed, level) in self.mixed.iter().zip(&level) {
@@ -188,27 +179,22 @@ impl Sums {
         let moved: Vec<Vec<f64>> = (0..count)
             .map(|n| solved(&self.mixed.iter().map(|m| m[n]).collect::<Vec<_>>()))
             .collect();
+        let inverse = (0..free).map(|a| (0..free).map(|b| inverse[(a, b)]).collect());
         Ok(Reduced {
-            gram,
+            gram: self.gram,
+            mixed: self.mixed,
+            inverse: inverse.collect(),
             right,
             squares,
             samples: self.samples,
             level,
             moved,
-            largest,
         })
     }
 
     /// The sum of squared errors of these coefficients over the group.
     pub(crate) fn error(&self, at: &Coefficients) -> f64 {
-        let count = at.x.len();
-        let quadratic: f64 = self
-            .gram
-            .chunks_exact(count)
-            .zip(&at.x)
-            .filter(|(_, x)| **x != 0.0)
-            .map(|(row, x)| x * dot(row, &at.x))
-            .sum();
+        let quadratic = self.gram.quadratic(&at.x);
         let mixed: f64 = self
             .mixed
             .iter()
@@ -228,7 +214,9 @@ impl Sums {
 
 /// A least-squares problem for the weights alone.
 pub(crate) struct Reduced {
-    gram: Vec<f64>,
+    gram: Gram,
+    mixed: Vec<Vec<f64>>,
+    inverse: Vec<Vec<f64>>,
     right: Vec<f64>,
     /// Sum of squares of the target, without its best free part.
     pub(crate) squares: f64,
@@ -236,18 +224,16 @@ pub(crate) struct Reduced {
     /// The free coefficients are `level − movedᵀ x`.
     level: Vec<f64>,
     moved: Vec<Vec<f64>>,
-    largest: f64,
 }
 
 impl Reduced {
     pub(crate) fn penalised(&self, prior: Prior, problem: &Problem) -> Penalised {
-        Penalised::new(
-            self.gram.clone(),
-            self.largest,
-            self.samples,
-            prior,
-            &problem.regressor,
-        )
+        let mixed = Mixed {
+            columns: self.mixed.clone(),
+            inverse: self.inverse.clone(),
+        };
+        let gram = self.gram.clone();
+        Penalised::new(gram, mixed, self.samples, prior, &problem.regressor)
     }
 
     /// The weights of least penalised error, searched from `start`.
@@ -298,11 +284,6 @@ impl Reduced {
     pub(crate) fn objective(&self, penalised: &Penalised, x: &[f64]) -> f64 {
         let quadratic = dot(&penalised.times(x), x);
         (self.squares - 2.0 * dot(&self.right, x) + quadratic).max(0.0)
-    }
-
-    /// Subtracts the Gram matrix, so that the prior's matrix is left.
-    pub(crate) fn take_off(&self, matrix: &mut [f64]) {
-        matrix.iter_mut().zip(&self.gram).for_each(|(m, g)| *m -= g);
     }
 
     /// Number of free columns.
