@@ -55,6 +55,9 @@ impl Column {
     }
 }
 
+/// Columns in blocks, and the function of the load and the start of each block.
+type Blocks = (Arc<Layout>, Vec<(usize, Initial)>);
+
 /// The columns of the regressor. Its products are computed from the samples of an experiment.
 pub(crate) struct Regressor {
     form: SparseForm,
@@ -415,7 +418,7 @@ impl Regressor {
 
     /// The columns in blocks of one function of the load and one start, where every recording
     /// starts in the same way.
-    fn layout(&self, experiment: &Experiment) -> Option<(Arc<Layout>, Vec<(usize, Initial)>)> {
+    fn layout(&self, experiment: &Experiment) -> Option<Blocks> {
         if self.unknown_start() && experiment.recordings.len() > 1 {
             return None;
         }

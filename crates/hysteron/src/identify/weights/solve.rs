@@ -36,6 +36,10 @@ const ENOUGH: f64 = 1e-12;
 /// Proximal steps also end when the error is this small relative to the data. The rest is rounding.
 const NOTHING_LEFT: f64 = 1e-26;
 
+/// The strongest smoothness for which rounding leaves determinants over Everett corners four digits
+/// after the point.
+const STRONG: f64 = 1e-3;
+
 /// Largest number of proximal steps of a fit.
 pub(crate) const STEPS: usize = 200;
 
@@ -61,6 +65,8 @@ pub(crate) struct Penalised {
     matrix: Matrix,
     /// The sum of both ridges.
     pub(crate) ridge: f64,
+    /// Whether the smoothness is stronger than [`STRONG`].
+    strong: bool,
 }
 
 enum Matrix {
@@ -133,6 +139,7 @@ impl Penalised {
             shrink,
             matrix,
             ridge,
+            strong: prior.smooth.along.max(prior.smooth.across) > STRONG,
         }
     }
 
@@ -160,8 +167,8 @@ impl Penalised {
         let matrix = match &self.matrix {
             Matrix::Dense(matrix) => Cow::Borrowed(matrix),
             Matrix::Corners(system) => match system.half_log_determinants() {
-                Some(found) => return Ok(found),
-                None => Cow::Owned(system.dense()),
+                Some(found) if !self.strong => return Ok(found),
+                _ => Cow::Owned(system.dense()),
             },
         };
         let count = regressor.columns().len();
@@ -183,14 +190,18 @@ impl Penalised {
         factor: Option<&WholeFactor>,
         progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
+        let solved = |factor: &Llt<f64>| {
+            let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
+            (0..right.len()).map(|n| x[(n, 0)]).collect()
+        };
         match (factor, &self.matrix) {
-            (Some(WholeFactor::Dense(factor)), _) => {
-                let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
-                return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
-            }
+            (Some(WholeFactor::Dense(factor)), _) => return Ok(solved(factor)),
             (Some(WholeFactor::Corners), Matrix::Corners(system)) => {
                 let all: Vec<usize> = (0..right.len()).collect();
-                return system.free_minimum(right, &all).ok_or_else(not_definite);
+                return match system.free_minimum(right, &all) {
+                    Some(x) => Ok(x),
+                    None => Ok(solved(&dense_factor(&system.dense())?)),
+                };
             }
             _ => {}
         }
@@ -242,11 +253,7 @@ impl Penalised {
             Matrix::Corners(system) if system.can_factor() => return Ok(WholeFactor::Corners),
             Matrix::Corners(system) => Cow::Owned(system.dense()),
         };
-        let count = matrix.len().isqrt();
-        let element = |i: usize, j: usize| matrix[i * count + j];
-        let matrix = Mat::from_fn(count, count, element);
-        let factor = matrix.llt(Side::Lower).map_err(|_| not_definite())?;
-        Ok(WholeFactor::Dense(factor))
+        Ok(WholeFactor::Dense(dense_factor(&matrix)?))
     }
 
     /// The tiny ridge that only makes the matrix definite.
@@ -418,11 +425,15 @@ impl<'a> NormalEquations<'a> {
 /// Half the logarithm of the determinant of a positive definite matrix: the sum of the logarithms
 /// of its Cholesky factor's diagonal.
 fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
+    let factor = dense_factor(matrix)?;
+    let lower = factor.L();
+    Ok((0..lower.nrows()).map(|n| lower[(n, n)].ln()).sum())
+}
+
+fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
     let count = matrix.len().isqrt();
     let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
-    let factor = matrix.llt(Side::Lower).map_err(|_| not_definite())?;
-    let lower = factor.L();
-    Ok((0..count).map(|n| lower[(n, n)].ln()).sum())
+    matrix.llt(Side::Lower).map_err(|_| not_definite())
 }
 
 pub(crate) fn not_definite() -> Error {
