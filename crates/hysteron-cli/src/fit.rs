@@ -26,11 +26,12 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let inputs = args.data.iter().chain(&args.repeat).chain(held_out);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let file = Model::file(args.force.target(&args.out, &inputs))?;
-    let mut prepared = Vec::new();
+    let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for data in &args.data {
-        prepared.push(read(args, data, columns)?);
+        let (recording, preparation, rate) = read(args, data, columns)?;
+        recordings.push(recording);
+        reports.push((preparation, rate));
     }
-    let recordings: Vec<Recording> = prepared.iter().map(|(r, ..)| r.clone()).collect();
     let read = |file: &Path| Ok(read(args, file, columns)?.0);
     let repeats = args.repeat.iter().map(|file| read(file));
     let repeats = repeats.collect::<Result<_>>()?;
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     match (&model.fit, args.json.json) {
         (None, _) => Ok(()),
         (Some(fit), true) => {
-            let mut object = to_json(args, &model, fit, clipped, &prepared);
+            let mut object = to_json(args, &model, fit, clipped, &reports);
             if let Some(held_out) = &held_out {
                 object["hold_out"] = json!(held_out);
             }
@@ -162,11 +163,11 @@ fn to_json(
     model: &Model,
     fit: &FitSummary,
     clipped: usize,
-    prepared: &[Prepared],
+    reports: &[(Option<Preparation>, Option<RateDependence>)],
 ) -> serde_json::Value {
     let plane = model.plane();
-    let preparation: Vec<_> = prepared.iter().map(|(_, report, _)| report).collect();
-    let rate: Vec<_> = prepared.iter().map(|(_, _, rate)| rate).collect();
+    let preparation: Vec<_> = reports.iter().map(|(report, _)| report).collect();
+    let rate: Vec<_> = reports.iter().map(|(_, rate)| rate).collect();
     json!({
         "model": args.out,
         "operators": plane.operators(),

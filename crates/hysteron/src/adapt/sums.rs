@@ -4,7 +4,7 @@
 //! The sums are those of the sparse rows ([`SparseForm`]), so a sample costs the same for any
 //! number of levels. Only a refit turns them into sums over the operators.
 
-use crate::identify::{BranchSums, SparseForm, Term};
+use crate::identify::{BranchSums, SparseForm, Square, Term};
 
 /// Rounding left after centring, relative to the diagonal before it.
 const ROUNDING: f64 = 1e-13;
@@ -73,8 +73,9 @@ impl Sums {
         let count = self.rows.len();
         let mut sums = BranchSums::default();
         let (mut held, mut output) = (0.0, 0.0);
+        let mut gram = Square::new(&mut self.gram, count);
         for Row { terms, output: y } in samples {
-            sums.add(sign, terms, terms, &mut self.gram, count);
+            sums.add(sign, terms, terms, &mut gram);
             for term in terms {
                 self.rows[term.place as usize] += sign * term.factor;
                 self.right[term.place as usize] += sign * y * term.factor;
@@ -82,7 +83,7 @@ impl Sums {
             held += sign;
             output += sign * y;
         }
-        sums.flush(memory, memory, &mut self.gram, count);
+        sums.flush(memory, memory, &mut gram);
         for term in memory {
             self.rows[term.place as usize] += held * term.factor;
             self.right[term.place as usize] += output * term.factor;

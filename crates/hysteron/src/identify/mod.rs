@@ -32,4 +32,4 @@ pub(crate) use weights::fit::fit_weights;
 pub(crate) use weights::nnls;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::Term;
-pub(crate) use weights::sparse::{BranchSums, Initial, SparseForm};
+pub(crate) use weights::sparse::{BranchSums, Initial, SparseForm, Square};

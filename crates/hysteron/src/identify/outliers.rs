@@ -7,7 +7,6 @@ use crate::identify::weights::problem::Problem;
 use crate::model::Outlier;
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::range;
 use crate::series::spikes::isolated;
 use std::borrow::Cow;
 
@@ -51,7 +50,7 @@ pub(super) fn mended<'a>(
         ..options.clone()
     };
     let all = recordings.iter().flat_map(|recording| &recording.output);
-    let (low, high) = range(&without_extremes(&all.copied().collect::<Vec<_>>()));
+    let (low, high) = usual_range(all.copied().collect());
     let span = high - low;
     let mut mended = Cow::Borrowed(recordings);
     let mut outliers: Vec<Outlier> = Vec::new();
@@ -92,7 +91,7 @@ fn judged(
             .zip(moved)
             .map(|(r, moved)| fitted.sign.factor() * r + moved)
             .collect();
-        let (low, high) = range(&without_extremes(&recordings[recording].output));
+        let (low, high) = usual_range(recordings[recording].output.clone());
         let own = isolated(&residual, DEVIATIONS, SMALLEST * (high - low));
         found.extend(own.into_iter().map(|(sample, by)| Outlier {
             recording,
@@ -103,11 +102,16 @@ fn judged(
     Ok(found)
 }
 
-/// The values without the hundredth that is largest and the hundredth that is smallest, so that an
-/// outlier does not make the range.
-fn without_extremes(values: &[f64]) -> Vec<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let cut = (values.len() / 100).max(1).min((values.len() - 1) / 2);
-    sorted[cut..values.len() - cut].to_vec()
+/// The range of the values without the hundredth that is largest and the hundredth that is
+/// smallest, so that an outlier does not make the range.
+fn usual_range(mut values: Vec<f64>) -> (f64, f64) {
+    let last = values.len() - 1;
+    let cut = (values.len() / 100).max(1).min(last / 2);
+    let (_, &mut low, above) = values.select_nth_unstable_by(cut, f64::total_cmp);
+    // The place of the other end among those above; with few values both ends are one.
+    let high = match (last - cut).checked_sub(cut + 1) {
+        Some(place) => *above.select_nth_unstable_by(place, f64::total_cmp).1,
+        None => low,
+    };
+    (low, high)
 }

@@ -47,8 +47,9 @@ pub fn noise(values: &[f64]) -> f64 {
 }
 
 /// A robust standard deviation: the median distance from zero, scaled for Gaussian noise.
-pub(crate) fn deviation_of(residuals: impl Iterator<Item = f64>) -> f64 {
-    SIGMA_PER_MEDIAN * median_of(residuals.map(f64::abs).collect())
+pub(crate) fn deviation_of(residuals: &mut [f64]) -> f64 {
+    residuals.iter_mut().for_each(|r| *r = r.abs());
+    SIGMA_PER_MEDIAN * median(residuals)
 }
 
 /// The smallest distance between two different values: the resolution of a reading with a fixed
@@ -63,6 +64,11 @@ pub(crate) fn resolution(values: &[f64]) -> f64 {
 
 /// The median, with the mean of the two middle values for an even count; 0 for no values.
 pub(crate) fn median_of(mut values: Vec<f64>) -> f64 {
+    median(&mut values)
+}
+
+/// As [`median_of`], of values whose order does not matter.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     let Some(middle) = values.len().checked_sub(1).map(|last| last.div_ceil(2)) else {
         return 0.0;
     };

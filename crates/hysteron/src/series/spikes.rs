@@ -6,7 +6,7 @@
 //! 1968). A spike must also be beyond the samples on both sides of it, which a step or a turning
 //! point of the signal is not.
 
-use crate::series::noise::{deviation_of, median_of, noise};
+use crate::series::noise::{deviation_of, median, noise};
 use crate::series::range;
 
 /// Number of neighbours on either side. Eight in all are enough to outvote three wrong samples in a
@@ -48,12 +48,17 @@ pub(crate) fn isolated(values: &[f64], deviations: f64, floor: f64) -> Vec<(usiz
 
 fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
     let sigma = noise(values);
+    // No threshold is lower, so what cannot reach this one needs no line.
+    let least = (deviations * sigma).max(floor);
     // For each sample its signed distance from the line, if that is too large.
     let mut off = vec![None; values.len()];
     for (place, window) in off[REACH.min(values.len())..]
         .iter_mut()
         .zip(values.windows(2 * REACH + 1))
     {
+        if furthest(window) <= least {
+            continue;
+        }
         let (residual, spread) = against_neighbours(window);
         let threshold = (deviations * spread.max(sigma)).max(floor);
         *place = (residual.abs() > threshold).then_some((residual.signum(), threshold));
@@ -89,22 +94,42 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
     replaced
 }
 
+/// Number of neighbours of a sample, and number of pairs of them.
+const OTHERS: usize = 2 * REACH;
+const PAIRS: usize = OTHERS * (OTHERS - 1) / 2;
+
+/// The largest distance that [`against_neighbours`] can find. The slope of the line is at most that
+/// of the steepest step, so no point of the line is further off.
+fn furthest(window: &[f64]) -> f64 {
+    let middle = window[REACH];
+    let away = |most: f64, x: &f64| most.max((x - middle).abs());
+    let away = window.iter().fold(0.0, away);
+    // The step over the middle sample is between its two neighbours.
+    let steps = window.windows(2).enumerate();
+    let steps = steps.filter(|(n, _)| *n + 1 != REACH && *n != REACH);
+    let over = 0.5 * (window[REACH + 1] - window[REACH - 1]).abs();
+    let steepest = steps.fold(over, |most, (_, x)| most.max((x[1] - x[0]).abs()));
+    // Rounding of a few sums.
+    (away + steepest * REACH as f64) * (1.0 + 1e-12)
+}
+
 /// The distance of the middle sample from the line through the others, and their deviation from
 /// that line.
 fn against_neighbours(window: &[f64]) -> (f64, f64) {
-    let others = || {
-        (0..window.len())
-            .filter(|n| *n != REACH)
-            .map(|n| (n as f64 - REACH as f64, window[n]))
-    };
-    let slopes = others().enumerate().flat_map(|(n, (a, at_a))| {
-        others()
-            .skip(n + 1)
-            .map(move |(b, at_b)| (at_b - at_a) / (b - a))
-    });
-    let slope = median_of(slopes.collect());
-    let level = median_of(others().map(|(n, x)| x - slope * n).collect());
-    let spread = deviation_of(others().map(|(n, x)| x - level - slope * n));
+    let mut others = [(0.0, 0.0); OTHERS];
+    for (n, other) in others.iter_mut().enumerate() {
+        let place = n + usize::from(n >= REACH);
+        *other = (place as f64 - REACH as f64, window[place]);
+    }
+    let mut slopes = [0.0; PAIRS];
+    let pairs = others.iter().enumerate();
+    let pairs = pairs.flat_map(|(n, a)| others[n + 1..].iter().map(move |b| (a, b)));
+    for (slope, ((a, at_a), (b, at_b))) in slopes.iter_mut().zip(pairs) {
+        *slope = (at_b - at_a) / (b - a);
+    }
+    let slope = median(&mut slopes);
+    let level = median(&mut others.map(|(n, x)| x - slope * n));
+    let spread = deviation_of(&mut others.map(|(n, x)| x - level - slope * n));
     (window[REACH] - level, spread)
 }
 

@@ -1,13 +1,12 @@
 //! How good a candidate is: one number of levels with one smoothness.
 
 use crate::error::Result;
-use crate::identify::choose::sums::{Reduced, Sums, centred};
 use crate::identify::options::Prior;
 use crate::identify::weights::problem::Problem;
+use crate::identify::weights::sums::{Reduced, Sums, centred};
 use crate::model::{Sign, Smooth, Solver};
 use crate::parallel;
 use crate::progress::Progress;
-use faer::{Mat, Side};
 
 /// Ridge of the prior in the evidence where the fit has none: without any, the prior is not a
 /// density.
@@ -43,10 +42,7 @@ impl<'a> Level<'a> {
         let target = centred(&problem, sign);
         let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
         let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
-        let own: Vec<Sums> = parallel::map(count, |fold| {
-            let of: Vec<f64> = folds.iter().map(|f| f64::from(*f == Some(fold))).collect();
-            Sums::new(&problem, &target, &of, Progress::new(&told))
-        })?;
+        let own = Sums::of_groups(&problem, &target, folds, count, Progress::new(&told))?;
         let mut all = own[0].clone();
         own[1..].iter().for_each(|fold| all.add(fold));
         let folds = own.into_iter().map(|own| {
@@ -116,14 +112,12 @@ impl<'a> Level<'a> {
         let objective = objective
             .max(1e-15 * self.whole.squares)
             .max(f64::MIN_POSITIVE);
-        let mut alone = penalised.matrix.clone();
-        self.whole.take_off(&mut alone);
         let left = (self.whole.samples - self.whole.free()).max(1.0);
         if !smooth.is_none() || solver == Solver::Ols {
             starts[start] = at.x;
         }
-        let determinants = half_log_determinant(&alone)? - half_log_determinant(&penalised.matrix)?;
-        Ok(determinants - 0.5 * left * objective.ln())
+        let (alone, both) = penalised.half_log_determinants(&self.problem.regressor)?;
+        Ok(alone - both - 0.5 * left * objective.ln())
     }
 
     /// Root mean squared error of the fit to all samples.
@@ -140,16 +134,4 @@ impl<'a> Level<'a> {
         }
         Ok((squares / self.whole.samples).sqrt())
     }
-}
-
-/// Half the logarithm of the determinant of a positive definite matrix: the sum of the logarithms
-/// of its Cholesky factor's diagonal.
-fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
-    let count = matrix.len().isqrt();
-    let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
-    let factor = matrix
-        .llt(Side::Lower)
-        .map_err(|_| crate::identify::weights::solve::not_definite())?;
-    let lower = factor.L();
-    Ok((0..count).map(|n| lower[(n, n)].ln()).sum())
 }

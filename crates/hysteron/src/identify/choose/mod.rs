@@ -1,8 +1,7 @@
 //! Chooses levels and smoothness.
 //!
 //! `criterion` says how good a candidate is: by the error on branches left out, or by the
-//! evidence where there are few branches. `search` walks through the candidates. `start` finds the state before the first sample. `sums` are the
-//! products of groups of samples, from which a fit and its error follow without the samples.
+//! evidence where there are few branches. `search` walks through the candidates. `start` finds the state before the first sample.
 //! `validate` puts them together. `rivals` are simple predictors on the same branches. `left_out` tests the whole fit, including these choices.
 
 mod criterion;
@@ -10,7 +9,6 @@ pub(super) mod left_out;
 mod rivals;
 mod search;
 pub(super) mod start;
-mod sums;
 pub(super) mod validate;
 
 use crate::error::Result;

@@ -4,12 +4,13 @@ use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
+use crate::identify::weights::sums::{Coefficients, Sums, centred};
+use crate::identify::weights::units::UnitSums;
 use crate::model::LoadPart;
 use crate::model::Solver;
 use crate::parallel;
 use crate::progress::Progress;
 use faer::Mat;
-use faer::linalg::solvers::Llt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -45,6 +46,7 @@ pub(crate) fn replicates(
     progress: Progress<'_>,
 ) -> Result<Vec<LoadPart>> {
     let (options, experiment) = (&problem.options, &problem.experiment);
+    let regressor = &problem.regressor;
     let solution = &fitted.solution;
     let factor = match options.solver {
         Solver::Ols => Some(equations.penalised.factor()?),
@@ -56,6 +58,12 @@ pub(crate) fn replicates(
         errors,
         ..
     } = left_out;
+    let sums = UnitSums::new(regressor, experiment, errors, unit)?;
+    let of_free = free.unit_products(errors, unit, *units);
+    let mixed = free.mixed(regressor, experiment)?;
+    // The penalty shrinks the solution again. Subtract that effect, so that the replicates stay
+    // around the fit.
+    let middle = equations.penalised.times(&solution.x);
     let done = AtomicUsize::new(0);
     parallel::map(options.bootstrap, |seed| {
         let count = done.fetch_add(1, Ordering::Relaxed);
@@ -64,27 +72,32 @@ pub(crate) fn replicates(
         let signs: Vec<f64> = (0..*units)
             .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
             .collect();
-        let turned = errors.iter().zip(unit);
-        let mut added: Vec<f64> = turned
-            .map(|(r, unit)| unit.map_or(0.0, |unit| signs[unit] * r))
-            .collect();
-        let moved = free.take_off(&mut added);
-        let pull = equations.penalised.draw(&problem.regressor, || {
+        let pull = equations.penalised.draw(regressor, || {
             let normal: f64 = StandardNormal.sample(&mut rng);
             noise * normal
         });
-        let x = replicate(
-            equations,
-            factor.as_ref(),
-            problem,
-            &solution.x,
-            (&added, &pull),
-        )?;
+        // The added errors, with the free columns removed.
+        let products: Vec<f64> = of_free.iter().map(|sums| dot(sums, &signs)).collect();
+        let moved = free.values(&products);
+        let mut right = sums.with_signs(regressor, &signs);
+        for (column, value) in mixed.columns.iter().zip(&moved) {
+            let column = column.iter();
+            right
+                .iter_mut()
+                .zip(column)
+                .for_each(|(b, z)| *b -= value * z);
+        }
+        right.iter_mut().zip(&middle).for_each(|(b, m)| *b += m);
+        right.iter_mut().zip(&pull).for_each(|(b, p)| *b += p);
+        let x =
+            equations
+                .penalised
+                .minimum(&right, &solution.x, factor.as_ref(), Progress::NONE)?;
         // The free columns have two parts: those of the noise, and the change caused by the new
         // weights.
         let difference: Vec<f64> = x.iter().zip(&solution.x).map(|(a, b)| a - b).collect();
-        let mut left = problem.regressor.forward(experiment, &difference)?;
-        let taken = free.take_off(&mut left);
+        let products: Vec<f64> = mixed.columns.iter().map(|z| dot(z, &difference)).collect();
+        let taken = free.values(&products);
         let free_values: Vec<f64> = (0..moved.len())
             .map(|n| solution.free[n] + moved[n] - taken[n])
             .collect();
@@ -101,35 +114,37 @@ pub(crate) fn left_out_errors(
     enough_branches: usize,
     progress: Progress<'_>,
 ) -> Result<LeftOutErrors> {
-    let (unit, units, whole) = problem.experiment.units(None, enough_branches);
+    let (regressor, experiment) = (&problem.regressor, &problem.experiment);
+    let (unit, units, whole) = experiment.units(None, enough_branches);
     let groups = units.min(GROUPS);
-    let target = problem.target(fitted.sign);
-    let of_group = |group: usize| -> Result<Vec<(usize, f64)>> {
-        progress.tell("confidence", 0.0)?;
-        let inside = |n: &usize| unit[*n].is_some_and(|unit| unit % groups == group);
-        let kept: Vec<f64> = (0..unit.len()).map(|n| f64::from(!inside(&n))).collect();
-        let free = problem.free(Some(&kept))?;
-        let equations = NormalEquations::new(
-            &problem.regressor,
-            &problem.experiment,
-            &free,
-            Some(&kept),
-            problem.options.prior(),
-            Progress::NONE,
-        )?;
-        let start = Some(&fitted.solution.x[..]);
-        let solution =
-            equations.solve(&target, problem.options.solver, start, 1, Progress::NONE)?;
-        let predicted = problem.predict(&solution)?;
-        let errors = (0..unit.len())
-            .filter(inside)
-            .map(|n| (n, target[n] - predicted[n]));
-        Ok(errors.collect())
-    };
-    let all: Vec<Vec<(usize, f64)>> = parallel::map(groups, of_group)?;
+    let group: Vec<Option<usize>> = unit.iter().map(|unit| unit.map(|u| u % groups)).collect();
+    let target = centred(problem, fitted.sign);
+    let told = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
+    let progress = Progress::new(&told);
+    // All samples are one group. Its sums less those of a group are the sums of the others.
+    let one = vec![Some(0); unit.len()];
+    let all = Sums::of_groups(problem, &target, &one, 1, progress)?;
+    let mut solved: Vec<Coefficients> = Vec::new();
+    for groups in Sums::passes(problem, groups) {
+        let own = Sums::of_some(problem, &target, &group, groups, progress)?;
+        solved.extend(parallel::map(own.len(), |n| {
+            progress.tell("confidence", 0.0)?;
+            let rest = all[0].without(&own[n]).reduced()?;
+            let penalised = rest.penalised(problem.options.prior(), problem);
+            let (solver, near) = (problem.options.solver, &fitted.solution.x);
+            rest.solve_near(&penalised, solver, near, Progress::NONE)
+        })?);
+    }
+    let (x, free): (Vec<_>, Vec<_>) = solved.into_iter().map(|at| (at.x, at.free)).unzip();
+    let predicted = regressor.forwards(experiment, &x, |n| group[n])?;
     let mut errors = vec![0.0; unit.len()];
-    for (n, error) in all.into_iter().flatten() {
-        errors[n] = error;
+    for (n, error) in errors.iter_mut().enumerate() {
+        let Some(group) = group[n] else {
+            continue;
+        };
+        let level = experiment.offsets.iter().zip(&free[group]);
+        let level: f64 = level.map(|(z, value)| value * z[n]).sum();
+        *error = target[n] - predicted[n] - level;
     }
     Ok(LeftOutErrors {
         unit,
@@ -164,24 +179,8 @@ impl LeftOutErrors {
     }
 }
 
-/// The weights fitted to the fitted output plus `noise`, from which the free columns have been
-/// removed, with `pull` added by the prior.
-fn replicate(
-    equations: &NormalEquations<'_>,
-    factor: Option<&Llt<f64>>,
-    problem: &Problem,
-    x: &[f64],
-    (noise, pull): (&[f64], &[f64]),
-) -> Result<Vec<f64>> {
-    let moved = problem.regressor.adjoint(&problem.experiment, noise)?;
-    let mut right = equations.penalised.times(x);
-    // The penalty shrinks the solution again. Subtract that effect, so that the replicates stay
-    // around the fit.
-    right.iter_mut().zip(&moved).for_each(|(b, m)| *b += m);
-    right.iter_mut().zip(pull).for_each(|(b, p)| *b += p);
-    equations
-        .penalised
-        .minimum(&right, x, factor, Progress::NONE)
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Root mean squared deviations of the replicates from the fit, and their principal components.

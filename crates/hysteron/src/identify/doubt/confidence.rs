@@ -6,6 +6,7 @@ use crate::identify::doubt::calibrate::calibrate;
 use crate::identify::doubt::excitation::Unresolved;
 use crate::identify::doubt::spectrum::Spectrum;
 use crate::identify::options::Prior;
+use crate::identify::weights::gram::Gram;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::{NormalEquations, Penalised};
 use crate::identify::weights::sparse::Initial;
@@ -32,21 +33,25 @@ pub(crate) fn of(
     let experiment = &problem.experiment;
     progress.tell("confidence", 0.0)?;
     let free = problem.free(None)?;
-    let gram = problem.regressor.gram(experiment, None, progress)?;
-    let with = |prior| {
-        let gram = gram.clone();
-        NormalEquations::of_gram(&problem.regressor, experiment, &free, None, prior, gram)
-    };
-    let equations = with(options.prior())?;
+    let regressor = &problem.regressor;
+    let group = |_| Some(0);
+    let gram = regressor.compact_grams(experiment, 1, group, progress)?;
+    let gram = gram.into_iter().next().unwrap_or(Gram::Dense(Vec::new()));
+    let dense = Gram::Dense(gram.dense().into_owned());
+    let with =
+        |prior, gram| NormalEquations::of_gram(regressor, experiment, &free, None, prior, gram);
+    let equations = with(options.prior(), gram)?;
     // The matrix without the prior: what the data alone determine.
-    let plain = with(Prior::NONE)?;
-    let spectrum = Spectrum::of(&plain.penalised.matrix, plain.penalised.ridge)?;
+    let plain = with(Prior::NONE, dense)?;
+    let elements = plain.penalised.elements().unwrap_or_default();
+    let spectrum = Spectrum::of(elements, plain.penalised.ridge)?;
     let free_count = fitted.solution.free.len() as f64;
     let solution = &fitted.solution;
     let samples = solution.residual.len() as f64;
     // Fitted residuals are smaller than the errors themselves, so correct for the degrees of
     // freedom.
-    let used = degrees_of_freedom(&solution.x, &equations.penalised, &plain.penalised) + free_count;
+    let shrunk = |n: usize| equations.penalised.row_of(n);
+    let used = degrees_of_freedom(&solution.x, shrunk, &plain.penalised) + free_count;
     let left = (samples - used).max(1.0);
     let squares: f64 = solution.residual.iter().map(|r| r * r).sum();
 
@@ -108,14 +113,15 @@ pub(crate) fn of(
 /// Effective number of parameters: one for each weight above zero, fewer where the penalty ties
 /// weights together. `tr (G + P)⁻¹ G` over these weights (Hastie, Tibshirani and Friedman 2009,
 /// 7.6).
-fn degrees_of_freedom(x: &[f64], equations: &Penalised, plain: &Penalised) -> f64 {
+fn degrees_of_freedom(x: &[f64], row: impl Fn(usize) -> Vec<f64>, plain: &Penalised) -> f64 {
     let above: Vec<usize> = (0..x.len()).filter(|n| x[*n] != 0.0).collect();
     let size = above.len();
-    let part =
-        |of: &Penalised| Mat::from_fn(size, size, |i, j| of.matrix[above[i] * x.len() + above[j]]);
-    match part(equations).llt(Side::Lower) {
+    let elements = plain.elements().unwrap_or_default();
+    let part = Mat::from_fn(size, size, |i, j| elements[above[i] * x.len() + above[j]]);
+    let rows: Vec<Vec<f64>> = above.iter().map(|n| row(*n)).collect();
+    match Mat::from_fn(size, size, |i, j| rows[i][above[j]]).llt(Side::Lower) {
         Ok(factor) => {
-            let shrunk = factor.solve(&part(plain));
+            let shrunk = factor.solve(&part);
             (0..size).map(|n| shrunk[(n, n)]).sum()
         }
         Err(_) => size as f64,

@@ -8,15 +8,15 @@
 //! part of the weight can be moved to other operators without a change of the output.
 
 use crate::error::{Error, Result};
-use crate::identify::weights::sparse::{Initial, SparseForm};
+use crate::identify::weights::sparse::{Initial, SparseForm, Square};
 use crate::model::Excitation;
 use crate::model::Plane;
 use crate::progress::Progress;
 use crate::series::{NOISE, Turning, usual_tolerance};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
+use hysteron_core::Definition;
 use hysteron_core::Operator;
-use hysteron_core::{Definition, operator_index};
 
 /// Ridge `ε`. The centred Gram matrix counts samples. An operator that swings fully on its own for
 /// a few samples has an element of about 1. A spiral of [`crate::design()`] with ten samples per
@@ -58,7 +58,7 @@ pub fn excitation(inputs: &[&[f64]], plane: Plane, operator: Operator) -> Result
 /// What recorded inputs leave unresolved: `I − R = ε (G + εI)⁻¹`, the share of a unit prior
 /// variance that remains after data of unit noise.
 pub(crate) struct Unresolved {
-    plane: Plane,
+    form: SparseForm,
     operator: Operator,
     start: Initial,
     matrix: Mat<f64>,
@@ -73,7 +73,8 @@ impl Unresolved {
     ) -> Result<Self> {
         crate::identify::weights::problem::check_gram(plane.operators())?;
         let count = plane.operators();
-        let mut gram = centred_gram(inputs, plane, operator, start)?;
+        let form = SparseForm::new(plane, operator)?;
+        let mut gram = centred_gram(inputs, &form, start)?;
         let trace: f64 = (0..count).map(|n| gram[n * count + n]).sum();
         let ridge = RIDGE.max(ROUNDING * trace);
         for n in 0..count {
@@ -87,7 +88,7 @@ impl Unresolved {
         let mut matrix = factor.inverse();
         matrix *= faer::Scale(ridge);
         Ok(Self {
-            plane,
+            form,
             operator,
             start,
             matrix,
@@ -95,7 +96,7 @@ impl Unresolved {
     }
 
     pub(crate) fn classes(&self, inputs: &[&[f64]]) -> Result<Vec<Excitation>> {
-        let moves = branches_moved(inputs, self.plane, self.operator, self.start)?;
+        let moves = branches_moved(inputs, *self.form.plane(), self.operator, self.start)?;
         let class = |(n, moves): (usize, usize)| match moves {
             _ if self.matrix[(n, n)] <= UNRESOLVED => Excitation::Determined,
             0 => Excitation::Never,
@@ -110,54 +111,47 @@ impl Unresolved {
     ///
     /// A corner is a sum of weights, so its unresolved part is on the diagonal of `S (I − R) Sᵀ`.
     pub(crate) fn corners_known(&self) -> Vec<bool> {
-        let levels = self.plane.levels();
-        let count = self.plane.operators();
+        let count = self.form.operators();
         let mut half = self.matrix.clone();
         for row in 0..count {
             let mut sums: Vec<f64> = (0..count).map(|n| half[(row, n)]).collect();
-            prefix_sums(levels, &mut sums);
+            self.form.corners_of(&mut sums);
             for (n, sum) in sums.into_iter().enumerate() {
                 half[(row, n)] = sum;
             }
         }
         let known = |n: usize| {
             let mut sums: Vec<f64> = (0..count).map(|row| half[(row, n)]).collect();
-            prefix_sums(levels, &mut sums);
+            self.form.corners_of(&mut sums);
             sums[n] <= UNRESOLVED
         };
         (0..count).map(known).collect()
     }
 }
 
-/// `S μ` in place: `C[p][q] = Σ μ_ij` over `j ≤ p`, `i > q`.
-fn prefix_sums(levels: usize, mu: &mut [f64]) {
-    for j in 1..=levels {
-        for i in (1..j).rev() {
-            mu[operator_index(i, j)] += mu[operator_index(i + 1, j)];
-        }
-    }
-    for j in 2..=levels {
-        for i in 1..j {
-            mu[operator_index(i, j)] += mu[operator_index(i, j - 1)];
-        }
-    }
-}
-
 /// `Φᵀ Φ` of all recordings together, with the common mean subtracted from every column.
 pub(super) fn centred_gram(
     inputs: &[&[f64]],
-    plane: Plane,
-    operator: Operator,
+    form: &SparseForm,
     start: Initial,
 ) -> Result<Vec<f64>> {
-    let count = plane.operators();
+    let count = form.operators();
     let mut gram = vec![0.0; count * count];
-    let mut sums = vec![0.0; count];
-    let form = SparseForm::new(plane, operator)?;
+    let mut all = [vec![0.0; count]];
     for input in inputs {
-        form.add_outer(input, (start, start), |_| 1.0, &mut gram, Progress::NONE)?;
-        form.add_adjoint(input, start, |_| 1.0, &mut sums)?;
+        let (one, group) = (|_| 1.0, |_| Some(0));
+        let mut squares = [Square::new(&mut gram, count)];
+        form.add_outer(
+            input,
+            (start, start),
+            one,
+            group,
+            &mut squares,
+            Progress::NONE,
+        )?;
+        form.add_adjoints(input, start, one, group, &mut all)?;
     }
+    let [mut sums] = all;
     form.gram_of(&mut gram);
     form.operators_of(&mut sums);
     let samples = inputs.iter().map(|input| input.len()).sum::<usize>().max(1) as f64;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identify::doubt::excitation::centred_gram;
 use crate::identify::weights::problem::check_gram;
 use crate::identify::weights::solve::not_definite;
-use crate::identify::weights::sparse::Initial;
+use crate::identify::weights::sparse::{Initial, SparseForm};
 use crate::model::Plane;
 use crate::recording::Recording;
 use crate::series::noise::noise;
@@ -75,7 +75,8 @@ pub(crate) fn determined(recording: &Recording, plane: Plane) -> Result<Option<(
         return Ok(None);
     }
     check_gram(operators)?;
-    let gram = centred_gram(&[&recording.input], plane, Operator::Mkp, Initial::Off)?;
+    let form = SparseForm::new(plane, Operator::Mkp)?;
+    let gram = centred_gram(&[&recording.input], &form, Initial::Off)?;
     let spectrum = Spectrum::of(&gram, 0.0)?;
     let (low, high) = range(&recording.output);
     let even = (high - low) / operators as f64;

@@ -5,6 +5,7 @@
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::solve::Mixed;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -52,8 +53,7 @@ impl FreeColumns {
 
     /// Fits the free columns to `residual`, subtracts them from it, and returns their coefficients.
     pub(crate) fn take_off(&self, residual: &mut [f64]) -> Vec<f64> {
-        let products: Vec<f64> = self.columns.iter().map(|z| dot(z, residual)).collect();
-        let values: Vec<f64> = self.inverse.iter().map(|row| dot(row, &products)).collect();
+        let values = self.values(&self.products(residual));
         for (z, value) in self.columns.iter().zip(&values) {
             for (r, z) in residual.iter_mut().zip(z) {
                 *r -= value * z;
@@ -62,29 +62,43 @@ impl FreeColumns {
         values
     }
 
-    /// Subtracts `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` from the Gram matrix.
-    pub(crate) fn eliminate_from(
+    /// `Aᵀ z` for each free column `z`, and the inverse.
+    pub(crate) fn mixed(&self, regressor: &Regressor, experiment: &Experiment) -> Result<Mixed> {
+        let columns = self.columns.iter();
+        let columns = columns.map(|z| regressor.adjoint(experiment, z));
+        Ok(Mixed {
+            columns: columns.collect::<Result<_>>()?,
+            inverse: self.inverse.clone(),
+        })
+    }
+
+    /// `Zᵀ r`.
+    pub(crate) fn products(&self, residual: &[f64]) -> Vec<f64> {
+        self.columns.iter().map(|z| dot(z, residual)).collect()
+    }
+
+    /// `Zᵀ r` over the samples of each of `units` units.
+    pub(crate) fn unit_products(
         &self,
-        gram: &mut [f64],
-        regressor: &Regressor,
-        experiment: &Experiment,
-    ) -> Result<()> {
-        let sums: Vec<Vec<f64>> = self
-            .columns
-            .iter()
-            .map(|z| regressor.adjoint(experiment, z))
-            .collect::<Result<_>>()?;
-        let count = regressor.columns().len();
-        for (a, left) in sums.iter().enumerate() {
-            for (b, right) in sums.iter().enumerate() {
-                let factor = self.inverse[a][b];
-                for (row, x) in gram.chunks_exact_mut(count).zip(left) {
-                    let scale = factor * x;
-                    row.iter_mut().zip(right).for_each(|(g, y)| *g -= scale * y);
+        residual: &[f64],
+        unit: &[Option<usize>],
+        units: usize,
+    ) -> Vec<Vec<f64>> {
+        let of = |z: &Vec<f64>| {
+            let mut sums = vec![0.0; units];
+            for ((z, r), unit) in z.iter().zip(residual).zip(unit) {
+                if let Some(unit) = unit {
+                    sums[*unit] += z * r;
                 }
             }
-        }
-        Ok(())
+            sums
+        };
+        self.columns.iter().map(of).collect()
+    }
+
+    /// The coefficients `(Zᵀ Z)⁻¹ p` for the products `p = Zᵀ r`.
+    pub(crate) fn values(&self, products: &[f64]) -> Vec<f64> {
+        self.inverse.iter().map(|row| dot(row, products)).collect()
     }
 }
 

@@ -2,13 +2,20 @@
 //!
 //! `experiment` joins the recordings and `problem` sets up the fit. `sparse` and `rows` apply the
 //! regressor of one recording without forming it; `regressor` combines recordings, starts and
-//! loads. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`.
+//! loads. `sums` are the products of groups of samples, from which a fit and its error follow without
+//! the samples. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
+//! equations with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept sparse,
+//! over Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`.
 
 pub(super) mod cholesky;
+pub(super) mod corner_gram;
+pub(super) mod corner_system;
 pub(super) mod experiment;
 pub(super) mod fit;
 pub(super) mod free;
+pub(super) mod gram;
+pub(super) mod grid_factor;
+pub(super) mod layout;
 pub(crate) mod nnls;
 pub(crate) mod pivoting;
 pub(super) mod problem;
@@ -17,3 +24,5 @@ pub(super) mod rows;
 pub(super) mod smoothness;
 pub(super) mod solve;
 pub(super) mod sparse;
+pub(super) mod sums;
+pub(super) mod units;

@@ -5,6 +5,7 @@
 use crate::error::Result;
 use crate::identify::weights::cholesky::Cholesky;
 use crate::progress::Progress;
+use std::borrow::Cow;
 
 /// One step may add one variable, and one more for each group of this many variables above zero.
 /// Adding more at once saves gradients, but many of them leave again.
@@ -14,14 +15,61 @@ const STRIDE: usize = 8;
 /// positive definite, `N × N`, row by row. The objective never rises. Where rounding stops its
 /// progress, the limit on the number of steps ends the loop, and `x` is as good as rounding allows.
 pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>) -> Result<()> {
+    let dense = Dense {
+        elements: a,
+        count: b.len(),
+    };
+    minimise(&dense, b, x, progress)
+}
+
+/// A symmetric positive definite matrix, of which few rows are needed.
+pub(crate) trait Quadratic {
+    fn diagonal(&self, n: usize) -> f64;
+
+    fn row(&self, n: usize) -> Cow<'_, [f64]>;
+
+    /// Subtracts the product with `x`, which is zero but for the members.
+    fn take_from(&self, gradient: &mut [f64], x: &[f64], members: &[usize]);
+}
+
+struct Dense<'a> {
+    elements: &'a [f64],
+    count: usize,
+}
+
+impl Quadratic for Dense<'_> {
+    fn diagonal(&self, n: usize) -> f64 {
+        self.elements[n * self.count + n]
+    }
+
+    fn row(&self, n: usize) -> Cow<'_, [f64]> {
+        Cow::Borrowed(&self.elements[n * self.count..(n + 1) * self.count])
+    }
+
+    fn take_from(&self, gradient: &mut [f64], x: &[f64], members: &[usize]) {
+        for &n in members {
+            for (g, a) in gradient.iter_mut().zip(self.row(n).iter()) {
+                *g -= a * x[n];
+            }
+        }
+    }
+}
+
+/// As [`solve`], for a matrix in any form.
+pub(crate) fn minimise(
+    a: &impl Quadratic,
+    b: &[f64],
+    x: &mut [f64],
+    progress: Progress<'_>,
+) -> Result<()> {
     let count = b.len();
     let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
     // Rounding of sums of `count` products. A gradient below this is zero.
     let slack = 1e-13 * size;
-    let row = |n: usize| &a[n * count..(n + 1) * count];
     let mut set = FreeSet::default();
     let above: Vec<usize> = (0..count).filter(|&n| x[n] > 0.0).collect();
-    match Cholesky::of(above.len(), |i, j| a[above[i] * count + above[j]]) {
+    let rows: Vec<Cow<'_, [f64]>> = above.iter().map(|n| a.row(*n)).collect();
+    match Cholesky::of(above.len(), |i, j| rows[i][above[j]]) {
         Some(factor) => {
             set.factor = factor;
             set.members = above;
@@ -30,34 +78,31 @@ pub(crate) fn solve(a: &[f64], b: &[f64], x: &mut [f64], progress: Progress<'_>)
         // again.
         None => {
             for n in above {
-                if !set.take(n, row(n)) {
+                if !set.take(n, &a.row(n)) {
                     x[n] = 0.0;
                 }
             }
         }
     }
+    drop(rows);
     set.descend(b, x);
     // Variables that did not help are not tried again until others have helped.
     let mut tried = vec![false; count];
     for _ in 0..30 * count + 100 {
         progress.tell("weights", set.members.len() as f64 / count as f64)?;
         let mut gradient = b.to_vec();
-        for &n in &set.members {
-            for (g, a) in gradient.iter_mut().zip(row(n)) {
-                *g -= a * x[n];
-            }
-        }
+        a.take_from(&mut gradient, x, &set.members);
         let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > slack;
         let mut wanted: Vec<usize> = (0..count).filter(outside).collect();
         if wanted.is_empty() {
             return Ok(());
         }
         // The steepest first, in units of each variable's own curvature.
-        let steepness = |n: &usize| gradient[*n] / row(*n)[*n].sqrt();
+        let steepness = |n: &usize| gradient[*n] / a.diagonal(*n).sqrt();
         wanted.sort_by(|m, n| steepness(n).total_cmp(&steepness(m)));
         wanted.truncate(1 + set.members.len() / STRIDE);
         for &n in &wanted {
-            set.take(n, row(n));
+            set.take(n, &a.row(n));
         }
         let moved = set.descend(b, x);
         if moved {

@@ -18,22 +18,38 @@ const MOST: usize = 50;
 /// stopped the method.
 pub(crate) fn minimum(a: &[f64], b: &[f64], x: &[f64]) -> (Vec<f64>, bool) {
     let count = b.len();
-    let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();
-    let mut best = (usize::MAX, x.to_vec());
-    let mut patience = PATIENCE;
-    for _ in 0..MOST {
-        let members: Vec<usize> = (0..count).filter(|n| above[*n]).collect();
-        let Some(values) = free_minimum(a, b, &members) else {
-            break;
-        };
+    let gradient = |members: &[usize], values: &[f64]| {
         let mut gradient = b.to_vec();
-        for (&n, value) in members.iter().zip(&values) {
+        for (&n, value) in members.iter().zip(values) {
             let row = &a[n * count..(n + 1) * count];
             gradient
                 .iter_mut()
                 .zip(row)
                 .for_each(|(g, a)| *g -= a * value);
         }
+        gradient
+    };
+    minimum_by(b, x, |members| free_minimum(a, b, members), gradient)
+}
+
+/// As [`minimum`], for a matrix in any form. `free_minimum` is the minimum over the members alone,
+/// without sign constraint. `gradient` is `b − A x` for members and their values.
+pub(crate) fn minimum_by(
+    b: &[f64],
+    x: &[f64],
+    free_minimum: impl Fn(&[usize]) -> Option<Vec<f64>>,
+    gradient: impl Fn(&[usize], &[f64]) -> Vec<f64>,
+) -> (Vec<f64>, bool) {
+    let count = b.len();
+    let mut above: Vec<bool> = x.iter().map(|x| *x > 0.0).collect();
+    let mut best = (usize::MAX, x.to_vec());
+    let mut patience = PATIENCE;
+    for _ in 0..MOST {
+        let members: Vec<usize> = (0..count).filter(|n| above[*n]).collect();
+        let Some(values) = free_minimum(&members) else {
+            break;
+        };
+        let gradient = gradient(&members, &values);
         let slack = 1e-12 * b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
         let wrong_below = (0..count).filter(|&n| !above[n] && gradient[n] > slack);
         let mut wrong: Vec<usize> = wrong_below.collect();

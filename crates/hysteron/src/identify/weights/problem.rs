@@ -15,6 +15,10 @@ use hysteron_core::Operator;
 /// Largest size of the Gram matrix, in bytes.
 const GRAM_BYTES: u128 = 4 << 30;
 
+/// One sign is better than the other if it explains this share of the squares more. Rounding of the
+/// sums is far below it.
+const CLEAR: f64 = 1e-6;
+
 pub(crate) struct Problem {
     pub(crate) experiment: Experiment,
     pub(crate) regressor: Regressor,
@@ -136,19 +140,40 @@ impl Problem {
         }
     }
 
+    /// The signs that may be the better one, each with weights to start from. The targets of the
+    /// two signs differ in their sign only, so one pass over the samples rates both. Only where
+    /// rounding could hide which is better are both kept.
+    fn promising(
+        &self,
+        equations: &NormalEquations<'_>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<(Sign, Option<Vec<f64>>)>> {
+        let (right, squares) = equations.right(&self.target(Sign::Positive))?;
+        let mut rated = Vec::new();
+        for sign in [Sign::Positive, Sign::Negative] {
+            let right: Vec<f64> = right.iter().map(|b| sign.factor() * b).collect();
+            let (x, gain) = equations.penalised.nonnegative(&right, progress)?;
+            rated.push((sign, x, gain));
+        }
+        let clear = CLEAR * squares;
+        let most = rated[0].2.max(rated[1].2);
+        let near = rated.into_iter().filter(|(.., gain)| *gain >= most - clear);
+        Ok(near.map(|(sign, x, _)| (sign, Some(x))).collect())
+    }
+
     fn best_sign(&self, equations: &NormalEquations<'_>, progress: Progress<'_>) -> Result<Fitted> {
         let signs = match self.options.sign {
-            Some(sign) => vec![sign],
+            Some(sign) => vec![(sign, None)],
             // Without the constraint both signs give the same output.
-            None if self.options.solver == Solver::Ols => vec![Sign::Positive],
-            None => vec![Sign::Positive, Sign::Negative],
+            None if self.options.solver == Solver::Ols => vec![(Sign::Positive, None)],
+            None => self.promising(equations, progress)?,
         };
         let mut best: Option<Fitted> = None;
-        for sign in signs {
+        for (sign, start) in signs {
             let solution = equations.solve(
                 &self.target(sign),
                 self.options.solver,
-                None,
+                start.as_deref(),
                 STEPS,
                 progress,
             )?;

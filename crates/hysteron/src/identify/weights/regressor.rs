@@ -12,13 +12,18 @@
 //! reduce the error.
 
 use crate::error::Result;
+use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
-use crate::identify::weights::sparse::{Initial, OPEN, SparseForm};
+use crate::identify::weights::gram::{Gram, MANY};
+use crate::identify::weights::layout::{Block, Layout};
+use crate::identify::weights::rows::Term;
+use crate::identify::weights::sparse::{Initial, OPEN, SparseForm, Square};
 use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Progress;
 use hysteron_core::Operator;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Largest number of recordings in one experiment: a pattern of starts has one bit for each.
 pub(crate) const MOST_RECORDINGS: usize = 64;
@@ -41,7 +46,7 @@ impl Column {
         Self { part, operator, on }
     }
 
-    fn initial_in(&self, recording: usize) -> Initial {
+    pub(super) fn initial_in(&self, recording: usize) -> Initial {
         if self.on >> recording & 1 == 1 {
             Initial::On
         } else {
@@ -49,6 +54,9 @@ impl Column {
         }
     }
 }
+
+/// Columns in blocks, and the function of the load and the start of each block.
+type Blocks = (Arc<Layout>, Vec<(usize, Initial)>);
 
 /// The columns of the regressor. Its products are computed from the samples of an experiment.
 pub(crate) struct Regressor {
@@ -110,6 +118,10 @@ impl Regressor {
         !self.open.is_empty()
     }
 
+    pub(super) fn form(&self) -> &SparseForm {
+        &self.form
+    }
+
     pub(crate) fn plane(&self) -> &Plane {
         self.form.plane()
     }
@@ -162,23 +174,70 @@ impl Regressor {
 
     /// `Aᵀ r`.
     pub(crate) fn adjoint(&self, experiment: &Experiment, residual: &[f64]) -> Result<Vec<f64>> {
-        let mut result = vec![0.0; self.columns.len()];
+        let all = self.adjoints(experiment, residual, 1, |_| Some(0))?;
+        Ok(all.into_iter().next().unwrap_or_default())
+    }
+
+    /// `Aᵀ r` over the samples of each of `count` groups. Samples without a group do not count.
+    pub(crate) fn adjoints(
+        &self,
+        experiment: &Experiment,
+        residual: &[f64],
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let mut results = vec![vec![0.0; self.columns.len()]; count];
         // Recordings in which all columns start in the same way share their sums.
         for recordings in self.alike(experiment) {
-            let products = self.products(experiment, recordings.clone(), residual)?;
-            for (result, column) in result.iter_mut().zip(&self.columns) {
-                *result += products.of(
-                    column.part,
-                    column.initial_in(recordings.start),
-                    column.operator,
-                );
+            let all = self.products(experiment, recordings.clone(), residual, count, &group)?;
+            for (result, products) in results.iter_mut().zip(all) {
+                for (result, column) in result.iter_mut().zip(&self.columns) {
+                    let from = column.initial_in(recordings.start);
+                    *result += products.of(column.part, from, column.operator);
+                }
             }
         }
-        Ok(result)
+        Ok(results)
+    }
+
+    /// For each of the coefficients `x`, `A x` at the samples of its group; zero at samples without
+    /// a group.
+    pub(crate) fn forwards(
+        &self,
+        experiment: &Experiment,
+        x: &[Vec<f64>],
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<f64>> {
+        let mut output = vec![0.0; experiment.input.len()];
+        for (s, range) in experiment.recordings.iter().enumerate() {
+            let starts = self.starts(s);
+            for (part, values) in experiment.parts.iter().enumerate() {
+                for &from in &starts {
+                    let corners = |x: &Vec<f64>| {
+                        let mut weights = vec![0.0; self.form.operators()];
+                        for (column, x) in self.columns.iter().zip(x) {
+                            if column.part == part && column.initial_in(s) == from {
+                                weights[column.operator] += x;
+                            }
+                        }
+                        self.form.corners_of(&mut weights);
+                        weights
+                    };
+                    let corners: Vec<Vec<f64>> = x.iter().map(corners).collect();
+                    let own = |n: usize| group(range.start + n);
+                    let add = |n: usize, h: f64| {
+                        output[range.start + n] += values[range.start + n] * h;
+                    };
+                    let input = &experiment.input[range.clone()];
+                    self.form.add_forward(input, from, &corners, own, add)?;
+                }
+            }
+        }
+        Ok(output)
     }
 
     /// Runs of recordings in which no column changes its start.
-    fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
+    pub(super) fn alike(&self, experiment: &Experiment) -> Vec<Range<usize>> {
         let count = experiment.recordings.len();
         // One recording per run, or all recordings in one run.
         let length = if self.unknown_start() {
@@ -190,7 +249,7 @@ impl Regressor {
     }
 
     /// The starts that columns have in the recording.
-    fn starts(&self, recording: usize) -> Vec<Initial> {
+    pub(super) fn starts(&self, recording: usize) -> Vec<Initial> {
         let has = |from: &Initial| {
             self.columns
                 .iter()
@@ -207,57 +266,71 @@ impl Regressor {
         experiment: &Experiment,
         recordings: Range<usize>,
         residual: &[f64],
-    ) -> Result<Products> {
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<Products>> {
         let starts = self.starts(recordings.start);
-        let mut sums = Vec::new();
+        let mut all = vec![Vec::new(); count];
         for values in &experiment.parts {
             for &from in &starts {
-                let mut w = vec![0.0; self.form.operators()];
+                let mut sums = vec![vec![0.0; self.form.operators()]; count];
                 for range in &experiment.recordings[recordings.clone()] {
                     let r = |n: usize| values[range.start + n] * residual[range.start + n];
-                    self.form
-                        .add_adjoint(&experiment.input[range.clone()], from, r, &mut w)?;
+                    let own = |n: usize| group(range.start + n);
+                    let input = &experiment.input[range.clone()];
+                    self.form.add_adjoints(input, from, r, own, &mut sums)?;
                 }
-                self.form.operators_of(&mut w);
-                sums.push(w);
+                for (all, mut w) in all.iter_mut().zip(sums) {
+                    self.form.operators_of(&mut w);
+                    all.push(w);
+                }
             }
         }
-        Ok(Products { starts, sums })
+        let products = |sums| Products {
+            starts: starts.clone(),
+            sums,
+        };
+        Ok(all.into_iter().map(products).collect())
     }
 
-    /// `Aᵀ diag(kept) A`, row by row.
-    pub(crate) fn gram(
+    /// `Aᵀ A` over the samples of each of `count` groups, row by row, in one pass over the samples.
+    /// Samples without a group do not count.
+    pub(crate) fn grams(
         &self,
         experiment: &Experiment,
-        kept: Option<&[f64]>,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
         progress: Progress<'_>,
-    ) -> Result<Vec<f64>> {
-        let (operators, count) = (self.form.operators(), self.columns.len());
-        let mut gram = Vec::new();
+    ) -> Result<Vec<Vec<f64>>> {
+        let (operators, columns) = (self.form.operators(), self.columns.len());
+        let mut grams = vec![Vec::new(); count];
         for recordings in self.alike(experiment) {
             let starts = self.starts(recordings.start);
-            let groups =
+            let pairs =
                 (0..experiment.parts.len()).flat_map(|p| starts.iter().map(move |f| (p, *f)));
-            let groups: Vec<(usize, Initial)> = groups.collect();
-            for (g, &(p, from)) in groups.iter().enumerate() {
-                for &(q, other) in &groups[g..] {
-                    let mut block = vec![0.0; operators * operators];
+            let pairs: Vec<(usize, Initial)> = pairs.collect();
+            for (g, &(p, from)) in pairs.iter().enumerate() {
+                for &(q, other) in &pairs[g..] {
+                    let mut blocks = vec![vec![0.0; operators * operators]; count];
                     for range in &experiment.recordings[recordings.clone()] {
                         let scale = |n: usize| {
                             let n = range.start + n;
-                            experiment.parts[p][n]
-                                * experiment.parts[q][n]
-                                * kept.map_or(1.0, |kept| kept[n])
+                            experiment.parts[p][n] * experiment.parts[q][n]
                         };
+                        let own = |n: usize| group(range.start + n);
                         let input = &experiment.input[range.clone()];
+                        let starts = (from, other);
+                        let mut squares: Vec<Square<'_>> = blocks
+                            .iter_mut()
+                            .map(|block| Square::new(block, operators))
+                            .collect();
                         self.form
-                            .add_outer(input, (from, other), scale, &mut block, progress)?;
+                            .add_outer(input, starts, scale, own, &mut squares, progress)?;
                     }
-                    self.form.gram_of(&mut block);
-                    if groups.len() == 1 && !self.unknown_start() {
-                        return Ok(block);
+                    blocks.iter_mut().for_each(|block| self.form.gram_of(block));
+                    if pairs.len() == 1 && !self.unknown_start() {
+                        return Ok(blocks);
                     }
-                    gram.resize(count * count, 0.0);
                     let members = |part, from| {
                         let columns = self.columns.iter().enumerate();
                         columns
@@ -267,20 +340,105 @@ impl Regressor {
                             .map(|(n, c)| (n, c.operator))
                             .collect::<Vec<_>>()
                     };
-                    let right = members(q, other);
-                    for (a, i) in members(p, from) {
-                        for &(b, j) in &right {
-                            let value = block[i * operators + j];
-                            gram[a * count + b] += value;
-                            if (p, from) != (q, other) {
-                                gram[b * count + a] += value;
+                    let (left, right) = (members(p, from), members(q, other));
+                    for (gram, block) in grams.iter_mut().zip(blocks) {
+                        gram.resize(columns * columns, 0.0);
+                        for &(a, i) in &left {
+                            for &(b, j) in &right {
+                                let value = block[i * operators + j];
+                                gram[a * columns + b] += value;
+                                if (p, from) != (q, other) {
+                                    gram[b * columns + a] += value;
+                                }
                             }
                         }
                     }
                 }
             }
         }
-        Ok(gram)
+        Ok(grams)
+    }
+
+    /// As [`Regressor::grams`], in the form that solves faster.
+    pub(crate) fn compact_grams(
+        &self,
+        experiment: &Experiment,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Gram>> {
+        if self.columns.len() >= MANY
+            && let Some(all) = self.corner_grams(experiment, count, &group, progress)?
+        {
+            return Ok(Gram::of_corners(all));
+        }
+        let all = self.grams(experiment, count, group, progress)?;
+        Ok(all.into_iter().map(Gram::Dense).collect())
+    }
+
+    /// As [`Regressor::grams`], over corners; `None` where several recordings have unknown starts.
+    pub(super) fn corner_grams(
+        &self,
+        experiment: &Experiment,
+        count: usize,
+        group: impl Fn(usize) -> Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Option<Vec<CornerGram>>> {
+        let Some((layout, blocks)) = self.layout(experiment) else {
+            return Ok(None);
+        };
+        let mut all: Vec<CornerSums> = (0..count).map(|_| CornerSums::default()).collect();
+        for (a, &(p, from)) in blocks.iter().enumerate() {
+            for (b, &(q, other)) in blocks.iter().enumerate().skip(a) {
+                let [left, right] = [a, b].map(|n| &layout.blocks[n].columns[..]);
+                let mirror = a != b;
+                let of = |sums| OfBlocks {
+                    sums,
+                    left,
+                    right,
+                    mirror,
+                };
+                let mut sums: Vec<OfBlocks<'_>> = all.iter_mut().map(of).collect();
+                for range in &experiment.recordings {
+                    let scale = |n: usize| {
+                        let n = range.start + n;
+                        experiment.parts[p][n] * experiment.parts[q][n]
+                    };
+                    let own = |n: usize| group(range.start + n);
+                    let input = &experiment.input[range.clone()];
+                    let starts = (from, other);
+                    self.form
+                        .add_outer(input, starts, scale, own, &mut sums, progress)?;
+                }
+            }
+        }
+        let all = all.into_iter().map(|sums| sums.into_gram(&layout));
+        Ok(Some(all.collect()))
+    }
+
+    /// The columns in blocks of one function of the load and one start, where every recording
+    /// starts in the same way.
+    fn layout(&self, experiment: &Experiment) -> Option<Blocks> {
+        if self.unknown_start() && experiment.recordings.len() > 1 {
+            return None;
+        }
+        let mut kinds: Vec<(usize, Initial)> = Vec::new();
+        let mut blocks: Vec<Block> = Vec::new();
+        for (n, column) in self.columns.iter().enumerate() {
+            let kind = (column.part, column.initial_in(0));
+            let place = kinds.iter().position(|other| *other == kind);
+            let place = place.unwrap_or_else(|| {
+                kinds.push(kind);
+                blocks.push(Block {
+                    part: column.part,
+                    columns: vec![Term::NOWHERE; self.form.operators()],
+                });
+                blocks.len() - 1
+            });
+            blocks[place].columns[column.operator] = n as u32;
+        }
+        let layout = Layout::new(&self.form, &self.columns, blocks)?;
+        Some((Arc::new(layout), kinds))
     }
 
     /// For each operator and each function of the load, finds the pattern of starts that reduces
@@ -302,8 +460,12 @@ impl Regressor {
         let all: Vec<Products> = self
             .alike(experiment)
             .into_iter()
-            .map(|recordings| self.products(experiment, recordings, residual))
-            .collect::<Result<_>>()?;
+            .map(|recordings| {
+                let all = self.products(experiment, recordings, residual, 1, |_| Some(0))?;
+                Ok(all.into_iter().next())
+            })
+            .collect::<Result<Option<_>>>()?
+            .unwrap_or_default();
         let before = self.columns.len();
         for part in 0..experiment.parts.len() {
             for operator in 0..self.form.operators() {

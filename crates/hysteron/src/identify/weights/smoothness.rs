@@ -11,40 +11,61 @@ use crate::identify::weights::regressor::Column;
 use crate::model::Smooth;
 use hysteron_core::operator_index;
 
+/// Pairs of neighbours in the plane, as operators, with their kind: along the diagonal 0, across it
+/// 1, on it 2.
+pub(crate) fn edges(levels: usize) -> Vec<(usize, usize, usize)> {
+    let mut edges = Vec::new();
+    for j in 1..=levels {
+        for i in 1..=j {
+            let here = operator_index(i, j);
+            if j < levels {
+                let kind = if i < j { 0 } else { 2 };
+                edges.push((kind, here, operator_index(i + 1, j + 1)));
+            }
+            if i < j && j < levels {
+                edges.push((1, here, operator_index(i, j + 1)));
+            }
+            if i + 1 < j {
+                edges.push((1, here, operator_index(i + 1, j)));
+            }
+        }
+    }
+    edges
+}
+
 pub(crate) struct Smoothness {
     /// Pairs of neighbours, and the factor of their squared difference.
     edges: Vec<(usize, usize, f64)>,
+    /// The factor of each kind of pair.
+    pub(crate) strengths: [f64; 3],
     operators: usize,
 }
 
 impl Smoothness {
+    /// No penalty.
+    pub(crate) fn none() -> Self {
+        Self {
+            edges: Vec::new(),
+            strengths: [0.0; 3],
+            operators: 1,
+        }
+    }
+
     /// A penalty of these strengths, to be added to the sum of squared errors of `samples`.
     pub(crate) fn new(levels: usize, smooth: Smooth, samples: f64) -> Self {
         let k = levels as f64;
         let [along, across] = [smooth.along, smooth.across].map(|s| s * samples * k.powi(4));
         let line = (smooth.along + smooth.across) * samples * k.powi(3);
-        let mut edges = Vec::new();
-        let mut edge = |from: usize, i: usize, j: usize, factor: f64| {
-            if factor > 0.0 {
-                edges.push((from, operator_index(i, j), factor));
-            }
+        let strengths = [along, across, line];
+        let edges = match smooth.is_none() {
+            true => Vec::new(),
+            false => edges(levels),
         };
-        for j in 1..=levels {
-            for i in 1..=j {
-                let here = operator_index(i, j);
-                if j < levels {
-                    edge(here, i + 1, j + 1, if i < j { along } else { line });
-                }
-                if i < j && j < levels {
-                    edge(here, i, j + 1, across);
-                }
-                if i + 1 < j {
-                    edge(here, i + 1, j, across);
-                }
-            }
-        }
+        let edges = edges.into_iter();
+        let edges = edges.map(|(kind, from, to)| (from, to, strengths[kind]));
         Self {
-            edges,
+            edges: edges.filter(|(.., factor)| *factor > 0.0).collect(),
+            strengths,
             operators: operator_index(levels, levels) + 1,
         }
     }
@@ -80,8 +101,26 @@ impl Smoothness {
         }
     }
 
+    /// Adds the diagonal of the penalty's matrix.
+    pub(crate) fn add_diagonal(&self, diagonal: &mut [f64], columns: &[Column]) {
+        let mut own = vec![0.0; self.places(columns)];
+        for part in own.chunks_mut(self.operators) {
+            for &(k, l, factor) in &self.edges {
+                part[k] += factor;
+                part[l] += factor;
+            }
+        }
+        if !self.edges.is_empty() {
+            let all = diagonal.iter_mut().zip(columns);
+            all.for_each(|(d, column)| *d += own[self.place(column)]);
+        }
+    }
+
     /// `P x`.
     pub(crate) fn times(&self, x: &[f64], columns: &[Column]) -> Vec<f64> {
+        if self.edges.is_empty() {
+            return vec![0.0; x.len()];
+        }
         let mut weights = vec![0.0; self.places(columns)];
         for (column, x) in columns.iter().zip(x) {
             weights[self.place(column)] += x;

@@ -8,8 +8,11 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::Prior;
+use crate::identify::weights::corner_system::{CornerSystem, eliminate};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::gram::Gram;
+use crate::identify::weights::nnls::Quadratic;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
 use crate::identify::weights::{nnls, pivoting};
@@ -17,6 +20,7 @@ use crate::model::Solver;
 use crate::progress::Progress;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
+use std::borrow::Cow;
 
 /// Ridge relative to the mean diagonal element of the Gram matrix. It is small compared with the
 /// singular values that matter, and large compared with the rounding.
@@ -31,6 +35,10 @@ const ENOUGH: f64 = 1e-12;
 
 /// Proximal steps also end when the error is this small relative to the data. The rest is rounding.
 const NOTHING_LEFT: f64 = 1e-26;
+
+/// The strongest smoothness for which rounding leaves determinants over Everett corners four digits
+/// after the point.
+const STRONG: f64 = 1e-3;
 
 /// Largest number of proximal steps of a fit.
 pub(crate) const STEPS: usize = 200;
@@ -53,41 +61,124 @@ pub(crate) struct Penalised {
     smoothness: Smoothness,
     /// The ridge of the prior. Proximal steps do not remove it.
     shrink: f64,
-    /// The matrix with both ridges, `C × C`, row by row.
-    pub(crate) matrix: Vec<f64>,
+    /// The matrix with both ridges.
+    matrix: Matrix,
     /// The sum of both ridges.
     pub(crate) ridge: f64,
+    /// Whether the smoothness is stronger than [`STRONG`].
+    strong: bool,
+}
+
+enum Matrix {
+    /// `C × C`, row by row.
+    Dense(Vec<f64>),
+    Corners(Box<CornerSystem>),
+}
+
+/// The factor of the whole matrix, for weights of either sign.
+pub(crate) enum WholeFactor {
+    Dense(Llt<f64>),
+    /// Computed where it is used, because it is sparse.
+    Corners,
+}
+
+/// A Gram matrix from which free columns are to be eliminated: `Aᵀ z` of each, and `(Zᵀ Z)⁻¹`.
+pub(crate) struct Mixed {
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) inverse: Vec<Vec<f64>>,
 }
 
 impl Penalised {
-    /// From the Gram matrix of `samples` after the free columns were eliminated. `largest` is the
-    /// largest diagonal element before that.
+    /// From the Gram matrix of `samples`.
     pub(crate) fn new(
-        mut matrix: Vec<f64>,
-        largest: f64,
+        gram: Gram,
+        mixed: Mixed,
         samples: f64,
         prior: Prior,
         regressor: &Regressor,
     ) -> Self {
         let count = regressor.columns().len();
-        let mean = |matrix: &[f64]| {
-            let diagonal = (0..count).map(|n| matrix[n * count + n]);
-            diagonal.sum::<f64>() / count as f64
-        };
-        let shrink = prior.ridge * mean(&matrix);
+        let largest = gram.diagonal(count).into_iter().fold(0.0, f64::max);
         let smoothness = Smoothness::new(regressor.plane().levels(), prior.smooth, samples);
-        smoothness.add_to(&mut matrix, regressor.columns());
-        let tiny = RIDGE * mean(&matrix) + ROUNDING * largest;
-        let ridge = shrink + tiny.max(f64::MIN_POSITIVE);
-        for n in 0..count {
-            matrix[n * count + n] += ridge;
-        }
+        let ridges = |mean: f64, with_penalty: f64| {
+            let shrink = prior.ridge * mean;
+            let tiny = RIDGE * with_penalty + ROUNDING * largest;
+            (shrink, shrink + tiny.max(f64::MIN_POSITIVE))
+        };
+        let (matrix, (shrink, ridge)) = match gram {
+            Gram::Dense(mut matrix) => {
+                eliminate(&mut matrix, &mixed.columns, &mixed.inverse);
+                let mean = |matrix: &[f64]| {
+                    let diagonal = (0..count).map(|n| matrix[n * count + n]);
+                    diagonal.sum::<f64>() / count as f64
+                };
+                let before = mean(&matrix);
+                smoothness.add_to(&mut matrix, regressor.columns());
+                let ridges = ridges(before, mean(&matrix));
+                for n in 0..count {
+                    matrix[n * count + n] += ridges.1;
+                }
+                (Matrix::Dense(matrix), ridges)
+            }
+            Gram::Corners(gram) => {
+                let system = CornerSystem::new(gram, mixed.columns, mixed.inverse);
+                let before = system.mean_diagonal();
+                let mut penalty = vec![0.0; count];
+                smoothness.add_diagonal(&mut penalty, regressor.columns());
+                let mean = before + penalty.iter().sum::<f64>() / count as f64;
+                let ridges = ridges(before, mean);
+                let own = Smoothness::new(regressor.plane().levels(), prior.smooth, samples);
+                (
+                    Matrix::Corners(Box::new(system.with(own, ridges.1))),
+                    ridges,
+                )
+            }
+        };
         Self {
             smoothness,
             shrink,
             matrix,
             ridge,
+            strong: prior.smooth.along.max(prior.smooth.across) > STRONG,
         }
+    }
+
+    /// The elements, row by row; `None` if they are not stored.
+    pub(crate) fn elements(&self) -> Option<&[f64]> {
+        match &self.matrix {
+            Matrix::Dense(matrix) => Some(matrix),
+            Matrix::Corners(_) => None,
+        }
+    }
+
+    /// One row of the matrix.
+    pub(crate) fn row_of(&self, n: usize) -> Vec<f64> {
+        match &self.matrix {
+            Matrix::Dense(matrix) => {
+                let count = matrix.len().isqrt();
+                matrix[n * count..(n + 1) * count].to_vec()
+            }
+            Matrix::Corners(system) => system.row(n).into_owned(),
+        }
+    }
+
+    /// Half the logarithms of the determinants of the prior alone, and of the whole matrix.
+    pub(crate) fn half_log_determinants(&self, regressor: &Regressor) -> Result<(f64, f64)> {
+        let matrix = match &self.matrix {
+            Matrix::Dense(matrix) => Cow::Borrowed(matrix),
+            Matrix::Corners(system) => match system.half_log_determinants() {
+                Some(found) if !self.strong => return Ok(found),
+                _ => Cow::Owned(system.dense()),
+            },
+        };
+        let count = regressor.columns().len();
+        let mut prior = vec![0.0; count * count];
+        self.smoothness.add_to(&mut prior, regressor.columns());
+        (0..count).for_each(|n| prior[n * count + n] += self.ridge);
+        Ok((
+            half_log_determinant(&prior)?,
+            half_log_determinant(&matrix)?,
+        ))
     }
 
     /// The minimum of `½ xᵀ M x − bᵀ x`. With a `factor` of `M` it is over all `x`. Without a
@@ -96,38 +187,86 @@ impl Penalised {
         &self,
         right: &[f64],
         start: &[f64],
-        factor: Option<&Llt<f64>>,
+        factor: Option<&WholeFactor>,
         progress: Progress<'_>,
     ) -> Result<Vec<f64>> {
-        if let Some(factor) = factor {
+        let solved = |factor: &Llt<f64>| {
             let x = factor.solve(&Mat::from_fn(right.len(), 1, |n, _| right[n]));
-            return Ok((0..right.len()).map(|n| x[(n, 0)]).collect());
+            (0..right.len()).map(|n| x[(n, 0)]).collect()
+        };
+        match (factor, &self.matrix) {
+            (Some(WholeFactor::Dense(factor)), _) => return Ok(solved(factor)),
+            (Some(WholeFactor::Corners), Matrix::Corners(system)) => {
+                let all: Vec<usize> = (0..right.len()).collect();
+                return match system.free_minimum(right, &all) {
+                    Some(x) => Ok(x),
+                    None => Ok(solved(&dense_factor(&system.dense())?)),
+                };
+            }
+            _ => {}
         }
         // With smoothness most weights are not zero, so try block pivoting first.
-        let (mut x, exact) = match self.smoothness.is_any() {
-            true => pivoting::minimum(&self.matrix, right, start),
-            false => (start.to_vec(), false),
+        let (mut x, exact) = match (self.smoothness.is_any(), &self.matrix) {
+            (false, _) => (start.to_vec(), false),
+            (true, Matrix::Dense(matrix)) => pivoting::minimum(matrix, right, start),
+            (true, Matrix::Corners(system)) => {
+                let gradient = |members: &[usize], values: &[f64]| {
+                    let mut x = vec![0.0; right.len()];
+                    members
+                        .iter()
+                        .zip(values)
+                        .for_each(|(n, value)| x[*n] = *value);
+                    let moved = system.times(&x);
+                    right.iter().zip(moved).map(|(b, m)| b - m).collect()
+                };
+                let free = |members: &[usize]| system.free_minimum(right, members);
+                pivoting::minimum_by(right, start, free, gradient)
+            }
         };
         if !exact {
-            nnls::solve(&self.matrix, right, &mut x, progress)?;
+            match &self.matrix {
+                Matrix::Dense(matrix) => nnls::solve(matrix, right, &mut x, progress)?,
+                Matrix::Corners(system) => nnls::minimise(&**system, right, &mut x, progress)?,
+            }
         }
         Ok(x)
     }
 
+    /// The minimum over `x ≥ 0`, searched from zero, and by how much it reduces the penalised sum of
+    /// squares.
+    pub(crate) fn nonnegative(
+        &self,
+        right: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<(Vec<f64>, f64)> {
+        let x = self.minimum(right, &vec![0.0; right.len()], None, progress)?;
+        let moved = self.times(&x);
+        let gains = x.iter().zip(right).zip(&moved);
+        let gain = gains.map(|((x, b), m)| x * (2.0 * b - m)).sum();
+        Ok((x, gain))
+    }
+
     /// The factor of the whole matrix, for weights of either sign.
-    pub(crate) fn factor(&self) -> Result<Llt<f64>> {
-        let count = self.matrix.len().isqrt();
-        let element = |i: usize, j: usize| self.matrix[i * count + j];
-        let matrix = Mat::from_fn(count, count, element);
-        matrix.llt(Side::Lower).map_err(|_| not_definite())
+    pub(crate) fn factor(&self) -> Result<WholeFactor> {
+        let matrix = match &self.matrix {
+            Matrix::Dense(matrix) => Cow::Borrowed(matrix),
+            Matrix::Corners(system) if system.can_factor() => return Ok(WholeFactor::Corners),
+            Matrix::Corners(system) => Cow::Owned(system.dense()),
+        };
+        Ok(WholeFactor::Dense(dense_factor(&matrix)?))
+    }
+
+    /// The tiny ridge that only makes the matrix definite.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.ridge - self.shrink
     }
 
     pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let row_times = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
-        self.matrix
-            .chunks_exact(vector.len())
-            .map(row_times)
-            .collect()
+        match &self.matrix {
+            Matrix::Dense(matrix) => matrix.chunks_exact(vector.len()).map(row_times).collect(),
+            Matrix::Corners(system) => system.times(vector),
+        }
     }
 
     /// A random vector whose covariance is the matrix of the prior, from numbers of variance 1.
@@ -166,7 +305,9 @@ impl<'a> NormalEquations<'a> {
         prior: Prior,
         progress: Progress<'_>,
     ) -> Result<Self> {
-        let gram = regressor.gram(experiment, kept, progress)?;
+        let group = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0).then_some(0);
+        let gram = regressor.compact_grams(experiment, 1, group, progress)?;
+        let gram = gram.into_iter().next().unwrap_or(Gram::Dense(Vec::new()));
         Self::of_gram(regressor, experiment, free, kept, prior, gram)
     }
 
@@ -177,20 +318,16 @@ impl<'a> NormalEquations<'a> {
         free: &'a FreeColumns,
         kept: Option<&'a [f64]>,
         prior: Prior,
-        mut matrix: Vec<f64>,
+        gram: Gram,
     ) -> Result<Self> {
-        let count = regressor.columns().len();
-        let largest = (0..count)
-            .map(|n| matrix[n * count + n])
-            .fold(0.0, f64::max);
-        free.eliminate_from(&mut matrix, regressor, experiment)?;
+        let mixed = free.mixed(regressor, experiment)?;
         let samples = kept.map_or(experiment.input.len() as f64, |kept| kept.iter().sum());
         Ok(Self {
             regressor,
             experiment,
             free,
             kept,
-            penalised: Penalised::new(matrix, largest, samples, prior, regressor),
+            penalised: Penalised::new(gram, mixed, samples, prior, regressor),
         })
     }
 
@@ -240,6 +377,14 @@ impl<'a> NormalEquations<'a> {
         Ok(best)
     }
 
+    /// `Aᵀ y` of the target without its free part, and the sum of squares of that.
+    pub(crate) fn right(&self, target: &[f64]) -> Result<(Vec<f64>, f64)> {
+        let none = vec![0.0; self.regressor.columns().len()];
+        let residual = self.solution(target, none)?.residual;
+        let squares = residual.iter().map(|r| r * r).sum();
+        Ok((self.regressor.adjoint(self.experiment, &residual)?, squares))
+    }
+
     /// The solution `x` with its residual from `target`, after the best free columns are
     /// subtracted.
     fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
@@ -275,6 +420,20 @@ impl<'a> NormalEquations<'a> {
         descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
         Ok(descent)
     }
+}
+
+/// Half the logarithm of the determinant of a positive definite matrix: the sum of the logarithms
+/// of its Cholesky factor's diagonal.
+fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
+    let factor = dense_factor(matrix)?;
+    let lower = factor.L();
+    Ok((0..lower.nrows()).map(|n| lower[(n, n)].ln()).sum())
+}
+
+fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
+    let count = matrix.len().isqrt();
+    let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
+    matrix.llt(Side::Lower).map_err(|_| not_definite())
 }
 
 pub(crate) fn not_definite() -> Error {

@@ -121,30 +121,91 @@ impl SparseForm {
         Ok(output)
     }
 
-    /// Adds `Wᵀ r` to `sums`. [`SparseForm::operators_of`] turns the result into `Φᵀ r`.
-    pub(crate) fn add_adjoint(
+    /// Adds `Wᵀ r` over the samples of each group to its `sums`. Samples without a group do not
+    /// count. [`SparseForm::operators_of`] turns the results into `Φᵀ r`.
+    pub(crate) fn add_adjoints(
         &self,
         input: &[f64],
         from: Initial,
         residual: impl Fn(usize) -> f64,
-        sums: &mut [f64],
+        group: impl Fn(usize) -> Option<usize>,
+        sums: &mut [Vec<f64>],
     ) -> Result<()> {
         let mut rows = self.rows(from)?;
-        let mut held = 0.0;
+        let (mut held, mut at) = (0.0, None);
         for (n, &x) in input.iter().enumerate() {
-            if rows.leaves_branch(x)? {
-                rows.add_memory(held, sums);
-                rows.remember();
-                held = 0.0;
+            let left_branch = rows.leaves_branch(x)?;
+            let next = group(n);
+            if left_branch || next != at {
+                if let Some(at) = at {
+                    rows.add_memory(held, &mut sums[at]);
+                }
+                (held, at) = (0.0, next);
             }
+            if left_branch {
+                rows.remember();
+            }
+            let Some(at) = at else {
+                continue;
+            };
             let r = residual(n);
             held += r;
             for term in rows.branch() {
-                sums[term.place as usize] += term.factor * r;
+                sums[at][term.place as usize] += term.factor * r;
             }
         }
-        rows.add_memory(held, sums);
+        if let Some(at) = at {
+            rows.add_memory(held, &mut sums[at]);
+        }
         Ok(())
+    }
+
+    /// Adds `Φ μ` times `scale` to the output of each sample that has a group, with the `corners`
+    /// `S μ` of its group, see [`SparseForm::corners_of`].
+    pub(crate) fn add_forward(
+        &self,
+        input: &[f64],
+        from: Initial,
+        corners: &[Vec<f64>],
+        group: impl Fn(usize) -> Option<usize>,
+        mut add: impl FnMut(usize, f64),
+    ) -> Result<()> {
+        let mut rows = self.rows(from)?;
+        let (mut held, mut at) = (0.0, None);
+        for (n, &x) in input.iter().enumerate() {
+            let left_branch = rows.leaves_branch(x)?;
+            if left_branch {
+                rows.remember();
+            }
+            let next = group(n);
+            let Some(own) = next.map(|group| &corners[group]) else {
+                at = None;
+                continue;
+            };
+            let product = |term: &Term| term.factor * own[term.place as usize];
+            if left_branch || next != at {
+                held = rows.memory().iter().map(product).sum();
+                at = next;
+            }
+            add(n, held + rows.branch().iter().map(product).sum::<f64>());
+        }
+        Ok(())
+    }
+
+    /// `S μ` in place: the Everett corners `C[p][q] = Σ μ_ij` over `j ≤ p`, `i > q`, each at the
+    /// index of the weight `(q + 1, p)`.
+    pub(crate) fn corners_of(&self, mu: &mut [f64]) {
+        let levels = self.plane.levels();
+        for j in 1..=levels {
+            for i in (1..j).rev() {
+                mu[operator_index(i, j)] += mu[operator_index(i + 1, j)];
+            }
+        }
+        for j in 2..=levels {
+            for i in 1..j {
+                mu[operator_index(i, j)] += mu[operator_index(i, j - 1)];
+            }
+        }
     }
 
     /// `Sᵀ w` in place: operator `(i, j)` is part of every `C[p][q]` with `p ≥ j` and `q < i`.
@@ -152,21 +213,22 @@ impl SparseForm {
         transpose_sums(self.plane.levels(), w);
     }
 
-    /// Adds `Wᵀ diag(scale) W'` to `gram`, `N × N` row by row, where `W` and `W'` are the rows for
-    /// the two starts. [`SparseForm::gram_of`] turns the result into `Φᵀ diag(scale) Φ'`.
+    /// Adds `Wᵀ diag(scale) W'` over the samples of each group to its part of `grams`, where `W` and `W'` are the rows for the two starts. Samples without a group do not
+    /// count. [`SparseForm::gram_of`] turns the results into `Φᵀ diag(scale) Φ'`.
     pub(crate) fn add_outer(
         &self,
         input: &[f64],
         (left, right): (Initial, Initial),
         scale: impl Fn(usize) -> f64,
-        gram: &mut [f64],
+        group: impl Fn(usize) -> Option<usize>,
+        grams: &mut [impl Accumulate],
         progress: Progress<'_>,
     ) -> Result<()> {
-        let count = self.operators();
         let mut a = self.rows(left)?;
         // If both sides have the same rows, compute them once.
         let mut other = (left != right).then(|| self.rows(right)).transpose()?;
         let mut sums = BranchSums::default();
+        let mut at = None;
         for (n, &x) in input.iter().enumerate() {
             if n % REPORT == 0 {
                 progress.tell("samples", n as f64 / input.len() as f64)?;
@@ -175,24 +237,31 @@ impl SparseForm {
             if let Some(b) = &mut other {
                 left_branch |= b.leaves_branch(x)?;
             }
+            let next = group(n);
+            if left_branch || next != at {
+                if let Some(at) = at {
+                    let b = other.as_ref().unwrap_or(&a);
+                    sums.flush(a.memory(), b.memory(), &mut grams[at]);
+                }
+                at = next;
+            }
             if left_branch {
-                let b = other.as_ref().unwrap_or(&a);
-                sums.flush(a.memory(), b.memory(), gram, count);
                 a.remember();
                 if let Some(b) = &mut other {
                     b.remember();
                 }
             }
-            let s = scale(n);
-            if s == 0.0 {
+            let Some(at) = at else {
                 continue;
-            }
+            };
             let t = a.branch();
             let u = other.as_ref().map_or(t, Rows::branch);
-            sums.add(s, &t, &u, gram, count);
+            sums.add(scale(n), &t, &u, &mut grams[at]);
         }
-        let b = other.as_ref().unwrap_or(&a);
-        sums.flush(a.memory(), b.memory(), gram, count);
+        if let Some(at) = at {
+            let b = other.as_ref().unwrap_or(&a);
+            sums.flush(a.memory(), b.memory(), &mut grams[at]);
+        }
         Ok(())
     }
 
@@ -217,6 +286,30 @@ impl SparseForm {
     }
 }
 
+/// A matrix whose elements are sums.
+pub(crate) trait Accumulate {
+    fn add(&mut self, row: usize, column: usize, value: f64);
+}
+
+/// A square matrix, row by row.
+pub(crate) struct Square<'a> {
+    values: &'a mut [f64],
+    count: usize,
+}
+
+impl<'a> Square<'a> {
+    pub(crate) fn new(values: &'a mut [f64], count: usize) -> Self {
+        Self { values, count }
+    }
+}
+
+impl Accumulate for Square<'_> {
+    #[inline]
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.values[row * self.count + column] += value;
+    }
+}
+
 /// Sums over the samples of one branch. With `f`, `g` the factors of the turning points and `t`,
 /// `u` those of the branch, `Σ s (f + t)(g + u)ᵀ = f gᵀ Σ s + f (Σ s u)ᵀ + (Σ s t) gᵀ + Σ s t uᵀ`.
 #[derive(Default)]
@@ -228,19 +321,11 @@ pub(crate) struct BranchSums {
 
 impl BranchSums {
     /// Adds a sample with the factors `t` and `u` of the branch, times `s`. Their own product goes
-    /// to `gram` at once, `count × count` row by row.
-    pub(crate) fn add(
-        &mut self,
-        s: f64,
-        t: &[Term; 3],
-        u: &[Term; 3],
-        gram: &mut [f64],
-        count: usize,
-    ) {
+    /// to `gram` at once.
+    pub(crate) fn add(&mut self, s: f64, t: &[Term; 3], u: &[Term; 3], gram: &mut impl Accumulate) {
         for t in t {
-            let row = &mut gram[t.place as usize * count..][..count];
             for u in u {
-                row[u.place as usize] += s * t.factor * u.factor;
+                gram.add(t.place as usize, u.place as usize, s * t.factor * u.factor);
             }
         }
         self.scale += s;
@@ -264,12 +349,15 @@ impl BranchSums {
     }
 
     /// Adds what depends on the turning points to `gram`, at the end of a branch.
-    pub(crate) fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut [f64], count: usize) {
+    pub(crate) fn flush(&mut self, f: &[Term], g: &[Term], gram: &mut impl Accumulate) {
         let mut outer = |a: &[Term], b: &[Term], scale: f64| {
             for a in a {
-                let row = &mut gram[a.place as usize * count..][..count];
                 for b in b {
-                    row[b.place as usize] += scale * a.factor * b.factor;
+                    gram.add(
+                        a.place as usize,
+                        b.place as usize,
+                        scale * a.factor * b.factor,
+                    );
                 }
             }
         };
@@ -377,22 +465,64 @@ mod tests {
         for (row, y) in phi[0].iter().zip(&forward) {
             assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
         }
-        let mut adjoint = vec![0.0; count];
-        form.add_adjoint(&input, left, |n| r[n], &mut adjoint)
+        // Groups change anywhere, also in the middle of a branch, and some samples have none.
+        let mut own = 0;
+        let group: Vec<Option<usize>> = input
+            .iter()
+            .map(|_| {
+                if rng.random_range(0..7) == 0 {
+                    own = rng.random_range(0..4);
+                }
+                (own < 3).then_some(own)
+            })
+            .collect();
+        let scale = |n: usize| r[n];
+        let mut adjoints = vec![vec![0.0; count]; 3];
+        form.add_adjoints(&input, left, scale, |n| group[n], &mut adjoints)
             .unwrap();
-        form.operators_of(&mut adjoint);
-        let mut gram = vec![0.0; count * count];
-        form.add_outer(&input, (left, right), |n| r[n], &mut gram, Progress::NONE)
-            .unwrap();
-        form.gram_of(&mut gram);
-        for a in 0..count {
-            let exact: f64 = phi[0].iter().zip(&r).map(|(row, r)| row[a] * r).sum();
-            assert!(close(exact, adjoint[a]));
-            for b in 0..count {
-                let rows = phi[0].iter().zip(&phi[1]).zip(&r);
-                let exact: f64 = rows.map(|((left, right), r)| left[a] * r * right[b]).sum();
-                assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
+        let mut grams = vec![vec![0.0; count * count]; 3];
+        let starts = (left, right);
+        let mut squares: Vec<Square<'_>> = grams
+            .iter_mut()
+            .map(|gram| Square::new(gram, count))
+            .collect();
+        form.add_outer(
+            &input,
+            starts,
+            scale,
+            |n| group[n],
+            &mut squares,
+            Progress::NONE,
+        )
+        .unwrap();
+        for (g, (adjoint, gram)) in adjoints.iter_mut().zip(&mut grams).enumerate() {
+            form.operators_of(adjoint);
+            form.gram_of(gram);
+            let inside = |n: &usize| group[*n] == Some(g);
+            for a in 0..count {
+                let own = (0..input.len()).filter(inside);
+                let exact: f64 = own.map(|n| phi[0][n][a] * r[n]).sum();
+                assert!(close(exact, adjoint[a]));
+                for b in 0..count {
+                    let own = (0..input.len()).filter(inside);
+                    let exact: f64 = own.map(|n| phi[0][n][a] * r[n] * phi[1][n][b]).sum();
+                    assert!(close(exact, gram[a * count + b]), "K = {levels}, {a}, {b}");
+                }
             }
+        }
+        let weights = [1.0, -2.0, 0.5].map(|factor| mu.iter().map(|mu| factor * mu).collect());
+        let corners = weights.clone().map(|mut mu: Vec<f64>| {
+            form.corners_of(&mut mu);
+            mu
+        });
+        let mut found = vec![0.0; input.len()];
+        form.add_forward(&input, left, &corners, |n| group[n], |n, h| found[n] += h)
+            .unwrap();
+        for (n, row) in phi[0].iter().enumerate() {
+            let own = group[n].map_or(0.0, |g| {
+                row.iter().zip(&weights[g]).map(|(a, b)| a * b).sum()
+            });
+            assert!(close(own, found[n]), "K = {levels}, sample {n}");
         }
     }
 }

@@ -1,0 +1,307 @@
+//! Products of the regressor over groups of samples. A fit to some groups, and its error on others,
+//! follow from these sums alone, so that a candidate needs no pass over the samples.
+
+use crate::error::Result;
+use crate::identify::options::Prior;
+use crate::identify::weights::gram::Gram;
+use crate::identify::weights::problem::Problem;
+use crate::identify::weights::solve::{Mixed, Penalised, not_definite};
+use crate::model::{Sign, Solver};
+use crate::parallel;
+use crate::progress::Progress;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use std::ops::Range;
+
+/// Sums over a group of samples, with `A` the regressor, `Z` the free columns and `y` the target.
+#[derive(Clone)]
+pub(crate) struct Sums {
+    /// `Aᵀ A`.
+    gram: Gram,
+    /// `Aᵀ z` for each free column `z`.
+    mixed: Vec<Vec<f64>>,
+    /// `Aᵀ y`.
+    right: Vec<f64>,
+    /// `Zᵀ Z`, `Zᵀ y` and `yᵀ y`.
+    free: Vec<Vec<f64>>,
+    free_right: Vec<f64>,
+    squares: f64,
+    pub(crate) samples: f64,
+}
+
+/// Coefficients of the regressor's columns and of the free columns.
+pub(crate) struct Coefficients {
+    pub(crate) x: Vec<f64>,
+    pub(crate) free: Vec<f64>,
+}
+
+/// Largest size of the Gram matrices that are summed in one pass, in bytes. More groups take
+/// further passes.
+const PASS_BYTES: usize = 256 << 20;
+
+impl Sums {
+    /// The sums over the samples of each of `count` groups. `group` has the group of each sample,
+    /// `None` for samples that do not count. `target` should have no large offset, because squares
+    /// of it are subtracted from each other.
+    pub(crate) fn of_groups(
+        problem: &Problem,
+        target: &[f64],
+        group: &[Option<usize>],
+        count: usize,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Self>> {
+        let passes = Self::passes(problem, count);
+        let all = parallel::map(passes.len(), |n| {
+            Self::of_some(problem, target, group, passes[n].clone(), progress)
+        })?;
+        Ok(all.into_iter().flatten().collect())
+    }
+
+    /// The groups of each pass, so that their Gram matrices take no more than 256 MiB.
+    pub(crate) fn passes(problem: &Problem, count: usize) -> Vec<Range<usize>> {
+        let matrix = 8 * problem.regressor.columns().len().pow(2);
+        let at_once = (PASS_BYTES / matrix.max(1)).clamp(1, count.max(1));
+        let starts = (0..count).step_by(at_once);
+        starts.map(|n| n..(n + at_once).min(count)).collect()
+    }
+
+    /// As [`Sums::of_groups`], for a range of the groups.
+    pub(crate) fn of_some(
+        problem: &Problem,
+        target: &[f64],
+        group: &[Option<usize>],
+        groups: Range<usize>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Self>> {
+        let (regressor, experiment) = (&problem.regressor, &problem.experiment);
+        let columns: &[Vec<f64>] = match problem.options.offset {
+            Some(_) => &[],
+            None => &experiment.offsets,
+        };
+        let count = groups.len();
+        let own = |n: usize| {
+            let group = group[n]?.checked_sub(groups.start)?;
+            (group < count).then_some(group)
+        };
+        let grams = regressor.compact_grams(experiment, count, own, progress)?;
+        let rights = regressor.adjoints(experiment, target, count, own)?;
+        let mut all: Vec<Self> = grams
+            .into_iter()
+            .zip(rights)
+            .map(|(gram, right)| Self {
+                gram,
+                right,
+                mixed: Vec::new(),
+                free: vec![vec![0.0; columns.len()]; columns.len()],
+                free_right: vec![0.0; columns.len()],
+                squares: 0.0,
+                samples: 0.0,
+            })
+            .collect();
+        for z in columns {
+            let mixed = regressor.adjoints(experiment, z, count, own)?;
+            all.iter_mut()
+                .zip(mixed)
+                .for_each(|(own, m)| own.mixed.push(m));
+        }
+        for (n, y) in target.iter().enumerate() {
+            let Some(sums) = own(n).map(|group| &mut all[group]) else {
+                continue;
+            };
+            sums.squares += y * y;
+            sums.samples += 1.0;
+            for (a, left) in columns.iter().enumerate() {
+                sums.free_right[a] += left[n] * y;
+                for (b, right) in columns.iter().enumerate() {
+                    sums.free[a][b] += left[n] * right[n];
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The sums of both groups.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.combine(other, 1.0);
+    }
+
+    /// The sums without those of a group that is part of this one.
+    pub(crate) fn without(&self, other: &Self) -> Self {
+        let mut rest = self.clone();
+        rest.combine(other, -1.0);
+        rest
+    }
+
+    fn combine(&mut self, other: &Self, factor: f64) {
+        let add = |to: &mut Vec<f64>, from: &Vec<f64>| {
+            to.iter_mut().zip(from).for_each(|(t, f)| *t += factor * f);
+        };
+        self.gram.combine(factor, &other.gram);
+        add(&mut self.right, &other.right);
+        add(&mut self.free_right, &other.free_right);
+        for (to, from) in self.mixed.iter_mut().zip(&other.mixed) {
+            add(to, from);
+        }
+        for (to, from) in self.free.iter_mut().zip(&other.free) {
+            add(to, from);
+        }
+        self.squares += factor * other.squares;
+        self.samples += factor * other.samples;
+    }
+
+    /// The problem with the free columns eliminated.
+    pub(crate) fn reduced(mut self) -> Result<Reduced> {
+        let (count, free) = (self.right.len(), self.free.len());
+        // Groups may have one load only. A small ridge makes the matrix definite, as in the fit.
+        let matrix = Mat::from_fn(free, free, |a, b| {
+            let own = self.free[a][b];
+            if a == b {
+                own * (1.0 + 1e-14) + f64::MIN_POSITIVE
+            } else {
+                own
+            }
+        });
+        let factor = matrix.llt(Side::Lower).map_err(|_| not_definite())?;
+        let inverse = factor.solve(&Mat::<f64>::identity(free, free));
+        let solved = |values: &[f64]| -> Vec<f64> {
+            let row = |a: usize| (0..free).map(|b| inverse[(a, b)] * values[b]).sum();
+            (0..free).map(row).collect()
+        };
+        let level = solved(&self.free_right);
+        let mut right = std::mem::take(&mut self.right);
+        for (mixed, level) in self.mixed.iter().zip(&level) {
+            right
+                .iter_mut()
+                .zip(mixed)
+                .for_each(|(r, m)| *r -= level * m);
+        }
+        let squares = (self.squares - dot(&level, &self.free_right)).max(0.0);
+        let moved: Vec<Vec<f64>> = (0..count)
+            .map(|n| solved(&self.mixed.iter().map(|m| m[n]).collect::<Vec<_>>()))
+            .collect();
+        let inverse = (0..free).map(|a| (0..free).map(|b| inverse[(a, b)]).collect());
+        Ok(Reduced {
+            gram: self.gram,
+            mixed: self.mixed,
+            inverse: inverse.collect(),
+            right,
+            squares,
+            samples: self.samples,
+            level,
+            moved,
+        })
+    }
+
+    /// The sum of squared errors of these coefficients over the group.
+    pub(crate) fn error(&self, at: &Coefficients) -> f64 {
+        let quadratic = self.gram.quadratic(&at.x);
+        let mixed: f64 = self
+            .mixed
+            .iter()
+            .zip(&at.free)
+            .map(|(m, f)| f * dot(m, &at.x))
+            .sum();
+        let free: f64 = self
+            .free
+            .iter()
+            .zip(&at.free)
+            .map(|(row, f)| f * dot(row, &at.free))
+            .sum();
+        let linear = dot(&self.right, &at.x) + dot(&self.free_right, &at.free);
+        (self.squares - 2.0 * linear + quadratic + 2.0 * mixed + free).max(0.0)
+    }
+}
+
+/// A least-squares problem for the weights alone.
+pub(crate) struct Reduced {
+    gram: Gram,
+    mixed: Vec<Vec<f64>>,
+    inverse: Vec<Vec<f64>>,
+    right: Vec<f64>,
+    /// Sum of squares of the target, without its best free part.
+    pub(crate) squares: f64,
+    pub(crate) samples: f64,
+    /// The free coefficients are `level − movedᵀ x`.
+    level: Vec<f64>,
+    moved: Vec<Vec<f64>>,
+}
+
+impl Reduced {
+    pub(crate) fn penalised(&self, prior: Prior, problem: &Problem) -> Penalised {
+        let mixed = Mixed {
+            columns: self.mixed.clone(),
+            inverse: self.inverse.clone(),
+        };
+        let gram = self.gram.clone();
+        Penalised::new(gram, mixed, self.samples, prior, &problem.regressor)
+    }
+
+    /// The weights of least penalised error, searched from `start`.
+    pub(crate) fn solve(
+        &self,
+        penalised: &Penalised,
+        solver: Solver,
+        start: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<Coefficients> {
+        let factor = match solver {
+            Solver::Ols => Some(penalised.factor()?),
+            Solver::Nnls => None,
+        };
+        let x = penalised.minimum(&self.right, start, factor.as_ref(), progress)?;
+        Ok(self.with_free(x))
+    }
+
+    /// As [`Reduced::solve`], but of all solutions the one closest to `near`.
+    pub(crate) fn solve_near(
+        &self,
+        penalised: &Penalised,
+        solver: Solver,
+        near: &[f64],
+        progress: Progress<'_>,
+    ) -> Result<Coefficients> {
+        let factor = match solver {
+            Solver::Ols => Some(penalised.factor()?),
+            Solver::Nnls => None,
+        };
+        let pull = penalised.rounding();
+        let right = self.right.iter().zip(near);
+        let right: Vec<f64> = right.map(|(b, x)| b + pull * x).collect();
+        let x = penalised.minimum(&right, near, factor.as_ref(), progress)?;
+        Ok(self.with_free(x))
+    }
+
+    /// With the best free coefficients for `x`.
+    fn with_free(&self, x: Vec<f64>) -> Coefficients {
+        let mut free = self.level.clone();
+        for (moved, x) in self.moved.iter().zip(&x) {
+            free.iter_mut().zip(moved).for_each(|(f, m)| *f -= m * x);
+        }
+        Coefficients { x, free }
+    }
+
+    /// The penalised sum of squared errors at `x`.
+    pub(crate) fn objective(&self, penalised: &Penalised, x: &[f64]) -> f64 {
+        let quadratic = dot(&penalised.times(x), x);
+        (self.squares - 2.0 * dot(&self.right, x) + quadratic).max(0.0)
+    }
+
+    /// Number of free columns.
+    pub(crate) fn free(&self) -> f64 {
+        self.level.len() as f64
+    }
+}
+
+/// The target of a problem without its mean.
+pub(crate) fn centred(problem: &Problem, sign: Sign) -> Vec<f64> {
+    let mut target = problem.target(sign);
+    if problem.options.offset.is_none() {
+        let mean = target.iter().sum::<f64>() / target.len() as f64;
+        target.iter_mut().for_each(|y| *y -= mean);
+    }
+    target
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
