@@ -1,4 +1,5 @@
 //! Models with every stage, and series to drive them.
+#![allow(dead_code, reason = "not every test takes them all")]
 
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -32,7 +33,6 @@ pub const BY_LOAD: &str = r#"{"format": "hysteron-model", "version": 2, "operato
   "lag": 0.1}"#;
 
 /// Series that go with each other; `step` is the time since the sample before.
-#[allow(dead_code, reason = "not every test takes them all")]
 pub struct Series {
     pub input: Vec<f64>,
     pub target: Vec<f64>,
