@@ -27,7 +27,6 @@ fn wire(rng: &mut ChaCha8Rng) -> Model {
         gain: 90.0,
         tau_heating: 1.0 + uniform(rng),
         tau_cooling: 2.0 + 2.0 * uniform(rng),
-        ..FirstOrder::default()
     });
     model
 }
