@@ -13,6 +13,7 @@
 //!   [`fit_holding_out`], beside simple predictors ([`Rival`]).
 //! - Where the plant changes, let the model learn: from a recording with [`adapt()`], or sample by
 //!   sample with [`Adaptive`].
+//! - Fit a model to each of many actuators with [`fit_fleet`].
 //! - Build control loops from models and inverses with [`control`].
 //!
 //! Simulated devices and comparisons of controllers are in the crate `hysteron-sim`. The real-time
@@ -27,6 +28,8 @@ mod data;
 mod design;
 mod error;
 mod evaluate;
+#[cfg(feature = "data")]
+mod fleet;
 mod forward;
 mod hold_out;
 mod identify;
@@ -54,6 +57,11 @@ pub use data::{
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
 pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
+#[cfg(feature = "data")]
+pub use fleet::{
+    FleetFailure, FleetFitted, FleetOptions, FleetRow, Norm, Shape, Strangeness, fit_fleet,
+    read_fleet,
+};
 pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
 pub use hysteron_core::Error as CoreError;

@@ -22,7 +22,9 @@ pub use output::{
     Added, AtomicFile, AtomicFolder, Cell, Destination, Own, STANDARD_OUTPUT, TableWriter,
     discard_unfinished, refuse_one_file,
 };
+pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
 pub use printable::printable;
+pub(crate) use recording::{Group, Groups};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, ReadOptions, Remark, Row, TableReader};

@@ -209,7 +209,19 @@ impl Model {
             );
             return Err(fault("version", problem));
         }
-        let file: File = parse(text)?;
+        Self::of_file(parse(text)?)
+    }
+
+    /// A model from the text that [`Model::to_json_without_weights`] wrote, and its weights.
+    #[cfg(feature = "data")]
+    pub(crate) fn from_json_and_weights(text: &str, weights: Vec<f64>) -> Result<Self> {
+        Self::of_file(File {
+            weights,
+            ..parse(text)?
+        })
+    }
+
+    fn of_file(file: File) -> Result<Self> {
         if let Some(field) = file.beyond_version_1().filter(|_| file.version == 1) {
             return Err(fault(field, "this needs `version` 2".into()));
         }
@@ -277,6 +289,23 @@ impl Model {
     /// The text of this model's file.
     #[must_use]
     pub fn to_json(&self) -> String {
+        let file = self.entries(self.weights().to_vec(), self.fit.clone());
+        // The file has only numbers and strings, so writing JSON cannot fail.
+        serde_json::to_string(&file).unwrap_or_default() + "\n"
+    }
+
+    /// As [`Model::to_json`], without the weights and without the confidence in them: what is left
+    /// of a model whose weights are kept elsewhere.
+    #[cfg(feature = "data")]
+    pub(crate) fn to_json_without_weights(&self) -> String {
+        let fit = self.fit.clone().map(|fit| FitSummary {
+            confidence: None,
+            ..fit
+        });
+        serde_json::to_string(&self.entries(Vec::new(), fit)).unwrap_or_default()
+    }
+
+    fn entries(&self, weights: Vec<f64>, fit: Option<FitSummary>) -> File {
         let entry = |quantity: &Quantity| (Some(quantity.name.clone()), quantity.unit.clone());
         let (input_name, input_unit) = entry(&self.input);
         let (output_name, output_unit) = entry(&self.output);
@@ -304,7 +333,7 @@ impl Model {
                 offset: self.offset(),
                 sign: self.sign().factor() as i64,
             },
-            weights: self.weights().to_vec(),
+            weights,
             load: self.load.as_ref().map(LoadEntry::of),
             thermal: self.thermal.map(ThermalEntry::FirstOrder),
             drive: self.drive.map(|(min, max)| DriveEntry { min, max }),
@@ -312,16 +341,14 @@ impl Model {
             creep: self.after.terms(),
             lag: Some(self.after.lag).filter(|lag| *lag > 0.0),
             start: self.start.clone(),
-            fit: self.fit.clone(),
+            fit,
         };
         let version = if file.beyond_version_1().is_some() {
             2
         } else {
             1
         };
-        let file = File { version, ..file };
-        // The file has only numbers and strings, so writing JSON cannot fail.
-        serde_json::to_string(&file).unwrap_or_default() + "\n"
+        File { version, ..file }
     }
 }
 

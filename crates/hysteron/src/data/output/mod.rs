@@ -21,6 +21,8 @@
 //! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
 //! write files and folders under temporary names (`unfinished`) and move them to their place
 //! (`moves`). `table` writes tables; `parquet`, `spool` and `splice` write them as Parquet.
+//! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
+//! makes them.
 
 mod atomic;
 mod destination;
@@ -28,6 +30,8 @@ mod folder;
 mod manifest;
 mod moves;
 mod parquet;
+mod partial;
+mod records;
 mod sign;
 mod splice;
 mod spool;
@@ -37,6 +41,8 @@ mod unfinished;
 pub use atomic::AtomicFile;
 pub use destination::{Destination, Own, refuse_one_file};
 pub use folder::AtomicFolder;
+pub(crate) use partial::{Entry, Partial};
+pub(crate) use records::{Kind, RecordWriter, Schema, Value, read_records};
 pub(crate) use sign::is_our_model;
 pub use table::{Added, Cell, STANDARD_OUTPUT, TableWriter};
 pub use unfinished::discard_unfinished;

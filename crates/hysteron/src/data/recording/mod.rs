@@ -1,10 +1,12 @@
 //! Makes recordings from tables, and tables from recordings.
 //!
-//! `columns` names the columns and `read` is the entry point. `samples` collects the rows; `repair`
+//! `columns` names the columns and `read` is the entry point; `groups` reads tables of several
+//! recordings. `samples` collects the rows; `repair`
 //! says what is done about bad rows. `others` keeps the columns that a recording does not use, and
 //! `write` writes recordings.
 
 mod columns;
+mod groups;
 mod others;
 mod read;
 mod repair;
@@ -12,5 +14,6 @@ mod samples;
 mod write;
 
 pub use columns::Columns;
+pub(crate) use groups::{Group, Groups};
 pub use others::Others;
 pub use repair::{Note, NoteKind, Places, Repair};

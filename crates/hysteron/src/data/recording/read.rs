@@ -83,21 +83,7 @@ impl Recording {
     ) -> Result<(Self, Option<Others>, Vec<Note>)> {
         let repair = options.repair;
         let mut table = TableReader::open_recording(path, options)?;
-        let named = [
-            Some(columns.input),
-            Some(columns.output),
-            columns.time,
-            columns.load,
-        ];
-        for (n, name) in named.iter().enumerate() {
-            if let (Some(name), true) = (name, named[..n].contains(name)) {
-                let problem = format!(
-                    "the column `{name}` is named twice: \
-                     input, output, time and load are four things"
-                );
-                return Err(table.fault(None, problem));
-            }
-        }
+        refuse_one_name(&table, columns)?;
         let pairs = [columns.input, columns.output].map(|name| table.pair(name));
         let time = match (columns.time, &pairs) {
             (Some(time), _) => Some(time.to_owned()),
@@ -131,35 +117,17 @@ impl Recording {
         let time_at = time.map(|name| table.time_column(&name)).transpose()?;
         let load_at = columns.load.map(|name| table.column(name)).transpose()?;
         let all = [Some(input_at), Some(output_at), time_at, load_at];
-        for (n, at) in all.iter().enumerate() {
-            if at.is_some() && interpolated.is_none() && all[..n].contains(at) {
-                let names = [columns.input, columns.output, "the time", "the load"];
-                let problem = format!(
-                    "the column meant by `{}` is that of another series: \
-                     input, output, time and load are four things",
-                    names[n]
-                );
-                return Err(table.fault(*at, problem));
-            }
+        if interpolated.is_none() {
+            refuse_one_column(&table, columns, &all)?;
         }
         let asked: Vec<Column> = all.into_iter().flatten().collect();
-        let quantity = |asked: &str, at: Column| {
-            // The data of a matrix `[TimeValues DataValues]` have the name of the matrix.
-            let own = match table.name(at) {
-                own if own.strip_suffix(":2") == Some(asked) => asked,
-                own => own,
-            };
-            let mut quantity = Quantity::from_column(own);
-            quantity.unit = quantity.unit.or(table.unit(at).map(str::to_owned));
-            quantity
-        };
-        let input_quantity = quantity(columns.input, input_at);
+        let input_quantity = quantity(&table, columns.input, input_at);
         let output_quantity = match interpolated {
             Some(_) => Quantity::from_column(columns.output),
-            None => quantity(columns.output, output_at),
+            None => quantity(&table, columns.output, output_at),
         };
         let load_quantity = match (columns.load, load_at) {
-            (Some(name), Some(at)) => quantity(name, at),
+            (Some(name), Some(at)) => quantity(&table, name, at),
             _ => Quantity::named("load"),
         };
         let others = with_others.then(|| Others::of(&table, all));
@@ -197,6 +165,57 @@ impl Recording {
         recording.check()?;
         Ok((recording, others, notes))
     }
+}
+
+/// Refuses one name for two series.
+pub(super) fn refuse_one_name(table: &TableReader, columns: Columns<'_>) -> Result<()> {
+    let named = [
+        Some(columns.input),
+        Some(columns.output),
+        columns.time,
+        columns.load,
+    ];
+    for (n, name) in named.iter().enumerate() {
+        if let (Some(name), true) = (name, named[..n].contains(name)) {
+            let problem = format!(
+                "the column `{name}` is named twice: input, output, time and load are four things"
+            );
+            return Err(table.fault(None, problem));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses two names of one column.
+pub(super) fn refuse_one_column(
+    table: &TableReader,
+    columns: Columns<'_>,
+    found: &[Option<Column>; 4],
+) -> Result<()> {
+    for (n, at) in found.iter().enumerate() {
+        if at.is_some() && found[..n].contains(at) {
+            let names = [columns.input, columns.output, "the time", "the load"];
+            let problem = format!(
+                "the column meant by `{}` is that of another series: \
+                 input, output, time and load are four things",
+                names[n]
+            );
+            return Err(table.fault(*at, problem));
+        }
+    }
+    Ok(())
+}
+
+/// Name and unit of a column that was asked for.
+pub(super) fn quantity(table: &TableReader, asked: &str, at: Column) -> Quantity {
+    // The data of a matrix `[TimeValues DataValues]` have the name of the matrix.
+    let own = match table.name(at) {
+        own if own.strip_suffix(":2") == Some(asked) => asked,
+        own => own,
+    };
+    let mut quantity = Quantity::from_column(own);
+    quantity.unit = quantity.unit.or(table.unit(at).map(str::to_owned));
+    quantity
 }
 
 /// Whether times are equal. NaN equals NaN here.

@@ -98,6 +98,13 @@ impl Places {
     /// Number of rows that are listed.
     const NAMED: usize = 3;
 
+    /// Adds all of `other`.
+    pub(super) fn add(&mut self, other: &Self) {
+        let room = Self::NAMED.saturating_sub(self.first.len());
+        self.first.extend(other.first.iter().take(room));
+        self.count += other.count;
+    }
+
     pub(crate) fn push(&mut self, place: Place) {
         self.count += 1;
         if self.first.len() < Self::NAMED {

@@ -9,6 +9,10 @@ use crate::remedy::{Remedy, Setting};
 
 /// Index of the time among the series.
 pub(super) const TIME: usize = 2;
+/// Input, output, time and load.
+const SERIES: usize = 4;
+/// Rows for which memory is taken first. Tables of many recordings have short ones.
+const FIRST: usize = 64;
 
 /// The rows that have a number in every column asked for.
 pub(super) struct Samples {
@@ -34,33 +38,10 @@ impl Samples {
         output: Option<&[f64]>,
         others: Option<Others>,
     ) -> Result<Self> {
-        let mut samples = Self {
-            series: vec![Vec::new(); asked.len()],
-            places: Vec::new(),
-            others,
-            ragged: Places::default(),
-            missing: Places::default(),
-            fault: None,
-        };
+        let mut samples = Self::none(asked.len(), others);
         let mut outputs = output.map(|output| output.iter());
-        let mut row = Vec::new();
         while table.advance()? {
-            row.clear();
-            row.extend(asked.iter().map(|&at| table.value(at)));
-            if let Some(outputs) = &mut outputs {
-                row[1] = outputs.next().copied().filter(|y| y.is_finite());
-            }
-            if let Some(n) = row.iter().position(Option::is_none) {
-                let fault = || table.fault(Some(asked[n]), table.no_number(asked[n]));
-                samples.fault.get_or_insert_with(fault);
-                samples.missing.push(table.row_place());
-                continue;
-            }
-            samples.make_room(table)?;
-            for (series, value) in samples.series.iter_mut().zip(row.iter().flatten()) {
-                series.push(*value);
-            }
-            samples.places.push(table.row_place());
+            samples.push(table, asked, outputs.as_mut().map(Iterator::next))?;
         }
         samples.ragged = table.ragged();
         if samples.places.is_empty() && samples.fault.is_none() {
@@ -71,12 +52,61 @@ impl Samples {
         Ok(samples)
     }
 
+    /// No rows yet, of `count` series.
+    pub(super) fn none(count: usize, others: Option<Others>) -> Self {
+        Self {
+            series: vec![Vec::new(); count],
+            places: Vec::new(),
+            others,
+            ragged: Places::default(),
+            missing: Places::default(),
+            fault: None,
+        }
+    }
+
+    /// Adds the table's current row. `output`, if given, replaces its output.
+    pub(super) fn push(
+        &mut self,
+        table: &mut TableReader,
+        asked: &[Column],
+        output: Option<Option<&f64>>,
+    ) -> Result<()> {
+        let mut row = [None; SERIES];
+        for (value, at) in row.iter_mut().zip(asked) {
+            *value = table.value(*at);
+        }
+        if let Some(output) = output {
+            row[1] = output.copied().filter(|y| y.is_finite());
+        }
+        let row = &row[..asked.len()];
+        if let Some(n) = row.iter().position(Option::is_none) {
+            let fault = || table.fault(Some(asked[n]), table.no_number(asked[n]));
+            self.fault.get_or_insert_with(fault);
+            self.missing.push(table.row_place());
+            return Ok(());
+        }
+        self.make_room(table)?;
+        for (series, value) in self.series.iter_mut().zip(row.iter().flatten()) {
+            series.push(*value);
+        }
+        self.places.push(table.row_place());
+        Ok(())
+    }
+
+    /// Notes rows that were dropped because of their length; `refused` is the error for them.
+    pub(super) fn drop_ragged(&mut self, places: &Places, refused: impl FnOnce() -> Error) {
+        if places.count > 0 {
+            self.ragged.add(places);
+            self.fault.get_or_insert_with(refused);
+        }
+    }
+
     /// Takes memory for another row from the table's budget. Sorting needs a copy.
     fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
         let count = self.places.len();
         let capacity = self.places.capacity();
         if count == capacity {
-            let more = capacity.max(1024);
+            let more = capacity.max(FIRST);
             let row = size_of::<f64>() * self.series.len() + size_of::<Place>();
             let taken = table
                 .budget()

@@ -3,6 +3,7 @@
 use super::budget::Budget;
 use super::hashing::{Hash, Hashing};
 use super::text::{self, Text};
+use super::labels::Labels;
 use super::{Source, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
@@ -45,11 +46,13 @@ impl Format {
     }
 }
 
-/// Opens a file of any format. Returns the names of its columns and its rows.
+/// Opens a file of any format. Returns the names of its columns and its rows. `labels`, if given,
+/// are read as another column, after those of numbers.
 pub(super) fn open(
     path: &Path,
     repair: Option<Repair>,
     hash: Option<Hash>,
+    labels: Option<&Labels>,
     budget: &mut Budget,
 ) -> Result<(Vec<String>, Source)> {
     let failed = |source| Error::File {
@@ -90,7 +93,7 @@ pub(super) fn open(
             return Err(refused(problem.to_owned()));
         }
         Format::Parquet => {
-            let opened = parquet::open(path, *budget).map_err(refused)?;
+            let opened = parquet::open(path, *budget, labels).map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
         Format::MatV73 => {

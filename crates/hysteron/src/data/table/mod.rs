@@ -3,12 +3,13 @@
 //! `format` detects the format; `text`, `parquet` and `mat` read it. `columns` and `names` find
 //! columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
 //! limit of `budget`. `remark` reports assumptions, `options` are the settings, `hashing` computes
-//! the file's digest.
+//! the file's digest. `labels` is the column whose text tells which recording a row belongs to.
 
 mod budget;
 mod columns;
 mod format;
 mod hashing;
+mod labels;
 mod mat;
 mod names;
 mod numbers;
@@ -22,6 +23,7 @@ pub use options::ReadOptions;
 pub use remark::Remark;
 
 pub(crate) use budget::Budget;
+pub(crate) use labels::Label;
 
 use crate::data::recording::Places;
 use crate::data::recording::Repair;
@@ -48,6 +50,8 @@ pub struct TableReader {
     remarks: Vec<Remark>,
     /// The column of time, if it is not in seconds.
     time: Option<(usize, TimeUnit)>,
+    /// The texts of a column of labels that is stored as numbers.
+    labels: Option<labels::Labels>,
 }
 
 enum Source {
@@ -98,14 +102,22 @@ impl TableReader {
     /// # Errors
     /// As [`TableReader::open`].
     pub fn open_with(path: &Path, max_memory: u64) -> Result<Self> {
-        Self::open_as(path, max_memory, None, None)
+        Self::open_as(path, max_memory, None, None, None)
     }
 
     /// As [`TableReader::open`], for a recording: computes the hash for [`TableReader::sha256`],
     /// and takes the options for bad rows.
     pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
         let (repair, hash) = (Some(options.repair), Some(Hash::default()));
-        Self::open_as(path, options.max_memory, repair, hash)
+        Self::open_as(path, options.max_memory, repair, hash, None)
+    }
+
+    /// As [`TableReader::open`], for a table of several recordings, told apart by the column
+    /// `label`. Rows of another length than the header are dropped:
+    /// [`TableReader::take_ragged`] tells them.
+    pub(crate) fn open_labelled(path: &Path, max_memory: u64, label: &str) -> Result<Self> {
+        let labels = labels::Labels::new(label);
+        Self::open_as(path, max_memory, Some(Repair::Mend), None, Some(labels))
     }
 
     fn open_as(
@@ -113,9 +125,11 @@ impl TableReader {
         max_memory: u64,
         repair: Option<Repair>,
         hash: Option<Hash>,
+        labels: Option<labels::Labels>,
     ) -> Result<Self> {
         let mut budget = Budget::new(max_memory);
-        let (header, source) = format::open(path, repair, hash.clone(), &mut budget)?;
+        let (header, source) =
+            format::open(path, repair, hash.clone(), labels.as_ref(), &mut budget)?;
         Ok(Self {
             path: path.to_owned(),
             header,
@@ -124,6 +138,7 @@ impl TableReader {
             budget,
             remarks: Vec::new(),
             time: None,
+            labels,
         })
     }
 
@@ -150,6 +165,14 @@ impl TableReader {
     pub(crate) fn ragged(&self) -> Places {
         match &self.source {
             Source::Text(text) => text.ragged().clone(),
+            Source::Numbers(_) => Places::default(),
+        }
+    }
+
+    /// As [`TableReader::ragged`], and forgets them.
+    pub(crate) fn take_ragged(&mut self) -> Places {
+        match &mut self.source {
+            Source::Text(text) => text.take_ragged(),
             Source::Numbers(_) => Places::default(),
         }
     }

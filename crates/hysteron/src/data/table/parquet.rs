@@ -4,6 +4,7 @@ mod claims;
 mod thrift;
 
 use super::budget::Budget;
+use super::labels::Labels;
 use super::numbers::{Group, Numbers};
 use claims::{Claims, Refusal};
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
@@ -25,8 +26,13 @@ pub(super) struct Opened {
     pub(super) numbers: Numbers,
 }
 
-/// The numeric columns of a file: their names and rows. Times are converted to seconds.
-pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
+/// The numeric columns of a file: their names and rows. Times are converted to seconds. A column of
+/// labels, if asked for, comes last, as codes.
+pub(super) fn open(
+    path: &Path,
+    budget: Budget,
+    labels: Option<&Labels>,
+) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_or(0, |about| about.len());
     let second = file.try_clone().map_err(|error| error.to_string())?;
@@ -38,7 +44,7 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
         .filter_map(|n| Some((n, Scale::of(&schema.column(n))?)))
         .collect();
     let name = |(n, _): &(usize, Scale)| schema.column(*n).path().string();
-    let header: Vec<String> = numeric.iter().map(name).collect();
+    let mut header: Vec<String> = numeric.iter().map(name).collect();
     if header.is_empty() {
         return Err("there is no column of numbers in this file".into());
     }
@@ -46,7 +52,22 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
         .filter(|n| numeric[*n].1.is_time)
         .collect();
     let rows = reader.metadata().file_metadata().num_rows();
-    let columns: Vec<usize> = numeric.iter().map(|(column, _)| *column).collect();
+    let mut columns: Vec<usize> = numeric.iter().map(|(column, _)| *column).collect();
+    let names: Vec<String> = (0..schema.num_columns())
+        .map(|n| schema.column(n).path().string())
+        .collect();
+    let labels = match labels {
+        None => None,
+        Some(labels) => {
+            let column = labels.find(&names)?;
+            if schema.column(column).max_rep_level() > 0 {
+                return Err(format!("`{}` holds lists, which are no labels", names[column]));
+            }
+            header.push(names[column].clone());
+            columns.push(column);
+            Some((column, labels.clone()))
+        }
+    };
     let groups = (0..reader.num_row_groups()).map(move |n| {
         // Negative sizes make the library panic here too.
         let about = &reader.metadata().row_groups()[n];
@@ -55,9 +76,20 @@ pub(super) fn open(path: &Path, budget: Budget) -> Result<Opened, String> {
             .map_err(refused)?;
         caught(|| {
             let group = reader.get_row_group(n)?;
-            let columns = numeric.iter();
-            let columns = columns.map(|(column, scale)| read(group.as_ref(), *column, *scale));
-            columns.collect::<Result<Group, _>>()
+            let wanted = |n: usize| match &labels {
+                Some((_, labels)) => labels.is_wanted(n),
+                None => true,
+            };
+            let columns = numeric.iter().enumerate();
+            let columns = columns.map(|(n, (column, scale))| match wanted(n) {
+                true => read(group.as_ref(), *column, *scale),
+                false => Ok(Vec::new()),
+            });
+            let mut columns = columns.collect::<Result<Group, _>>()?;
+            if let Some((column, labels)) = &labels {
+                columns.push(read_labels(group.as_ref(), *column, labels)?);
+            }
+            Ok(columns)
         })
     });
     Ok(Opened {
@@ -169,6 +201,44 @@ fn read(group: &dyn RowGroupReader, column: usize, scale: Scale) -> Result<Vec<f
             Ok(vec![f64::NAN; rows])
         }
     }
+}
+
+/// A column of labels, as codes.
+fn read_labels(
+    group: &dyn RowGroupReader,
+    column: usize,
+    labels: &Labels,
+) -> Result<Vec<f64>, ParquetError> {
+    let about = group.metadata();
+    let rows = about.num_rows().max(0) as usize;
+    let of_column = about.column(column).column_descr();
+    let defined = of_column.max_def_level();
+    let unsigned = Scale::of(of_column).is_some_and(|scale| scale.unsigned);
+    use ColumnReader as R;
+    let as_text = |text: String| labels.code(text.as_bytes());
+    let codes = match group.get_column_reader(column)? {
+        R::ByteArrayColumnReader(reader) => {
+            numbers(reader, rows, defined, |v| labels.code(v.data()))
+        }
+        R::FixedLenByteArrayColumnReader(reader) => {
+            numbers(reader, rows, defined, |v| labels.code(v.data()))
+        }
+        R::BoolColumnReader(reader) => numbers(reader, rows, defined, |v| as_text(v.to_string())),
+        R::Int32ColumnReader(reader) if unsigned => {
+            numbers(reader, rows, defined, |v| as_text((*v as u32).to_string()))
+        }
+        R::Int32ColumnReader(reader) => numbers(reader, rows, defined, |v| as_text(v.to_string())),
+        R::Int64ColumnReader(reader) if unsigned => {
+            numbers(reader, rows, defined, |v| as_text((*v as u64).to_string()))
+        }
+        R::Int64ColumnReader(reader) => numbers(reader, rows, defined, |v| as_text(v.to_string())),
+        R::Int96ColumnReader(reader) => {
+            numbers(reader, rows, defined, |v| as_text(v.to_nanos().to_string()))
+        }
+        R::FloatColumnReader(reader) => numbers(reader, rows, defined, |v| as_text(v.to_string())),
+        R::DoubleColumnReader(reader) => numbers(reader, rows, defined, |v| as_text(v.to_string())),
+    }?;
+    Ok(codes)
 }
 
 /// All values of a column, NaN for null.

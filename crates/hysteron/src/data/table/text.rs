@@ -322,6 +322,11 @@ impl Text {
         &self.ragged
     }
 
+    /// As [`Text::ragged`], and forgets them.
+    pub(super) fn take_ragged(&mut self) -> Places {
+        std::mem::take(&mut self.ragged)
+    }
+
     pub(super) fn cell(&self, column: usize) -> &[u8] {
         self.row.0.get(column).unwrap_or_default().trim_ascii()
     }
