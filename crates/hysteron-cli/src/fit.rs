@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let columns = Columns {
-        time: args.prepare.time.as_deref(),
-        load: args.load.as_deref(),
-        ..Columns::new(&args.input, &args.output)
+        time: args.how.prepare.time.as_deref(),
+        load: args.how.load.as_deref(),
+        ..Columns::new(&args.how.input, &args.how.output)
     };
     if args.out == Path::new("-") {
         return Err("a model goes to a file: name one with -o".into());
     }
-    let held_out = args.hold_out.iter().filter_map(|what| match what {
+    let held_out = args.how.hold_out.iter().filter_map(|what| match what {
         args::HoldOut::File(file) => Some(file),
         args::HoldOut::Part(_) => None,
     });
@@ -67,17 +67,17 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 
 /// A recording with the units asked for, and prepared.
 fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Prepared> {
-    let mut recording = recording::read(data, columns, &args.repair)?;
+    let mut recording = recording::read(data, columns, &args.how.repair)?;
     let units = [
-        (&args.input_unit, &mut recording.input_quantity),
-        (&args.output_unit, &mut recording.output_quantity),
+        (&args.how.input_unit, &mut recording.input_quantity),
+        (&args.how.output_unit, &mut recording.output_quantity),
     ];
     for (unit, quantity) in units {
         if unit.is_some() {
             quantity.unit.clone_from(unit);
         }
     }
-    prepare::before_fit(recording, &args.prepare)
+    prepare::before_fit(recording, &args.how.prepare)
 }
 
 fn identify(
@@ -86,6 +86,26 @@ fn identify(
     repeats: Vec<Recording>,
     what: Option<&HoldOut>,
 ) -> Result<(Model, Option<HeldOut>)> {
+    let bar = progress::stages();
+    let told = |stage: &'static str, done: f64| {
+        progress::stage(&bar, stage, done);
+        Ok(())
+    };
+    let fit = fit_of(&args.how)?.repeats(repeats);
+    let fit = fit.progress(Progress::new(&told));
+    let found = match what {
+        None => (fit.run(recordings)?, None),
+        Some(what) => {
+            let (model, held_out) = hysteron::fit_holding_out(&fit, recordings, what)?;
+            (model, Some(held_out))
+        }
+    };
+    bar.finish_and_clear();
+    Ok(found)
+}
+
+/// The fit that the options ask for.
+pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
     let levels = match args.levels {
         args::Levels::Auto => Choice::Auto,
         args::Levels::Fixed(levels) => Choice::Fixed(levels),
@@ -132,28 +152,12 @@ fn identify(
         },
         ..FitOptions::default()
     };
-    let bar = progress::stages();
-    let told = |stage: &'static str, done: f64| {
-        progress::stage(&bar, stage, done);
-        Ok(())
-    };
-    let fit = Fit::from(options)
+    Ok(Fit::from(options)
         .levels(levels)
         .smooth(args.smooth)
         .start(args.start)
         .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
-        .thermal(args.thermal.is_some())
-        .repeats(repeats)
-        .progress(Progress::new(&told));
-    let found = match what {
-        None => (fit.run(recordings)?, None),
-        Some(what) => {
-            let (model, held_out) = hysteron::fit_holding_out(&fit, recordings, what)?;
-            (model, Some(held_out))
-        }
-    };
-    bar.finish_and_clear();
-    Ok(found)
+        .thermal(args.thermal.is_some()))
 }
 
 type Prepared = (Recording, Option<Preparation>, Option<RateDependence>);
@@ -310,7 +314,7 @@ fn load_line(model: &Model) -> Option<String> {
 /// What happens after the operators; said where it was asked for.
 fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
     let (creep, lag) = (model.creep(), model.lag());
-    let asked = args.creep != Step::Off || args.lag != Step::Off;
+    let asked = args.how.creep != Step::Off || args.how.lag != Step::Off;
     let mut said = Vec::new();
     for term in &creep {
         said.push(format!(

@@ -11,10 +11,10 @@ pub(crate) fn what(
     read: impl Fn(&Path) -> Result<Recording>,
 ) -> Result<Option<HoldOut>> {
     let mut files = Vec::new();
-    for what in &args.hold_out {
+    for what in &args.how.hold_out {
         match what {
             args::HoldOut::File(file) => files.push(read(file)?),
-            args::HoldOut::Part(part) if args.hold_out.len() == 1 => {
+            args::HoldOut::Part(part) if args.how.hold_out.len() == 1 => {
                 return Ok(Some(part.clone()));
             }
             args::HoldOut::Part(_) => {

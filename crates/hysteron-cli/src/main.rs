@@ -8,6 +8,7 @@ mod design;
 mod evaluate;
 mod export;
 mod fit;
+mod fleet;
 mod hold_out;
 mod inspect;
 mod prepare;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
     });
     let done = match parse().command {
         Command::Fit(args) => fit::run(&args),
+        Command::Fleet(args) => fleet::run(&args),
         Command::Prepare(args) => prepare::run(&args),
         Command::Simulate(args) => table::simulate(&args),
         Command::Invert(args) => table::invert(&args),

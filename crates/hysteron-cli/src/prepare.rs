@@ -55,11 +55,7 @@ pub(crate) fn before_fit(
     recording: Recording,
     args: &args::PrepareBeforeFit,
 ) -> Result<(Recording, Option<Preparation>, Option<RateDependence>)> {
-    let defaults = match args.prepare {
-        true => PrepareOptions::default(),
-        false => PrepareOptions::all(Step::Off),
-    };
-    let options = options(&args.steps, args.sensor_lag, defaults);
+    let options = steps_of(args);
     let (recording, report) = match options == PrepareOptions::all(Step::Off) {
         true => (recording, None),
         false => {
@@ -76,6 +72,15 @@ pub(crate) fn before_fit(
         say(format_args!("{}", rate_line(rate)));
     }
     Ok((recording, report, rate))
+}
+
+/// The steps that were asked for before a fit.
+pub(crate) fn steps_of(args: &args::PrepareBeforeFit) -> PrepareOptions {
+    let defaults = match args.prepare {
+        true => PrepareOptions::default(),
+        false => PrepareOptions::all(Step::Off),
+    };
+    options(&args.steps, args.sensor_lag, defaults)
 }
 
 fn is_material(rate: &Option<RateDependence>) -> Option<bool> {

@@ -15,6 +15,15 @@ pub(crate) fn bytes_of(path: &Path) -> ProgressBar {
     bar
 }
 
+/// A bar over a share of the work, with the time that is left.
+pub(crate) fn share() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// A line that names what is being done and how far it is.
 pub(crate) fn stages() -> ProgressBar {
     let bar = ProgressBar::new(1000);

@@ -6,7 +6,8 @@
 //! nothing beside it. [`Report::svg`] draws a single figure.
 //!
 //! [`TrackReport::write`] does the same for control loops: one run of each controller over the same
-//! reference. [`ModelsReport::write`] puts the residuals of several models beside each other.
+//! reference. [`ModelsReport::write`] puts the residuals of several models beside each other,
+//! and [`FleetReport::write`] shows which actuators of a fleet are unlike the others.
 //!
 //! The figures stay legible in grey: curves differ in line style and lightness, never in colour
 //! alone.
@@ -16,6 +17,7 @@ mod decimate;
 mod draw;
 mod error;
 mod evaluation;
+mod fleet;
 mod frame;
 mod models;
 mod number;
@@ -27,6 +29,7 @@ mod stack;
 mod track;
 
 pub use error::ReportError;
+pub use fleet::FleetReport;
 pub use evaluation::{Figure, Report, excitation_map};
 pub use models::{ModelsReport, NamedForward};
 pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};

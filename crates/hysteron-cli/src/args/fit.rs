@@ -11,6 +11,24 @@ pub(crate) struct Fit {
     /// The recording; several are one experiment, each from its own initial state
     #[arg(required = true, value_name = "DATA")]
     pub(crate) data: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) how: FitHow,
+    /// Another recording of the same actuator; may be given several times. The model is not fitted
+    /// to it. The band is widened to what changes between sessions
+    #[arg(long, value_name = "FILE")]
+    pub(crate) repeat: Vec<PathBuf>,
+    /// Where the model goes
+    #[arg(short, value_name = "MODEL")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
+    #[command(flatten)]
+    pub(crate) json: Json,
+}
+
+/// What fits of one actuator and of a fleet have in common.
+#[derive(Args)]
+pub(crate) struct FitHow {
     /// Column of the input
     #[arg(long, value_name = "COL")]
     pub(crate) input: String,
@@ -79,10 +97,6 @@ pub(crate) struct Fit {
     /// levels on 60, from 45 on 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
     pub(crate) bootstrap: Option<usize>,
-    /// Another recording of the same actuator; may be given several times. The model is not fitted
-    /// to it. The band is widened to what changes between sessions
-    #[arg(long, value_name = "FILE")]
-    pub(crate) repeat: Vec<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
     /// `branches:20%` (a share up to 33 %, spread over the recording), `rows:A-B` (counted from 1,
     /// after the preparation), or another recording. A FILE may be given several times
@@ -113,13 +127,6 @@ pub(crate) struct Fit {
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) prepare: PrepareBeforeFit,
-    /// Where the model goes
-    #[arg(short, value_name = "MODEL")]
-    pub(crate) out: PathBuf,
-    #[command(flatten)]
-    pub(crate) force: Force,
-    #[command(flatten)]
-    pub(crate) json: Json,
 }
 
 #[derive(Args)]

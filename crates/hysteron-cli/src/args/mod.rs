@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 mod adapt;
 mod export;
 mod fit;
+mod fleet;
 mod value;
 
 pub(crate) use adapt::*;
 pub(crate) use export::*;
 pub(crate) use fit::*;
+pub(crate) use fleet::*;
 pub(crate) use value::*;
 
 /// Hysteresis models of actuators: from a recording to a model and its exact inverse.
@@ -42,6 +44,9 @@ pub(crate) enum Command {
         \x20 hysteron fit run1.csv --input temperature --output displacement \
         -o spring.json")]
     Fit(Fit),
+    /// Fit a model to each of many actuators, and compare them
+    #[command(subcommand)]
+    Fleet(Fleet),
     /// Prepare a recording for a fit: spikes, noise, a sensor's lag, false reversals
     #[command(after_help = "Example:\n\
         \x20 hysteron prepare run1.csv --input temperature --output displacement \

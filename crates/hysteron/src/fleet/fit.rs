@@ -64,7 +64,7 @@ pub fn fit_fleet(
     target: Destination<'_>,
     progress: Progress<'_>,
 ) -> Result<FleetFitted> {
-    let sources = sources::find(data)?;
+    let sources = sources::find(data, target.path())?;
     let mut table = RecordWriter::create(target, COLUMNS)?;
     let key = hex(&Sha256::digest(options.described()));
     let work = Work {

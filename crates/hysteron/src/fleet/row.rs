@@ -65,6 +65,16 @@ pub struct FleetRow {
 }
 
 impl FleetRow {
+    /// The row of a model that was fitted by itself.
+    #[must_use]
+    pub fn of_model(id: &str, model: Model) -> Self {
+        let fit = model.fit.as_ref();
+        let known = |text: Option<&String>| text.cloned().unwrap_or_default();
+        let file = known(fit.and_then(|fit| fit.file.as_ref()));
+        let digest = known(fit.and_then(|fit| fit.sha256.as_ref()));
+        Self::of(id, file, digest, model, Vec::new())
+    }
+
     pub(super) fn of(
         id: &str,
         file: String,

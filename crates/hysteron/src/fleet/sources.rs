@@ -18,11 +18,12 @@ pub(super) struct Source {
 }
 
 /// The tables among files and folders. Those of a folder are in the order of their names; hidden
-/// ones and those that begin with `_` are left out.
+/// ones, those that begin with `_`, and the file `except` are left out.
 ///
 /// # Errors
 /// [`Error::File`] for a path that is not there, and for a folder without tables.
-pub(super) fn find(data: &[PathBuf]) -> Result<Vec<Source>> {
+pub(super) fn find(data: &[PathBuf], except: &Path) -> Result<Vec<Source>> {
+    let except = except.canonicalize().ok();
     let mut sources = Vec::new();
     for path in data {
         let failed = |source| Error::File {
@@ -40,7 +41,7 @@ pub(super) fn find(data: &[PathBuf]) -> Result<Vec<Source>> {
             continue;
         }
         let before = sources.len();
-        walk(path, "", &mut sources).map_err(failed)?;
+        walk(path, "", except.as_deref(), &mut sources).map_err(failed)?;
         if sources.len() == before {
             let endings = TABLES.join(", ");
             let text = format!("there is no table in this folder: {endings} are looked for");
@@ -50,7 +51,12 @@ pub(super) fn find(data: &[PathBuf]) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-fn walk(folder: &Path, above: &str, sources: &mut Vec<Source>) -> io::Result<()> {
+fn walk(
+    folder: &Path,
+    above: &str,
+    except: Option<&Path>,
+    sources: &mut Vec<Source>,
+) -> io::Result<()> {
     let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
     let mut entries: Vec<_> = entries
         .into_iter()
@@ -64,13 +70,14 @@ fn walk(folder: &Path, above: &str, sources: &mut Vec<Source>) -> io::Result<()>
         }
         let about = fs::metadata(&path)?;
         if about.is_dir() {
-            walk(&path, &format!("{above}{text}/"), sources)?;
+            walk(&path, &format!("{above}{text}/"), except, sources)?;
             continue;
         }
         let ending = path.extension().map(|ending| ending.to_string_lossy());
         let is_table =
             ending.is_some_and(|ending| TABLES.iter().any(|t| ending.eq_ignore_ascii_case(t)));
-        if is_table {
+        let is_result = || except.is_some() && path.canonicalize().ok().as_deref() == except;
+        if is_table && !is_result() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             sources.push(Source {
                 name: format!("{above}{stem}"),

@@ -121,6 +121,7 @@ impl Partial {
     }
 
     /// Number of records that were there when the file was opened.
+    #[cfg(test)]
     pub(crate) fn found(&self) -> usize {
         self.known.len()
     }

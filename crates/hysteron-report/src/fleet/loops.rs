@@ -1,0 +1,79 @@
+//! The loops of the strangest actuators, each over that of the most usual one.
+
+use super::view::{Figure, View};
+use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
+use crate::draw::panel::{BELOW, Labels, Panel, left_of};
+use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::style::{FOLLOWER, REFERENCE};
+use crate::panels::{HEADING, Heading, WIDTH, head};
+use crate::stack::Figures;
+use hysteron::Model;
+
+const HEIGHT: f64 = 150.0;
+const COLUMNS: usize = 2;
+const GAP: f64 = 18.0;
+
+/// Number of loops drawn.
+pub(super) fn count(view: &View<'_>) -> usize {
+    View::DRAWN.min(view.ordered.len() - 1)
+}
+
+/// `None` for a fleet of one.
+pub(super) fn svg(view: &View<'_>) -> Option<String> {
+    let strangest = &view.ordered[..count(view)];
+    let usual = major_loop(&view.usual().model)?;
+    let loops: Vec<[Vec<f64>; 2]> = strangest
+        .iter()
+        .map(|(row, _)| major_loop(&row.model))
+        .collect::<Option<_>>()?;
+    if loops.is_empty() {
+        return None;
+    }
+    let mut sheet = view.sheet(Figure::Loops, WIDTH);
+    sheet.legend(&[
+        Key::Line(FOLLOWER, "the actuator".into()),
+        Key::Line(REFERENCE, format!("the most usual one, {}", view.usual().id)),
+    ]);
+    let both = |n: usize| loops.iter().chain([&usual]).flat_map(move |l| &l[n]);
+    let x = Axis::new(&view.input, Span::of(both(0)).padded(0.03));
+    let y = Axis::new(&view.output, Span::of(both(1)).padded(0.04));
+    let left = left_of(&y, HEIGHT);
+    let width = (WIDTH - 2.0 * MARGIN - GAP) / COLUMNS as f64 - left;
+    let mut bottom = sheet.top;
+    for (n, (path, (row, strange))) in loops.iter().zip(strangest).enumerate() {
+        let (line, column) = ((n / COLUMNS) as f64, (n % COLUMNS) as f64);
+        let area = Rect {
+            x: MARGIN + left + column * (left + width + GAP),
+            y: sheet.top + HEADING + line * (HEIGHT + BELOW + HEADING),
+            width,
+            height: HEIGHT,
+        };
+        let (name, by) = strange.most();
+        let heading = Heading {
+            name: row.id.clone(),
+            remark: format!("distance {:.1}; {name} by {by:+.1} deviations", strange.distance),
+        };
+        head(&mut sheet, &heading, area);
+        let labels = Labels { x: true, y: true };
+        let panel = Panel::draw(&mut sheet.canvas, area, x.clone(), y.clone(), labels);
+        panel.loops(&mut sheet.canvas, &usual[0], &usual[1], &REFERENCE);
+        panel.loops(&mut sheet.canvas, &path[0], &path[1], &FOLLOWER);
+        bottom = area.bottom() + BELOW + 4.0;
+    }
+    Some(view.finish(Figure::Loops, sheet, bottom))
+}
+
+/// Inputs and outputs once up and down the plane.
+fn major_loop(model: &Model) -> Option<[Vec<f64>; 2]> {
+    let plane = model.plane();
+    let corners = 0..=plane.levels();
+    let path: Vec<usize> = corners.clone().chain(corners.rev()).collect();
+    let on_plane: Vec<f64> = path.iter().map(|n| plane.level(*n)).collect();
+    let output = model.operators().simulate(&on_plane).ok()?;
+    let input = match model.spacing() {
+        [] => on_plane,
+        spacing => path.iter().map(|n| spacing[*n]).collect(),
+    };
+    Some([input, output])
+}
