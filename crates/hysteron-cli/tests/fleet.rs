@@ -529,7 +529,7 @@ fn units_and_held_out_parts_are_those_asked_for() {
     for row in rows(&folder.join("m.parquet")) {
         assert_eq!(row.model.input.unit.as_deref(), Some("V"));
         assert_eq!(row.model.operator(), Operator::Kp);
-        assert!(row.model.fit.unwrap().other.contains_key("hold_out"));
+        assert!(row.model.fit.as_ref().unwrap().other.contains_key("hold_out"));
         let recording = Recording::read(
             &folder.join(format!("each/{}.csv", row.id)),
             Columns::new("x", "y"),
