@@ -3,7 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, fit, prepare, progress, remedy, text};
 use hysteron::{
-    AtomicFolder, Columns, FleetOptions, FleetRow, Model, Norm, Progress, Strangeness, fit_fleet, read_fleet,
+    AtomicFolder, Columns, FleetOptions, FleetRow, Model, Norm, Progress, Strangeness, fit_fleet,
+    read_fleet,
 };
 use hysteron_report::FleetReport;
 use serde_json::json;
@@ -123,7 +124,10 @@ fn check(args: &args::FleetCheck) -> Result<()> {
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let rows = match is_model {
-            true => vec![FleetRow::of_model(&new.display().to_string(), Model::read(new)?)],
+            true => vec![FleetRow::of_model(
+                &new.display().to_string(),
+                Model::read(new)?,
+            )],
             false => rows(new)?,
         };
         found.extend(rows.into_iter().map(|row| (norm.strangeness(&row), row.id)));
@@ -173,11 +177,15 @@ fn to_json(id: &str, strange: &Strangeness) -> serde_json::Value {
     })
 }
 
+/// From so many deviations on a number is unusual by itself.
+const ALONE: f64 = 3.0;
+
 fn table(found: &[(Strangeness, String)]) -> String {
     let mut lines = vec![text::row(["actuator", "distance", "limit", ""])];
     for (strange, id) in found {
         let (name, by) = strange.most();
         let verdict = match strange.is_outlier() {
+            true if by.abs() < ALONE => "unlike the others: the numbers together".into(),
             true => format!("unlike the others: {name} by {by:+.1} deviations"),
             false => "like the others".into(),
         };

@@ -29,7 +29,7 @@ mod stack;
 mod track;
 
 pub use error::ReportError;
-pub use fleet::FleetReport;
 pub use evaluation::{Figure, Report, excitation_map};
+pub use fleet::FleetReport;
 pub use models::{ModelsReport, NamedForward};
 pub use track::{NamedTrace, TrackReport, TrackTable, write_comparison};

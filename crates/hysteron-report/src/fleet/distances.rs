@@ -30,7 +30,10 @@ pub(super) fn svg(view: &View<'_>) -> String {
         unit: None,
     };
     let places: Vec<f64> = (1..=distances.len()).map(|n| n as f64).collect();
-    let x = Axis::new(&plain("actuators, the strangest first"), Span::of(&places).padded(0.02));
+    let x = Axis::new(
+        &plain("actuators, the strangest first"),
+        Span::of(&places).padded(0.02),
+    );
     let highest = Span::of(&distances).with(limit).with(0.0);
     let y = Axis::new(&plain("distance"), highest.padded(0.05).from(0.0));
     let left = MARGIN + left_of(&y, HEIGHT);

@@ -111,7 +111,9 @@ impl Classes {
         let median = median(&mut values);
         let mut off: Vec<f64> = values.iter().map(|value| (value - median).abs()).collect();
         let reach = REACH * self::median(&mut off);
-        let within = values.iter().filter(|value| (*value - median).abs() <= reach);
+        let within = values
+            .iter()
+            .filter(|value| (*value - median).abs() <= reach);
         // Where most are equal, all are shown.
         let span = match reach > 0.0 {
             true => Span::of(within),
@@ -122,7 +124,10 @@ impl Classes {
             let place = (value - span.low) / (span.high - span.low) * CLASSES as f64;
             counts[(place.max(0.0) as usize).min(CLASSES - 1)] += 1.0;
         }
-        let strange = view.ordered.iter().filter(|(_, strange)| strange.is_outlier());
+        let strange = view
+            .ordered
+            .iter()
+            .filter(|(_, strange)| strange.is_outlier());
         let strange = strange.filter_map(|(row, _)| of(row));
         Self {
             span,

@@ -33,7 +33,10 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let mut sheet = view.sheet(Figure::Loops, WIDTH);
     sheet.legend(&[
         Key::Line(FOLLOWER, "the actuator".into()),
-        Key::Line(REFERENCE, format!("the most usual one, {}", view.usual().id)),
+        Key::Line(
+            REFERENCE,
+            format!("the most usual one, {}", view.usual().id),
+        ),
     ]);
     let both = |n: usize| loops.iter().chain([&usual]).flat_map(move |l| &l[n]);
     let x = Axis::new(&view.input, Span::of(both(0)).padded(0.03));
@@ -52,7 +55,10 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         let (name, by) = strange.most();
         let heading = Heading {
             name: row.id.clone(),
-            remark: format!("distance {:.1}; {name} by {by:+.1} deviations", strange.distance),
+            remark: format!(
+                "distance {:.1}; {name} by {by:+.1} deviations",
+                strange.distance
+            ),
         };
         head(&mut sheet, &heading, area);
         let labels = Labels { x: true, y: true };

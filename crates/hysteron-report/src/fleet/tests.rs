@@ -15,7 +15,12 @@ fn row(n: usize, width: f64) -> FleetRow {
     let weights = operators(10).map(weight).collect();
     let model = Model::new(Operator::Mkp, plane, weights, 1.0, Sign::Positive).unwrap();
     let fit = hysteron::Recording::new(vec![0.0, 100.0, 0.0], vec![0.0, 1.0 + off, 0.1]).unwrap();
-    let fitted = hysteron::Fit::new().levels(2).bootstrap(0).smooth(0.0).run(&fit).unwrap();
+    let fitted = hysteron::Fit::new()
+        .levels(2)
+        .bootstrap(0)
+        .smooth(0.0)
+        .run(&fit)
+        .unwrap();
     let mut model = model;
     model.fit = fitted.fit.map(|mut fit| {
         fit.nrmse_percent = 0.5 + 0.1 * (n as f64 * 1.3).sin();
@@ -41,9 +46,15 @@ fn the_strangest_come_first_and_have_their_loops() {
     let page = std::fs::read_to_string(&written[0]).unwrap();
     let table = page.split("<tbody>").nth(1).unwrap();
     let first = table.split("</tr>").next().unwrap();
-    assert!(first.contains("&lt;17&gt;") && first.contains("width"), "{first}");
+    assert!(
+        first.contains("&lt;17&gt;") && first.contains("width"),
+        "{first}"
+    );
     assert_eq!(page.matches("deviations").count() >= 10, true);
-    let none = FleetReport { rows: &[], ..report };
+    let none = FleetReport {
+        rows: &[],
+        ..report
+    };
     assert!(none.write(folder.path().join("none").as_path()).is_err());
     assert!(!folder.path().join("none").exists());
 }

@@ -24,7 +24,7 @@ pub use output::{
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
 pub use printable::printable;
-pub(crate) use recording::{Group, Groups};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
+pub(crate) use recording::{Group, Groups};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Column, ReadOptions, Remark, Row, TableReader};

@@ -420,7 +420,8 @@ impl Done {
         for (_, entry) in &self.fitted {
             let values = self.partial.read(*entry)?;
             let mut named = COLUMNS.iter().zip(&values);
-            let warned = named.any(|((name, _), value)| *name == "warnings" && *value != Value::None);
+            let warned =
+                named.any(|((name, _), value)| *name == "warnings" && *value != Value::None);
             self.with_warnings += usize::from(warned);
             table.push(values)?;
         }
@@ -435,9 +436,16 @@ impl Done {
         let places = self.fitted.iter().map(|(place, _)| place);
         Ok(FleetFitted {
             fitted: self.fitted.len(),
-            resumed: places.clone().filter(|place| self.resumed.contains(place)).count(),
+            resumed: places
+                .clone()
+                .filter(|place| self.resumed.contains(place))
+                .count(),
             with_warnings: self.with_warnings,
-            failed: self.failed.into_iter().map(|(_, failure)| failure).collect(),
+            failed: self
+                .failed
+                .into_iter()
+                .map(|(_, failure)| failure)
+                .collect(),
             notes: self.notes,
         })
     }

@@ -78,7 +78,10 @@ impl Norm {
     /// [`Error::Fit`] for fewer than [`Norm::FEWEST`] whose loops can be described.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a FleetRow>) -> Result<Self> {
         let rows = rows.into_iter().map(numbers);
-        Self::of_numbers(rows.filter(|row| row.iter().all(|n| n.is_finite())).collect())
+        Self::of_numbers(
+            rows.filter(|row| row.iter().all(|n| n.is_finite()))
+                .collect(),
+        )
     }
 
     fn of_numbers(rows: Vec<[f64; COUNT]>) -> Result<Self> {
@@ -309,7 +312,9 @@ mod tests {
             let norm = Norm::of_numbers(rows.clone()).unwrap();
             let limit = norm.quantile(&RARE).sqrt();
             let found = |rows: &[[f64; COUNT]]| {
-                rows.iter().filter(|row| distance(&norm, row) > limit).count()
+                rows.iter()
+                    .filter(|row| distance(&norm, row) > limit)
+                    .count()
             };
             assert_eq!(found(&rows[..wrong]), wrong, "seed {seed}");
             let false_alarms = found(&rows[wrong..]);

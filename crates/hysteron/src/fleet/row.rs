@@ -102,13 +102,18 @@ impl FleetRow {
             numbers => Value::Numbers(numbers.to_vec()),
         };
         let fit = model.fit.as_ref();
-        let of_fit = |number: fn(&crate::model::FitSummary) -> Value| fit.map_or(Value::None, number);
+        let of_fit =
+            |number: fn(&crate::model::FitSummary) -> Value| fit.map_or(Value::None, number);
         let confidence = fit.and_then(|fit| fit.confidence.as_ref());
-        let trusted = |number: fn(&crate::model::Confidence) -> Value| {
-            confidence.map_or(Value::None, number)
-        };
+        let trusted =
+            |number: fn(&crate::model::Confidence) -> Value| confidence.map_or(Value::None, number);
         let held_out = fit
-            .and_then(|fit| fit.other.get("hold_out")?.get("model")?.get("nrmse_percent"))
+            .and_then(|fit| {
+                fit.other
+                    .get("hold_out")?
+                    .get("model")?
+                    .get("nrmse_percent")
+            })
             .and_then(serde_json::Value::as_f64);
         let plane = model.plane();
         let optional = |number: Option<f64>| number.map_or(Value::None, Value::Number);

@@ -70,7 +70,8 @@ impl Shape {
         let steps = 0..levels;
         let area = steps.map(|n| 0.5 * (gap(n) + gap(n + 1)) * (inputs[n + 1] - inputs[n]));
         let at = |share: f64| {
-            let [up, down] = [&rising, &falling].map(|branch| crossing(&inputs, branch, share * all));
+            let [up, down] =
+                [&rising, &falling].map(|branch| crossing(&inputs, branch, share * all));
             Some(0.5 * (up? + down?))
         };
         let span = at(0.9).zip(at(0.1)).map(|(end, begin)| end - begin);

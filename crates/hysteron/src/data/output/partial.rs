@@ -66,7 +66,9 @@ impl Partial {
         let head = format!("{MARK}{key}\n");
         let length = file.metadata()?.len();
         let mut found = Vec::new();
-        (&mut file).take(head.len() as u64).read_to_end(&mut found)?;
+        (&mut file)
+            .take(head.len() as u64)
+            .read_to_end(&mut found)?;
         let ours = found.starts_with(MARK.as_bytes()) || MARK.as_bytes().starts_with(&found);
         if !ours {
             return Err(io::Error::new(
@@ -250,7 +252,12 @@ fn decode(bytes: &mut &[u8]) -> Option<Value> {
         1 => Value::Text(String::from_utf8(cell.to_vec()).ok()?),
         2 => Value::Number(f64::from_le_bytes(*eights.first()?)),
         3 => Value::Integer(i64::from_le_bytes(*eights.first()?)),
-        4 => Value::Numbers(eights.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()),
+        4 => Value::Numbers(
+            eights
+                .iter()
+                .map(|bytes| f64::from_le_bytes(*bytes))
+                .collect(),
+        ),
         _ => return None,
     })
 }

@@ -2,8 +2,8 @@
 
 use super::budget::Budget;
 use super::hashing::{Hash, Hashing};
-use super::text::{self, Text};
 use super::labels::Labels;
+use super::text::{self, Text};
 use super::{Source, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};

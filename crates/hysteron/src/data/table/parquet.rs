@@ -28,11 +28,7 @@ pub(super) struct Opened {
 
 /// The numeric columns of a file: their names and rows. Times are converted to seconds. A column of
 /// labels, if asked for, comes last, as codes.
-pub(super) fn open(
-    path: &Path,
-    budget: Budget,
-    labels: Option<&Labels>,
-) -> Result<Opened, String> {
+pub(super) fn open(path: &Path, budget: Budget, labels: Option<&Labels>) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_or(0, |about| about.len());
     let second = file.try_clone().map_err(|error| error.to_string())?;
@@ -61,7 +57,10 @@ pub(super) fn open(
         Some(labels) => {
             let column = labels.find(&names)?;
             if schema.column(column).max_rep_level() > 0 {
-                return Err(format!("`{}` holds lists, which are no labels", names[column]));
+                return Err(format!(
+                    "`{}` holds lists, which are no labels",
+                    names[column]
+                ));
             }
             header.push(names[column].clone());
             columns.push(column);
