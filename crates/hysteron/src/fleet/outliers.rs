@@ -39,8 +39,7 @@ impl Strangeness {
     /// Whether the actuator is unlike the others.
     #[must_use]
     pub fn is_outlier(&self) -> bool {
-        // NaN is one, too.
-        !(self.distance <= self.limit)
+        self.distance.is_nan() || self.distance > self.limit
     }
 
     /// The number that is furthest from its median.
