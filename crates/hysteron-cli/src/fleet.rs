@@ -14,6 +14,7 @@ pub(crate) fn run(args: &args::Fleet) -> Result<()> {
     match args {
         args::Fleet::Fit(args) => fit_all(args),
         args::Fleet::Extract(args) => extract(args),
+        args::Fleet::Join(args) => join(args),
         args::Fleet::Check(args) => check(args),
         args::Fleet::Report(args) => report(args),
     }
@@ -113,6 +114,13 @@ fn extract(args: &args::FleetExtract) -> Result<()> {
         format!("{models}: there is no actuator `{id}`")
     })?;
     Ok(file.commit_with(model.to_json().as_bytes())?)
+}
+
+fn join(args: &args::FleetJoin) -> Result<()> {
+    let inputs: Vec<&Path> = args.parts.iter().map(PathBuf::as_path).collect();
+    let target = args.force.target(&args.out, &inputs);
+    let count = hysteron::join_fleets(&args.parts, target)?;
+    print(&format!("{}: {count} actuators", args.out.display()))
 }
 
 fn check(args: &args::FleetCheck) -> Result<()> {

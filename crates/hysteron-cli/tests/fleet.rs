@@ -506,6 +506,48 @@ fn a_model_is_taken_out_as_fit_writes_it() {
     assert!(said.contains("a001.csv"), "{said}");
 }
 
+/// Parts fitted one by one, by several processes, come to the same bits as all at once.
+#[test]
+fn parts_are_joined_to_the_table_of_the_whole() {
+    let bench = tempfile::tempdir().unwrap();
+    let folder = bench.path();
+    fleet(folder, 12, 12);
+    fs::create_dir(folder.join("parts")).unwrap();
+    let all = fs::read_to_string(folder.join("all.csv")).unwrap();
+    for n in 0..3 {
+        let mine = |line: &&str| {
+            let number = line[1..4].parse::<usize>();
+            number.map_or(true, |number| number / 4 == n)
+        };
+        let part: Vec<&str> = all.lines().filter(mine).collect();
+        fs::write(folder.join(format!("parts/{n}.csv")), part.join("\n")).unwrap();
+    }
+    ran(
+        folder,
+        &format!("fleet fit parts --by id {FAST} -o whole.parquet"),
+    );
+    // Whoever comes last, and whoever comes twice.
+    for n in [2, 0, 1, 0] {
+        let line = format!("fleet fit parts/{n}.csv --by id {FAST} -o {n}.parquet");
+        ran(folder, &line);
+    }
+    ran(
+        folder,
+        "fleet join 0.parquet 1.parquet 2.parquet -o models.parquet",
+    );
+    let read = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(read("models.parquet") == read("whole.parquet"));
+    let said = refused(
+        folder,
+        "fleet join 0.parquet 1.parquet 0.parquet -o m.parquet",
+    );
+    assert!(
+        said.contains("the actuator `a000` is in 0.parquet too"),
+        "{said}"
+    );
+    assert!(!folder.join("m.parquet").exists());
+}
+
 /// Of a fleet of like actuators, none is strange; one with a wider loop is.
 #[test]
 fn the_strange_one_is_found() {

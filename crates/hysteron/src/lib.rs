@@ -60,7 +60,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 #[cfg(feature = "data")]
 pub use fleet::{
     FleetFailure, FleetFitted, FleetOptions, FleetRow, Norm, Shape, Strangeness, fit_fleet,
-    read_fleet,
+    join_fleets, read_fleet,
 };
 pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};

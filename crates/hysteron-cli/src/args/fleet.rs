@@ -12,11 +12,15 @@ pub(crate) enum Fleet {
         --output displacement -o models.parquet\n\
         \x20 hysteron fleet fit recordings/ --input temperature --output displacement \
         --levels 20 --bootstrap 0 -o models.parquet")]
-    Fit(FleetFit),
+    Fit(Box<FleetFit>),
     /// Write the model of one actuator as a file
     #[command(after_help = "Example:\n\
         \x20 hysteron fleet extract models.parquet A-0017 -o a17.json")]
     Extract(FleetExtract),
+    /// Put tables of models together, made of the parts of a fleet
+    #[command(after_help = "Example:\n\
+        \x20 hysteron fleet join part-1.parquet part-2.parquet -o models.parquet")]
+    Join(FleetJoin),
     /// Is an actuator like the others? The robust distance of its main numbers from theirs
     #[command(after_help = "Examples:\n\
         \x20 hysteron fleet check models.parquet new.json\n\
@@ -56,6 +60,18 @@ pub(crate) struct FleetExtract {
     pub(crate) id: String,
     /// Where the model goes
     #[arg(short, value_name = "MODEL")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
+}
+
+#[derive(Args)]
+pub(crate) struct FleetJoin {
+    /// The tables of models, in the order of the result
+    #[arg(required = true, value_name = "PART")]
+    pub(crate) parts: Vec<PathBuf>,
+    /// Where the table of all models goes: *.parquet
+    #[arg(short, value_name = "MODELS")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,

@@ -1,13 +1,13 @@
 //! The fit of a whole fleet: reads one actuator after the other, fits them on all threads, keeps
 //! what is done, and writes the table.
 
+use super::each::each;
 use super::one::{self, digest};
 use super::options::FleetOptions;
 use super::row::COLUMNS;
 use super::sources::{self, Source};
 use crate::data::{Destination, Entry, Group, Groups, Note, Partial, RecordWriter, Value};
 use crate::error::{Error, Result};
-use crate::parallel;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use sha2::{Digest, Sha256};
@@ -75,7 +75,7 @@ pub fn fit_fleet(
         done: Mutex::new(Done::new(Partial::beside(target.path(), &key)?)),
     };
     let mut reading = Reading::new(&sources, options, &work);
-    parallel::each(std::iter::from_fn(|| reading.next()), |job| work.on(job));
+    each(std::iter::from_fn(|| reading.next()), |job| work.on(job));
     let twice = reading.twice;
     let done = work.done.into_inner();
     let done = done.unwrap_or_else(PoisonError::into_inner);

@@ -1,10 +1,13 @@
 //! Fleets: a model for each of many actuators, from one call to one table.
 //!
 //! `fit` is the entry point, with the settings of `options`. `sources` finds the files, `one` fits
-//! one actuator, `row` is its row of the table. `shape` describes a model in a few numbers, and
+//! one actuator, `each` does so on all threads, and `row` is a row of the table. `join` puts tables of parts together.
+//! `shape` describes a model in a few numbers, and
 //! `outliers` tells which actuators are unlike the others.
 
+mod each;
 mod fit;
+mod join;
 mod one;
 mod options;
 mod outliers;
@@ -13,6 +16,7 @@ mod shape;
 mod sources;
 
 pub use fit::{FleetFailure, FleetFitted, fit_fleet};
+pub use join::join_fleets;
 pub use options::FleetOptions;
 pub use outliers::{Norm, Strangeness};
 pub use row::{FleetRow, read_fleet};
