@@ -12,7 +12,7 @@
 //! alone.
 
 mod clock;
-mod decimate;
+pub mod decimate;
 mod draw;
 mod error;
 mod evaluation;
