@@ -22,7 +22,11 @@ pub(crate) fn run(args: &args::Begin) -> Result<()> {
         return Err(what.into());
     };
     if !args.json.json {
-        let names = preview.table.columns.iter().map(|column| column.name.as_str());
+        let names = preview
+            .table
+            .columns
+            .iter()
+            .map(|column| column.name.as_str());
         let names = names.collect::<Vec<_>>().join(", ");
         let rows = preview.table.rows;
         print(&format!("{}: {rows} rows of {names}", args.file.display()))?;
@@ -119,7 +123,11 @@ fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<Str
             named += &format!(" --{name} {}", quoted(column));
         }
     }
-    let held_out = if held_out { " --hold-out branches:20%" } else { "" };
+    let held_out = if held_out {
+        " --hold-out branches:20%"
+    } else {
+        ""
+    };
     let mut commands = vec![
         format!("hysteron fit {file} {named}{held_out} -o model.json"),
         format!("hysteron evaluate model.json {file} {named} --report report"),

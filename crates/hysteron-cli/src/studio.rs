@@ -27,9 +27,13 @@ pub(crate) fn run(args: &args::Studio) -> Result<()> {
     }
     let address = server.address()?;
     print(&address)?;
-    say(format_args!("the studio is open at this address; Ctrl-C ends it"));
+    say(format_args!(
+        "the studio is open at this address; Ctrl-C ends it"
+    ));
     if !args.no_open && !open(&address) {
-        say(format_args!("no browser was found: open the address in yours"));
+        say(format_args!(
+            "no browser was found: open the address in yours"
+        ));
     }
     Ok(server.run(receiver)?)
 }
@@ -52,6 +56,9 @@ fn open(address: &str) -> bool {
     };
     let mut command = Command::new(program);
     command.args(before).arg(address);
-    let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let quiet = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     quiet.spawn().is_ok()
 }

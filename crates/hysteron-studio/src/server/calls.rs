@@ -25,12 +25,18 @@ pub(super) async fn session(
     request: Result<Json<Request>, JsonRejection>,
 ) -> Response {
     let Ok(Json(request)) = request else {
-        return refused(&Fault::defect("the page asked for what the session does not know"));
+        return refused(&Fault::defect(
+            "the page asked for what the session does not know",
+        ));
     };
     let changes = !matches!(
         request,
-        Request::Overview | Request::Curves(_) | Request::Plane { .. } | Request::Pull(_)
-            | Request::Take(_) | Request::Drive { .. }
+        Request::Overview
+            | Request::Curves(_)
+            | Request::Plane { .. }
+            | Request::Pull(_)
+            | Request::Take(_)
+            | Request::Drive { .. }
     );
     let done = tokio::task::spawn_blocking(move || {
         let mut answer = shared.session().handle(request)?;
@@ -125,8 +131,16 @@ pub(super) async fn events(
             changes: *shared.changes.borrow(),
             // While a call holds the session, there is nothing new.
             jobs: shared.session.try_lock().ok()?.jobs(),
-            failed: shared.failed.lock().unwrap_or_else(PoisonError::into_inner).clone(),
-            named: shared.named.lock().unwrap_or_else(PoisonError::into_inner).len(),
+            failed: shared
+                .failed
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone(),
+            named: shared
+                .named
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .len(),
         };
         let told = serde_json::to_string(&told).ok()?;
         (told != last).then(|| {

@@ -95,7 +95,11 @@ impl Server {
     /// [`Fault`] for a file that cannot be read.
     pub fn open(&self, path: &Path) -> Result<(), Fault> {
         self.shared.open_named(path)?;
-        let mut named = self.shared.named.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut named = self
+            .shared
+            .named
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
         named.push(path.to_owned());
         Ok(())
     }

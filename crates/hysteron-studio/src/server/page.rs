@@ -8,8 +8,16 @@ use std::sync::LazyLock;
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 const FILES: [(&str, &str, &str); 12] = [
-    ("style.css", "text/css; charset=utf-8", include_str!("../../page/style.css")),
-    ("icon.svg", "image/svg+xml", include_str!("../../page/icon.svg")),
+    (
+        "style.css",
+        "text/css; charset=utf-8",
+        include_str!("../../page/style.css"),
+    ),
+    (
+        "icon.svg",
+        "image/svg+xml",
+        include_str!("../../page/icon.svg"),
+    ),
     ("main.js", SCRIPT, include_str!("../../page/main.js")),
     ("api.js", SCRIPT, include_str!("../../page/api.js")),
     ("dom.js", SCRIPT, include_str!("../../page/dom.js")),
@@ -29,7 +37,10 @@ static PLOTLY: LazyLock<String> = LazyLock::new(|| {
     let all = plotly::Plot::offline_js_sources();
     let rest = all.strip_prefix(ELEMENT).unwrap_or_default();
     // A later element begins where the last of these marks is.
-    let first = rest.rsplit_once(ELEMENT).map_or(rest, |(first, _)| first).trim_end();
+    let first = rest
+        .rsplit_once(ELEMENT)
+        .map_or(rest, |(first, _)| first)
+        .trim_end();
     first.strip_suffix("</script>").unwrap_or(first).to_owned()
 });
 
@@ -53,7 +64,10 @@ mod tests {
     fn plotly_is_one_script() {
         let script = super::PLOTLY.as_str();
         assert!(script.starts_with("/**") && script.contains("plotly.js v"));
-        assert!(!script.contains("<script type=\"text/javascript\">") && !script.contains("MathJax-script"));
+        assert!(
+            !script.contains("<script type=\"text/javascript\">")
+                && !script.contains("MathJax-script")
+        );
         assert!(script.len() > 3_000_000, "{}", script.len());
     }
 }

@@ -21,7 +21,9 @@ fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
         ("load", &roles.load),
     ];
     let named = all.into_iter();
-    named.filter_map(|(name, column)| Some((name, column.as_deref()?))).collect()
+    named
+        .filter_map(|(name, column)| Some((name, column.as_deref()?)))
+        .collect()
 }
 
 /// A word that a POSIX shell takes as it is.
@@ -47,19 +49,28 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     let mut words = vec![format!("hysteron fit {}", names.join(" "))];
     let columns: Vec<String> = fitted.first().map_or(Vec::new(), |file| {
         let roles = roles(file).into_iter();
-        roles.map(|(name, column)| format!("--{name} {}", quoted(column))).collect()
+        roles
+            .map(|(name, column)| format!("--{name} {}", quoted(column)))
+            .collect()
     });
     words.extend(columns.iter().cloned());
-    words.extend(fitted.iter().any(|file| file.mend).then(|| "--repair".to_owned()));
-    let option = |(name, text): (&String, &String)| {
-        format!("--{} {}", name.replace('_', "-"), quoted(text))
-    };
+    words.extend(
+        fitted
+            .iter()
+            .any(|file| file.mend)
+            .then(|| "--repair".to_owned()),
+    );
+    let option =
+        |(name, text): (&String, &String)| format!("--{} {}", name.replace('_', "-"), quoted(text));
     words.extend(fit.options.iter().map(option));
     words.extend(match fit.words.as_str() {
         "" => Vec::new(),
         "files" => {
             let others = files(session, &fit.validated);
-            others.iter().map(|file| format!("--hold-out {}", path(&file.name))).collect()
+            others
+                .iter()
+                .map(|file| format!("--hold-out {}", path(&file.name)))
+                .collect()
         }
         part => vec![format!("--hold-out {part}")],
     });
@@ -85,10 +96,15 @@ fn literal(text: &str) -> String {
 pub(super) fn python(session: &Session, fit: &Fitted) -> String {
     let read = |file: &&Opened| {
         let roles = roles(file).into_iter();
-        let mut words: Vec<String> =
-            roles.map(|(name, column)| format!("{name}={}", literal(column))).collect();
+        let mut words: Vec<String> = roles
+            .map(|(name, column)| format!("{name}={}", literal(column)))
+            .collect();
         words.extend(file.mend.then(|| "repair=True".to_owned()));
-        format!("pyhysteron.read({}, {})", literal(&file.name), words.join(", "))
+        format!(
+            "pyhysteron.read({}, {})",
+            literal(&file.name),
+            words.join(", ")
+        )
     };
     let list = |files: Vec<&Opened>| {
         let each: Vec<String> = files.iter().map(read).collect();
@@ -147,8 +163,8 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
         )
     };
     let list = |ids: &[Id]| files(session, ids).iter().map(read).collect::<String>();
-    let mut text = "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n\n"
-        .to_owned();
+    let mut text =
+        "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n\n".to_owned();
     text += &format!("let recordings = vec![\n{}];\n", list(&fit.files));
     text += "let fit = Fit::new()";
     for (name, word) in &fit.options {
@@ -161,7 +177,10 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
             "let hold_out = HoldOut::Recordings(vec![\n{}]);\n{HELD}",
             list(&fit.validated)
         ),
-        part => format!("let hold_out: HoldOut = {}.parse()?;\n{HELD}", literal(part)),
+        part => format!(
+            "let hold_out: HoldOut = {}.parse()?;\n{HELD}",
+            literal(part)
+        ),
     };
     text + "model.write(\"model.json\")?;\n"
 }

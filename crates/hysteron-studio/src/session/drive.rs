@@ -168,7 +168,10 @@ impl Drive {
             Policy::Hold => Policy::Anticipate,
             Policy::Anticipate => Policy::Hold,
         };
-        let other = self.solve(wanted, other).ok().map(|(input, _)| (other, input));
+        let other = self
+            .solve(wanted, other)
+            .ok()
+            .map(|(input, _)| (other, input));
         self.push(input)?;
         (self.wanted, self.status, self.other) = (Some(wanted), status, other);
         Ok(())
@@ -196,7 +199,9 @@ impl Drive {
         let inverse = self.model.inverse().ok()?;
         let edge = |heading| {
             let target = Target::new(self.output).heading(Some(heading));
-            let solution = inverse.step(&mut self.state.clone(), self.wanted(target)).ok()?;
+            let solution = inverse
+                .step(&mut self.state.clone(), self.wanted(target))
+                .ok()?;
             Some(solution.input)
         };
         let edges = (edge(Direction::Falling)?, edge(Direction::Rising)?);

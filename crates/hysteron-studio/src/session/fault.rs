@@ -35,7 +35,10 @@ impl Fault {
     }
 
     pub(crate) fn gone(what: &str, id: u64) -> Self {
-        Self::new(100, format!("there is no {what} number {id} in this session"))
+        Self::new(
+            100,
+            format!("there is no {what} number {id} in this session"),
+        )
     }
 
     pub(crate) fn too_large(name: &str, left: u64) -> Self {
@@ -86,7 +89,10 @@ impl From<Error> for Fault {
         let (plain, remedy) = error.parts();
         Self {
             remedy: remedy.map(|remedy| remedy.spelt(spelt)),
-            ..Self::new(error.code(), hysteron::printable(&plain.to_string()).into_owned())
+            ..Self::new(
+                error.code(),
+                hysteron::printable(&plain.to_string()).into_owned(),
+            )
         }
     }
 }

@@ -165,7 +165,11 @@ impl Session {
             ));
         }
         build(&options)?;
-        let of = |purpose: Purpose| self.files.iter().filter(move |file| file.purpose == purpose);
+        let of = |purpose: Purpose| {
+            self.files
+                .iter()
+                .filter(move |file| file.purpose == purpose)
+        };
         let mut recordings = Vec::new();
         for file in of(Purpose::Fit) {
             recordings.push(Recording::clone(file.recording()?));
@@ -300,7 +304,10 @@ impl Job {
 fn median_step(time: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0)
+    steps
+        .get(steps.len() / 2)
+        .copied()
+        .filter(|step| *step > 0.0)
 }
 
 impl Fitted {
@@ -336,14 +343,22 @@ impl Fitted {
 /// The best fit, and by what. Errors on what was held out count, and those of fits alone only where
 /// nothing was held out from any.
 pub(super) fn best(fits: &[Fitted]) -> (Option<Id>, &'static str) {
-    let tested = fits.iter().filter_map(|fit| Some((fit.tested()?.rmse, fit.id)));
+    let tested = fits
+        .iter()
+        .filter_map(|fit| Some((fit.tested()?.rmse, fit.id)));
     let least = |errors: &mut dyn Iterator<Item = (f64, Id)>| {
         errors.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
     };
     let mut tested = tested.peekable();
     if tested.peek().is_some() {
-        return (least(&mut tested), "the smallest error on what was held out");
+        return (
+            least(&mut tested),
+            "the smallest error on what was held out",
+        );
     }
     let mut fitted = fits.iter().map(|fit| (fit.view().rmse, fit.id));
-    (least(&mut fitted), "the smallest error of the fit: nothing was held out")
+    (
+        least(&mut fitted),
+        "the smallest error of the fit: nothing was held out",
+    )
 }

@@ -312,7 +312,10 @@ fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<us
             time.partition_point(|t| *t <= to),
         ),
         // `as` saturates.
-        None => ((from - 1.0).ceil().max(0.0) as usize, to.floor().max(0.0) as usize),
+        None => (
+            (from - 1.0).ceil().max(0.0) as usize,
+            to.floor().max(0.0) as usize,
+        ),
     };
     let first = first.saturating_sub(1).min(count - 1);
     first..last.saturating_add(1).clamp(first + 1, count)
@@ -357,9 +360,11 @@ fn thinned(
 }
 
 fn histogram(values: impl Iterator<Item = f64> + Clone) -> Points {
-    let ends = values.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| {
-        (ends.0.min(value), ends.1.max(value))
-    });
+    let ends = values
+        .clone()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| {
+            (ends.0.min(value), ends.1.max(value))
+        });
     let width = ((ends.1 - ends.0) / BARS as f64).max(f64::MIN_POSITIVE);
     let mut counts = [0_u32; BARS];
     let mut all = 0.0;
@@ -369,5 +374,8 @@ fn histogram(values: impl Iterator<Item = f64> + Clone) -> Points {
     }
     let middle = |n: usize| Some(ends.0 + (n as f64 + 0.5) * width);
     let share = |count: &u32| Some(100.0 * f64::from(*count) / all);
-    ((0..BARS).map(middle).collect(), counts.iter().map(share).collect())
+    (
+        (0..BARS).map(middle).collect(),
+        counts.iter().map(share).collect(),
+    )
 }

@@ -163,9 +163,9 @@ impl Opened {
         let inside = |n: &usize| (from..=to).contains(&when(recording, *n));
         let mut rows = (0..recording.len()).filter(inside);
         let first = rows.next();
-        first.map(|first| (first + 1, rows.last().unwrap_or(first) + 1)).ok_or_else(|| {
-            Fault::missing("there is no sample in this span", "mark a longer one")
-        })
+        first
+            .map(|first| (first + 1, rows.last().unwrap_or(first) + 1))
+            .ok_or_else(|| Fault::missing("there is no sample in this span", "mark a longer one"))
     }
 
     pub(super) fn recording(&self) -> Result<&Arc<Recording>, Fault> {
@@ -174,7 +174,10 @@ impl Opened {
 
     /// Memory of the bytes, and of the numbers read from them.
     pub(super) fn size(&self) -> u64 {
-        let samples = self.recording.as_ref().map_or(0, |recording| recording.len());
+        let samples = self
+            .recording
+            .as_ref()
+            .map_or(0, |recording| recording.len());
         (self.bytes.len() + 4 * size_of::<f64>() * samples) as u64
     }
 
@@ -185,7 +188,10 @@ impl Opened {
             Err(fault) => (Err(fault), self.remarks.clone()),
         };
         (self.recording, self.notes) = (recording, notes);
-        let count = self.recording.as_ref().map_or(0, |recording| recording.len());
+        let count = self
+            .recording
+            .as_ref()
+            .map_or(0, |recording| recording.len());
         self.marked = self.marked.filter(|(_, last)| *last <= count);
     }
 
@@ -205,7 +211,11 @@ impl Opened {
             load: load.as_deref(),
             ..Columns::new(input, output)
         };
-        let repair = if self.mend { Repair::Mend } else { Repair::Refuse };
+        let repair = if self.mend {
+            Repair::Mend
+        } else {
+            Repair::Refuse
+        };
         let options = ReadOptions {
             repair,
             max_memory: memory,
@@ -216,7 +226,12 @@ impl Opened {
     }
 
     pub(super) fn view(&self) -> FileView {
-        let columns = self.preview.table.columns.iter().zip(&self.preview.pictures);
+        let columns = self
+            .preview
+            .table
+            .columns
+            .iter()
+            .zip(&self.preview.pictures);
         let columns = columns.map(|(summary, picture)| ColumnView {
             summary: summary.clone(),
             picture: picture.clone(),
@@ -239,7 +254,9 @@ impl Opened {
             samples: recording.map_or(0, |recording| recording.len()),
             branches: recording.map_or(0, |recording| {
                 let input = &recording.input;
-                branches(input, usual_tolerance(input)).last().map_or(0, |last| last + 1)
+                branches(input, usual_tolerance(input))
+                    .last()
+                    .map_or(0, |last| last + 1)
             }),
             input: shown(|recording| &recording.input_quantity),
             output: shown(|recording| &recording.output_quantity),

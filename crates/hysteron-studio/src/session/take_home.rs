@@ -1,10 +1,10 @@
 //! What can be taken home: the model, code, a report, the numbers of a picture, the same work as
 //! commands, the session.
 
+use super::fault::Fault;
 use super::look::View;
 use super::request::Id;
 use super::{Session, commands};
-use super::fault::Fault;
 use base64::Engine;
 use hysteron::{Recording, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
@@ -95,15 +95,21 @@ impl Session {
             Take::Fmu { fit, inverse } => self.fmu(fit, inverse)?,
             Take::Report { fit, file } => self.report(fit, file)?,
             Take::Csv(ref view) => text("picture.csv", "text/csv", self.csv(view)?),
-            Take::Command { fit } => {
-                text("fit.sh", "text/plain", commands::shell(self, self.fitted(fit)?))
-            }
-            Take::Python { fit } => {
-                text("fit.py", "text/plain", commands::python(self, self.fitted(fit)?))
-            }
-            Take::Rust { fit } => {
-                text("fit.rs", "text/plain", commands::rust(self, self.fitted(fit)?))
-            }
+            Take::Command { fit } => text(
+                "fit.sh",
+                "text/plain",
+                commands::shell(self, self.fitted(fit)?),
+            ),
+            Take::Python { fit } => text(
+                "fit.py",
+                "text/plain",
+                commands::python(self, self.fitted(fit)?),
+            ),
+            Take::Rust { fit } => text(
+                "fit.rs",
+                "text/plain",
+                commands::rust(self, self.fitted(fit)?),
+            ),
             Take::Session => text("studio.session.json", "application/json", self.to_json()),
         })
     }
@@ -132,7 +138,9 @@ impl Session {
                 .and_then(|()| Ok(zip.write_all(&bytes)?))
                 .map_err(|error| Fault::defect(&error.to_string()))?;
         }
-        let zip = zip.finish().map_err(|error| Fault::defect(&error.to_string()))?;
+        let zip = zip
+            .finish()
+            .map_err(|error| Fault::defect(&error.to_string()))?;
         Ok(Download {
             name: "model-c.zip".into(),
             media: "application/zip",
@@ -185,7 +193,9 @@ impl Session {
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         let mut text = format!("line,{},{}\n", quoted(&curves.x), quoted(&curves.y));
         for line in &curves.lines {
-            let name = line.fit.map_or("measured".into(), |fit| format!("fit {fit}"));
+            let name = line
+                .fit
+                .map_or("measured".into(), |fit| format!("fit {fit}"));
             for (x, y) in line.x.iter().zip(&line.y) {
                 if let (Some(x), Some(y)) = (x, y) {
                     text += &format!("{name},{x},{y}\n");

@@ -43,15 +43,51 @@ const TIME: [&str; 5] = ["time", "zeit", "timestamp", "seconds", "t"];
 const LOAD: [&str; 5] = ["load", "stress", "force", "last", "weight"];
 /// From the most to the least telling.
 const INPUT: [&str; 13] = [
-    "input", "drive", "duty", "temperature", "temp", "voltage", "power", "current", "field", "h",
-    "pressure", "u", "x",
+    "input",
+    "drive",
+    "duty",
+    "temperature",
+    "temp",
+    "voltage",
+    "power",
+    "current",
+    "field",
+    "h",
+    "pressure",
+    "u",
+    "x",
 ];
 const OUTPUT: [&str; 18] = [
-    "output", "displacement", "strain", "extension", "stroke", "lift", "deflection", "position",
-    "angle", "elongation", "polarization", "magnetization", "flux", "length", "bl", "b", "p", "y",
+    "output",
+    "displacement",
+    "strain",
+    "extension",
+    "stroke",
+    "lift",
+    "deflection",
+    "position",
+    "angle",
+    "elongation",
+    "polarization",
+    "magnetization",
+    "flux",
+    "length",
+    "bl",
+    "b",
+    "p",
+    "y",
 ];
 /// Columns about other columns.
-const ABOUT: [&str; 8] = ["sigma", "std", "error", "err", "sensor", "copied", "simulated", "model"];
+const ABOUT: [&str; 8] = [
+    "sigma",
+    "std",
+    "error",
+    "err",
+    "sensor",
+    "copied",
+    "simulated",
+    "model",
+];
 
 /// A load that changes by less than this share of its size is constant.
 const CHANGES: f64 = 0.2;
@@ -137,7 +173,9 @@ impl Course {
             if self.parts.len() == 2 * PICTURE {
                 // Two parts become one, so that the number of rows need not be known.
                 let pairs = self.parts.chunks(2);
-                self.parts = pairs.map(|pair| pair.iter().copied().fold(None, joined)).collect();
+                self.parts = pairs
+                    .map(|pair| pair.iter().copied().fold(None, joined))
+                    .collect();
                 self.size *= 2;
             }
             self.parts.push(None);
@@ -168,7 +206,9 @@ impl Course {
     fn picture(&self) -> Vec<Option<(f64, f64)>> {
         let each = self.parts.len().div_ceil(PICTURE).max(1);
         let parts = self.parts.chunks(each);
-        parts.map(|part| part.iter().copied().fold(None, joined)).collect()
+        parts
+            .map(|part| part.iter().copied().fold(None, joined))
+            .collect()
     }
 }
 
@@ -186,7 +226,9 @@ fn guess(header: &[String], columns: &[Course]) -> Roles {
         .filter(|&n| columns[n].moves() && rank(&words[n], &ABOUT).is_none())
         .collect();
     let mut reason = |role: &str, n: usize, why: &str| {
-        roles.reasons.push(format!("{role}: `{}`, {why}", header[n]));
+        roles
+            .reasons
+            .push(format!("{role}: `{}`, {why}", header[n]));
         Some(header[n].clone())
     };
 
@@ -206,7 +248,11 @@ fn guess(header: &[String], columns: &[Course]) -> Roles {
     free.retain(|n| Some(*n) != load);
 
     let output = best(&free, &words, &OUTPUT);
-    let others: Vec<usize> = free.iter().copied().filter(|n| Some(*n) != output).collect();
+    let others: Vec<usize> = free
+        .iter()
+        .copied()
+        .filter(|n| Some(*n) != output)
+        .collect();
     let input = best(&others, &words, &INPUT);
     // The first column that is left is the input, the next one the output.
     let next = |not: Option<usize>| free.iter().copied().find(|n| Some(*n) != not);
@@ -223,7 +269,9 @@ fn guess(header: &[String], columns: &[Course]) -> Roles {
 
 /// The column whose name has the most telling word.
 fn best(columns: &[usize], words: &[Vec<String>], telling: &[&str]) -> Option<usize> {
-    let ranked = columns.iter().filter_map(|&n| Some((rank(&words[n], telling)?, n)));
+    let ranked = columns
+        .iter()
+        .filter_map(|&n| Some((rank(&words[n], telling)?, n)));
     ranked.min().map(|(_, n)| n)
 }
 
@@ -256,21 +304,38 @@ mod tests {
 
     fn roles(text: &str) -> [Option<String>; 4] {
         let mut table = TableReader::from_bytes("t.csv", text.to_owned(), 1 << 20).unwrap();
-        let Roles { input, output, time, load, .. } = preview_table(&mut table).unwrap().roles;
+        let Roles {
+            input,
+            output,
+            time,
+            load,
+            ..
+        } = preview_table(&mut table).unwrap().roles;
         [input, output, time, load]
     }
 
     #[test]
     fn columns_of_open_recordings_are_found() {
         let rows = "0,1,2,300\n1,5,4,300\n2,2,9,301\n";
-        let found = |header: &str| {
-            roles(&format!("{header}\n{rows}")).map(|name| name.unwrap_or_default())
-        };
+        let found =
+            |header: &str| roles(&format!("{header}\n{rows}")).map(|name| name.unwrap_or_default());
         let all = [
-            ("time_s,duty,position_m,sensor_voltage_V", ["duty", "position_m", "time_s", ""]),
-            ("time_s,temperature_C,extension_mm,load_N", ["temperature_C", "extension_mm", "time_s", ""]),
-            ("time_min,current_A,BL_T,BL_sigma", ["current_A", "BL_T", "time_min", ""]),
-            ("time_s,voltage_V,polarization_uC_cm2,current_A", ["voltage_V", "polarization_uC_cm2", "time_s", ""]),
+            (
+                "time_s,duty,position_m,sensor_voltage_V",
+                ["duty", "position_m", "time_s", ""],
+            ),
+            (
+                "time_s,temperature_C,extension_mm,load_N",
+                ["temperature_C", "extension_mm", "time_s", ""],
+            ),
+            (
+                "time_min,current_A,BL_T,BL_sigma",
+                ["current_A", "BL_T", "time_min", ""],
+            ),
+            (
+                "time_s,voltage_V,polarization_uC_cm2,current_A",
+                ["voltage_V", "polarization_uC_cm2", "time_s", ""],
+            ),
             ("a,H_A_per_m,B_T,copied", ["H_A_per_m", "B_T", "", ""]),
         ];
         for (header, expected) in all {
@@ -283,7 +348,10 @@ mod tests {
         let text = "temperature_C,strain,stress_MPa\n30,0,50\n80,1,51\n30,0,150\n";
         assert_eq!(roles(text)[3].as_deref(), Some("stress_MPa"));
         let [input, output, ..] = roles("voltage,force\n0,0\n2,1\n1,3\n");
-        assert_eq!((input.as_deref(), output.as_deref()), (Some("voltage"), Some("force")));
+        assert_eq!(
+            (input.as_deref(), output.as_deref()),
+            (Some("voltage"), Some("force"))
+        );
     }
 
     #[test]
@@ -294,6 +362,13 @@ mod tests {
         }
         let picture = course.picture();
         assert!(picture.len() <= PICTURE, "{}", picture.len());
-        assert_eq!(picture.iter().flatten().filter(|part| part.1 == 9.0).count(), 1);
+        assert_eq!(
+            picture
+                .iter()
+                .flatten()
+                .filter(|part| part.1 == 9.0)
+                .count(),
+            1
+        );
     }
 }

@@ -211,10 +211,7 @@ impl Recording {
             output_quantity,
             load_quantity,
             origin: Origin::Measured,
-            source: table.sha256()?.map(|sha256| Source {
-                path,
-                sha256,
-            }),
+            source: table.sha256()?.map(|sha256| Source { path, sha256 }),
         };
         recording.check()?;
         Ok((recording, others, notes))

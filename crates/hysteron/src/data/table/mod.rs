@@ -139,7 +139,8 @@ impl TableReader {
         hash: Option<Hash>,
     ) -> Result<Self> {
         let mut budget = Budget::new(max_memory);
-        let (header, source) = format::open(path, held.as_ref(), repair, hash.clone(), &mut budget)?;
+        let (header, source) =
+            format::open(path, held.as_ref(), repair, hash.clone(), &mut budget)?;
         Ok(Self {
             path: path.to_owned(),
             held,
