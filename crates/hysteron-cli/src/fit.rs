@@ -3,9 +3,9 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
-    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, HoldOut,
-    LoadLaw, Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver,
-    Spacing, Step, Validation,
+    Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, HoldOut, LoadLaw,
+    Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver, Spacing, Step,
+    Validation,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -80,11 +80,7 @@ pub(crate) fn compare<'py>(
 fn models_of<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<(String, Bound<'py, Model>)>> {
     let model = |value: &Bound<'py, PyAny>| match value.cast::<Model>() {
         Ok(model) => Ok(model.clone()),
-        Err(_) => Err(another_kind(
-            "models",
-            "a Model, or a list or dict of them,",
-            value,
-        )),
+        Err(_) => Err(another_kind("models", "a Model, or a list or dict of them,", value)),
     };
     if let Ok(dict) = value.cast::<PyDict>() {
         let each = dict.iter();

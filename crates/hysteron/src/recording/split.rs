@@ -54,8 +54,8 @@ impl FromStr for HoldOut {
                 let ends = rows.split_once('-');
                 let ends =
                     ends.and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
-                let (first, last) = ends
-                    .ok_or_else(|| needed("two row numbers are needed, such as `rows:100-200`"))?;
+                let (first, last) =
+                    ends.ok_or_else(|| needed("two row numbers are needed, such as `rows:100-200`"))?;
                 Ok(Self::Rows(first..=last))
             }
             _ => Err(needed("`branches:20%` or `rows:100-200` is needed")),

@@ -64,14 +64,7 @@ pub fn left_out(
                 progress.tell("left-out branches", f as f64 / count as f64)
             };
             let progress = Progress::new(&told);
-            options = choose(
-                recordings.into(),
-                &options,
-                candidates,
-                Some(&kept),
-                progress,
-            )?
-            .options;
+            options = choose(recordings.into(), &options, candidates, Some(&kept), progress)?.options;
             problem = Problem::new(recordings, &options)?;
         }
         chosen.push((options.levels, options.smooth));

@@ -39,13 +39,7 @@ pub fn usual_start(recordings: &[Recording], options: &FitOptions) -> Result<Sta
             start,
             ..options.clone()
         };
-        choose(
-            recordings.into(),
-            &options,
-            &candidates,
-            None,
-            Progress::NONE,
-        )
+        choose(recordings.into(), &options, &candidates, None, Progress::NONE)
     };
     let (off, on) = (tried(Start::Off)?, tried(Start::On)?);
     let known = match on.value() < off.value() {

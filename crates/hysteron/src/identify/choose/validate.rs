@@ -5,8 +5,8 @@
 //! about each other. Then the evidence of the prior decides, which needs nothing left out.
 
 use crate::error::Result;
-use crate::identify::choose::Seen;
 use crate::identify::choose::criterion::Level;
+use crate::identify::choose::Seen;
 use crate::identify::choose::rivals;
 use crate::identify::choose::search::{Place, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
