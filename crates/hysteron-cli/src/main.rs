@@ -15,6 +15,9 @@ mod prepare;
 mod progress;
 mod recording;
 mod remedy;
+mod start;
+#[cfg(feature = "studio")]
+mod studio;
 mod table;
 mod terminal;
 mod text;
@@ -32,6 +35,10 @@ fn main() -> ExitCode {
     // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works
     // as well.
     let _ = ctrlc::set_handler(|| {
+        #[cfg(feature = "studio")]
+        if studio::stop() {
+            return;
+        }
         hysteron::discard_unfinished();
         std::process::exit(130);
     });
@@ -49,6 +56,9 @@ fn main() -> ExitCode {
         Command::Track(args) => track::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Demo(args) => demo::run(&args),
+        Command::Start(args) => start::run(&args),
+        #[cfg(feature = "studio")]
+        Command::Studio(args) => studio::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

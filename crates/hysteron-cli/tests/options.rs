@@ -253,6 +253,19 @@ fn fits_have_one_default_each() {
             value => agrees(row, "Python", value, words[2]),
         }
     }
+    // What pages show is the same table, word by word.
+    let (_, text) = PAGE.split_once("\n## Fits\n").unwrap();
+    for option in hysteron::FIT_OPTIONS {
+        let hysteron::FitOption {
+            name,
+            default,
+            range,
+            purpose,
+        } = option;
+        let row = format!("| `{name}` | {default} | {range} | {purpose} |");
+        assert!(text.contains(&row), "docs/options.md has no row {row}");
+    }
+    assert_eq!(hysteron::FIT_OPTIONS.len(), page.len());
     for other in library {
         assert!(
             page.iter().any(|row| row.name == other.name),

@@ -6,14 +6,14 @@
 use std::collections::HashSet;
 
 /// A point in pixels.
-pub(crate) type Point = [f64; 2];
+pub type Point = [f64; 2];
 
 /// Beyond this many points, loops drop the segments that lie on pixels already drawn.
 const DENSE: usize = 20_000;
 
 /// For curves over time: of the consecutive points in one pixel column keep the first, lowest,
 /// highest and last, so that no peak is lost and at most four points a column remain.
-pub(crate) fn columns(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+pub fn columns(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     pieces(points)
         .into_iter()
         .map(|piece| {
@@ -109,7 +109,7 @@ fn merge(stretches: &mut Vec<[f64; 2]>) {
 
 /// For curves that are no function of x: drop points closer than half a pixel to the last one kept,
 /// except the extremes.
-pub(crate) fn loops(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+pub fn loops(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let thinned: Vec<Vec<Point>> = pieces(points).iter().map(|piece| thin(piece)).collect();
     if thinned.iter().map(Vec::len).sum::<usize>() <= DENSE {
         return thinned;

@@ -13,7 +13,7 @@
 //! alone.
 
 mod clock;
-mod decimate;
+pub mod decimate;
 mod draw;
 mod error;
 mod evaluation;

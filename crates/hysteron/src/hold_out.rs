@@ -47,6 +47,25 @@ impl HeldOut {
         })
     }
 
+    /// Reads the result from the entry `hold_out` of a fit's record ([`crate::FitSummary::other`]);
+    /// `None` for anything else.
+    #[must_use]
+    pub fn from_record(entry: &serde_json::Value) -> Option<Self> {
+        let errors = |entry: &serde_json::Value| serde_json::from_value(entry.clone()).ok();
+        let rival = |entry: &serde_json::Value| {
+            let name = entry["name"].as_str()?;
+            Some(RivalErrors {
+                name: RIVALS.iter().find(|kind| kind.name() == name)?.name(),
+                errors: errors(entry)?,
+            })
+        };
+        let rivals = entry["rivals"].as_array()?.iter().map(rival);
+        Some(Self {
+            model: errors(&entry["model"])?,
+            rivals: rivals.collect::<Option<_>>()?,
+        })
+    }
+
     /// Writes the result into the record of the fit, as `hold_out`. The model file keeps it.
     pub fn record_in(&self, model: &mut Model) {
         if let (Some(fit), Ok(value)) = (&mut model.fit, serde_json::to_value(self)) {

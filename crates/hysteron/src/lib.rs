@@ -50,9 +50,10 @@ pub use adapt::{
 #[cfg(feature = "data")]
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts,
-    Destination, Invert, Note, NoteKind, Others, Own, Places, ReadOptions, Remark, Repair, Row,
-    STANDARD_OUTPUT, Simulate, TableReader, TableSummary, TableWriter, discard_unfinished,
-    inspect_table, invert_table, printable, refuse_one_file, simulate_table,
+    Destination, Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair,
+    Roles, Row, STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
+    discard_unfinished, inspect_table, invert_table, preview_table, printable, refuse_one_file,
+    simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
@@ -70,8 +71,9 @@ pub use hysteron_core::{
     Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
-    AGAINST_INPUT, Advice, Auto, Candidates, Choice, Fit, FitOptions, LeftOut, LoadLaw, Spacing,
-    advice, cross_validate, excitation, left_out, plane_of, usual_start, way_against_input,
+    AGAINST_INPUT, Advice, Auto, Candidates, Choice, FIT_OPTIONS, Fit, FitOption, FitOptions,
+    LeftOut, LoadLaw, Spacing, advice, cross_validate, excitation, left_out, plane_of, usual_start,
+    way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,

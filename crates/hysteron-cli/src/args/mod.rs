@@ -8,12 +8,14 @@ mod adapt;
 mod export;
 mod fit;
 mod fleet;
+mod studio;
 mod value;
 
 pub(crate) use adapt::*;
 pub(crate) use export::*;
 pub(crate) use fit::*;
 pub(crate) use fleet::*;
+pub(crate) use studio::*;
 pub(crate) use value::*;
 
 /// Hysteresis models of actuators: from a recording to a model and its exact inverse.
@@ -101,6 +103,17 @@ pub(crate) enum Command {
     /// report
     #[command(after_help = "Example:\n  hysteron demo -o demo")]
     Demo(Demo),
+    /// Begin with a recording: what is in it, which columns are meant, a first fit, and the
+    /// commands to go on with
+    #[command(after_help = "Example:\n  hysteron start run1.csv")]
+    Start(Begin),
+    /// Open a local page to look at recordings, fit, drive models by hand and take them home
+    #[cfg(feature = "studio")]
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron studio\n\
+        \x20 hysteron studio run1.csv run2.csv\n\
+        \x20 hysteron studio --no-open --port 8123 run1.csv")]
+    Studio(Studio),
 }
 
 #[derive(Args)]

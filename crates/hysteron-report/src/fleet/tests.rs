@@ -50,7 +50,7 @@ fn the_strangest_come_first_and_have_their_loops() {
         first.contains("&lt;17&gt;") && first.contains("width"),
         "{first}"
     );
-    assert_eq!(page.matches("deviations").count() >= 10, true);
+    assert!(page.matches("deviations").count() >= 10);
     let none = FleetReport {
         rows: &[],
         ..report

@@ -4,11 +4,12 @@
 //! `table` reads CSV, Parquet and MATLAB files. `recording` turns their columns into recordings.
 //! `output` writes files so that they appear complete or not at all. `run` simulates and inverts
 //! tables row by row. `model`, `design`, `adapted` and `trace` read and write what their names say.
-//! `columns` summarises a table, and `printable` makes text safe to show.
+//! `columns` summarises a table, `guess` guesses the roles of its columns, and `printable` makes text safe to show.
 
 mod adapted;
 mod columns;
 mod design;
+mod guess;
 mod model;
 mod output;
 mod printable;
@@ -18,6 +19,7 @@ mod table;
 mod trace;
 
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
+pub use guess::{PICTURE, Roles, TablePreview, preview_table};
 pub use output::{
     Added, AtomicFile, AtomicFolder, Cell, Destination, Own, STANDARD_OUTPUT, TableWriter,
     discard_unfinished, refuse_one_file,

@@ -1,6 +1,6 @@
 //! Identification: finds the weights of a model from recordings.
 //!
-//! `fit` is the entry point; `options` are its settings. `weights` solves the least-squares
+//! `fit` is the entry point; `options` are its settings, `words` the same as texts. `weights` solves the least-squares
 //! problem. `outliers` are found first. `choose` selects levels and smoothness. `doubt` estimates how well
 //! the data determine the weights. `stages` identifies the thermal body in front of the operators.
 //! `advice` and `monotone` warn about data that the model cannot follow.
@@ -15,6 +15,7 @@ mod options;
 mod outliers;
 mod stages;
 mod weights;
+mod words;
 
 pub use advice::{Advice, advice};
 pub use choose::left_out::{LeftOut, left_out};
@@ -33,3 +34,4 @@ pub(crate) use weights::nnls;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::Term;
 pub(crate) use weights::sparse::{BranchSums, Initial, SparseForm, Square};
+pub use words::{FIT_OPTIONS, FitOption};

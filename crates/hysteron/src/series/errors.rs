@@ -1,10 +1,10 @@
 //! Error measures between a measured and a modelled series.
 
 use crate::series::spread::range;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The differences between a measured and a modelled series.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Root of the mean squared difference, in the unit of the series.
     pub rmse: f64,

@@ -9,6 +9,7 @@ use crate::data::table::{Column, TableReader};
 use crate::error::Result;
 use crate::recording::{Origin, Quantity, Recording, Source};
 use crate::remedy::{Remedy, Setting};
+use bytes::Bytes;
 use std::path::Path;
 
 impl Recording {
@@ -58,7 +59,26 @@ impl Recording {
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Vec<Note>)> {
-        let (recording, _, notes) = Self::read_as(path, columns, options.into(), false)?;
+        let options = options.into();
+        let table = TableReader::open_recording(path, None, options)?;
+        let (recording, _, notes) = Self::read_as(table, columns, options, false)?;
+        Ok((recording, notes))
+    }
+
+    /// As [`Recording::read`], from the bytes of a file. The ending of `name` counts as that of a
+    /// path. No file is touched.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn from_bytes(
+        name: &str,
+        bytes: impl Into<Bytes>,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Self, Vec<Note>)> {
+        let options = options.into();
+        let table = TableReader::open_recording(Path::new(name), Some(bytes.into()), options)?;
+        let (recording, _, notes) = Self::read_as(table, columns, options, false)?;
         Ok((recording, notes))
     }
 
@@ -71,18 +91,20 @@ impl Recording {
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Others, Vec<Note>)> {
-        let (recording, others, notes) = Self::read_as(path, columns, options.into(), true)?;
+        let options = options.into();
+        let table = TableReader::open_recording(path, None, options)?;
+        let (recording, others, notes) = Self::read_as(table, columns, options, true)?;
         Ok((recording, others.unwrap_or_default(), notes))
     }
 
     fn read_as(
-        path: &Path,
+        mut table: TableReader,
         columns: Columns<'_>,
         options: ReadOptions,
         with_others: bool,
     ) -> Result<(Self, Option<Others>, Vec<Note>)> {
         let repair = options.repair;
-        let mut table = TableReader::open_recording(path, options)?;
+        let path = table.path().to_owned();
         refuse_one_name(&table, columns)?;
         let pairs = [columns.input, columns.output].map(|name| table.pair(name));
         let time = match (columns.time, &pairs) {
@@ -157,10 +179,7 @@ impl Recording {
             output_quantity,
             load_quantity,
             origin: Origin::Measured,
-            source: table.sha256()?.map(|sha256| Source {
-                path: path.to_owned(),
-                sha256,
-            }),
+            source: table.sha256()?.map(|sha256| Source { path, sha256 }),
         };
         recording.check()?;
         Ok((recording, others, notes))

@@ -7,8 +7,9 @@ use super::text::{self, Text};
 use super::{Source, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
+use bytes::Bytes;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// The format that the first bytes of a file show, or otherwise the ending of its name.
@@ -46,10 +47,12 @@ impl Format {
     }
 }
 
-/// Opens a file of any format. Returns the names of its columns and its rows. `labels`, if given,
-/// are read as another column, after those of numbers.
+/// Opens a file of any format. Returns the names of its columns and its rows. Of a file that is
+/// `held` in memory, `path` is only the name. `labels`, if given, are read as another column, after
+/// those of numbers.
 pub(super) fn open(
     path: &Path,
+    held: Option<&Bytes>,
     repair: Option<Repair>,
     hash: Option<Hash>,
     labels: Option<&Labels>,
@@ -66,7 +69,10 @@ pub(super) fn open(
         problem,
     };
     let mut seekable = false;
-    let file: Box<dyn Read> = if path == Path::new("-") {
+    let file: Box<dyn Read> = if let Some(bytes) = held {
+        seekable = true;
+        Box::new(Cursor::new(bytes.clone()))
+    } else if path == Path::new("-") {
         Box::new(std::io::stdin())
     } else {
         let file = File::open(path).map_err(failed)?;
@@ -93,17 +99,27 @@ pub(super) fn open(
             return Err(refused(problem.to_owned()));
         }
         Format::Parquet => {
-            let opened = parquet::open(path, *budget, labels).map_err(refused)?;
+            let opened = match held {
+                Some(bytes) => parquet::open_bytes(bytes, *budget, labels),
+                None => parquet::open(path, *budget, labels),
+            };
+            let opened = opened.map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
         Format::MatV73 => {
-            let variables = mat::v73::read(path, budget).map_err(refused)?;
+            let variables = mat::v73::read(path, held, budget).map_err(refused)?;
             mat::table(variables, budget).map_err(refused)?
         }
         Format::MatV5 => {
-            let size = std::fs::metadata(path).map_err(failed)?.len();
+            let size = match held {
+                Some(bytes) => bytes.len() as u64,
+                None => std::fs::metadata(path).map_err(failed)?.len(),
+            };
             budget.take(u128::from(size), "the file").map_err(refused)?;
-            let bytes = std::fs::read(path).map_err(failed)?;
+            let bytes = match held {
+                Some(bytes) => bytes.clone(),
+                None => std::fs::read(path).map_err(failed)?.into(),
+            };
             let variables = mat::v5::read(&bytes, budget).map_err(refused)?;
             budget.give_back(u128::from(size));
             mat::table(variables, budget).map_err(refused)?

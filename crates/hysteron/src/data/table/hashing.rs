@@ -20,6 +20,13 @@ impl Hash {
         Ok(hash.finish())
     }
 
+    /// SHA-256 of bytes, in hexadecimal.
+    pub(super) fn bytes(bytes: &[u8]) -> String {
+        let hash = Self::default();
+        hash.0.borrow_mut().update(bytes);
+        hash.finish()
+    }
+
     /// The hash in hexadecimal. After this call, the hash starts again from empty.
     pub(super) fn finish(&self) -> String {
         let bytes = self.0.take().finalize();

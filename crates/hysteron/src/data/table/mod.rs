@@ -28,6 +28,7 @@ pub(crate) use labels::Label;
 use crate::data::recording::Places;
 use crate::data::recording::Repair;
 use crate::error::{Error, Place, Result};
+use bytes::Bytes;
 use hashing::Hash;
 use numbers::Numbers;
 pub(crate) use parquet::caught;
@@ -42,6 +43,8 @@ use time::TimeUnit;
 /// matrix `M` is the columns `M:1`, `M:2` and so on.
 pub struct TableReader {
     path: PathBuf,
+    /// The bytes of the file, if they are in memory. Then the path is only a name.
+    held: Option<Bytes>,
     header: Vec<String>,
     source: Source,
     hash: Option<Hash>,
@@ -102,14 +105,35 @@ impl TableReader {
     /// # Errors
     /// As [`TableReader::open`].
     pub fn open_with(path: &Path, max_memory: u64) -> Result<Self> {
-        Self::open_as(path, max_memory, None, None, None)
+        Self::open_as(path, None, max_memory, None, None, None)
+    }
+
+    /// As [`TableReader::open_with`], for the bytes of a file. The ending of `name` counts as that
+    /// of a path, and errors name it. No file is touched.
+    ///
+    /// ```
+    /// let mut table = hysteron::TableReader::from_bytes("run.csv", "T;lift\n20;0\n80;14\n", 1 << 20)?;
+    /// assert_eq!(table.header(), ["T", "lift"]);
+    /// assert_eq!(hysteron::inspect_table(&mut table)?.rows, 2);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`TableReader::open`].
+    pub fn from_bytes(name: &str, bytes: impl Into<Bytes>, max_memory: u64) -> Result<Self> {
+        let held = Some(bytes.into());
+        Self::open_as(Path::new(name), held, max_memory, None, None, None)
     }
 
     /// As [`TableReader::open`], for a recording: computes the hash for [`TableReader::sha256`],
     /// and takes the options for bad rows.
-    pub(crate) fn open_recording(path: &Path, options: ReadOptions) -> Result<Self> {
+    pub(crate) fn open_recording(
+        path: &Path,
+        held: Option<Bytes>,
+        options: ReadOptions,
+    ) -> Result<Self> {
         let (repair, hash) = (Some(options.repair), Some(Hash::default()));
-        Self::open_as(path, options.max_memory, repair, hash, None)
+        Self::open_as(path, held, options.max_memory, repair, hash, None)
     }
 
     /// As [`TableReader::open`], for a table of several recordings, told apart by the column
@@ -117,21 +141,30 @@ impl TableReader {
     /// [`TableReader::take_ragged`] tells them.
     pub(crate) fn open_labelled(path: &Path, max_memory: u64, label: &str) -> Result<Self> {
         let labels = labels::Labels::new(label);
-        Self::open_as(path, max_memory, Some(Repair::Mend), None, Some(labels))
+        let repair = Some(Repair::Mend);
+        Self::open_as(path, None, max_memory, repair, None, Some(labels))
     }
 
     fn open_as(
         path: &Path,
+        held: Option<Bytes>,
         max_memory: u64,
         repair: Option<Repair>,
         hash: Option<Hash>,
         labels: Option<labels::Labels>,
     ) -> Result<Self> {
         let mut budget = Budget::new(max_memory);
-        let (header, source) =
-            format::open(path, repair, hash.clone(), labels.as_ref(), &mut budget)?;
+        let (header, source) = format::open(
+            path,
+            held.as_ref(),
+            repair,
+            hash.clone(),
+            labels.as_ref(),
+            &mut budget,
+        )?;
         Ok(Self {
             path: path.to_owned(),
+            held,
             header,
             source,
             hash,
@@ -289,6 +322,9 @@ impl TableReader {
             (None, _) => Ok(None),
             (Some(hash), Source::Text(_)) => Ok(Some(hash.finish())),
             (Some(_), Source::Numbers(_)) => {
+                if let Some(bytes) = &self.held {
+                    return Ok(Some(Hash::bytes(bytes)));
+                }
                 Hash::file(&self.path)
                     .map(Some)
                     .map_err(|source| Error::File {

@@ -6,15 +6,17 @@ mod thrift;
 use super::budget::Budget;
 use super::labels::Labels;
 use super::numbers::{Group, Numbers};
-use claims::{Claims, Refusal};
+use bytes::Bytes;
+use claims::{Claims, ReadSeek, Refusal};
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 use std::fmt::Display;
 use std::fs::File;
+use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -30,9 +32,28 @@ pub(super) struct Opened {
 /// labels, if asked for, comes last, as codes.
 pub(super) fn open(path: &Path, budget: Budget, labels: Option<&Labels>) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
-    let bytes = file.metadata().map_or(0, |about| about.len());
+    let length = file.metadata().map_err(|error| error.to_string())?.len();
     let second = file.try_clone().map_err(|error| error.to_string())?;
-    let mut claims = Claims::new(second, budget).map_err(refused)?;
+    open_as(file, Box::new(second), length, (budget, labels))
+}
+
+/// As [`open`], for the bytes of a file.
+pub(super) fn open_bytes(
+    bytes: &Bytes,
+    budget: Budget,
+    labels: Option<&Labels>,
+) -> Result<Opened, String> {
+    let second = Box::new(Cursor::new(bytes.clone()));
+    open_as(bytes.clone(), second, bytes.len() as u64, (budget, labels))
+}
+
+fn open_as(
+    file: impl ChunkReader + 'static,
+    second: Box<dyn ReadSeek>,
+    bytes: u64,
+    (budget, labels): (Budget, Option<&Labels>),
+) -> Result<Opened, String> {
+    let mut claims = Claims::new(second, bytes, budget);
     claims.check_footer().map_err(refused)?;
     let reader = caught(|| SerializedFileReader::new(file))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();

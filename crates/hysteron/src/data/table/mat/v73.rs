@@ -2,6 +2,7 @@
 
 use super::{DEEPEST, Variable};
 use crate::data::table::budget::Budget;
+use bytes::Bytes;
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Layout};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -13,9 +14,13 @@ const MOST_GROUPS: usize = 10_000;
 /// arrays in it are named `group.name`.
 pub(in crate::data::table) fn read(
     path: &Path,
+    held: Option<&Bytes>,
     budget: &mut Budget,
 ) -> Result<Vec<Variable>, String> {
-    let size = std::fs::metadata(path).map_or(0, |about| about.len());
+    let size = match held {
+        Some(bytes) => bytes.len() as u64,
+        None => std::fs::metadata(path).map_or(0, |about| about.len()),
+    };
     // The library keeps the file in memory, and the same amount again for what it finds in it.
     budget.take(2 * u128::from(size), "the file")?;
     let mut found = Found {
@@ -24,7 +29,11 @@ pub(in crate::data::table) fn read(
         budget,
     };
     let read = || {
-        let file = File::open(path).map_err(damaged)?;
+        let file = match held {
+            Some(bytes) => File::from_bytes(bytes.to_vec()),
+            None => File::open(path),
+        };
+        let file = file.map_err(damaged)?;
         found.group(&file.root(), "", 0)
     };
     // The library panics if a damaged file contradicts itself.

@@ -5,7 +5,6 @@ use super::thrift::Compact;
 use crate::data::table::budget::Budget;
 use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 const CONTRADICTION: &str = "it contradicts itself";
@@ -15,10 +14,15 @@ const DEEPEST: usize = 100;
 
 /// A file whose claims are checked before the library reads it.
 pub(super) struct Claims {
-    file: File,
+    file: Box<dyn ReadSeek>,
     length: u64,
     budget: Budget,
 }
+
+/// A file, or bytes in memory.
+pub(super) trait ReadSeek: Read + Seek + Send {}
+
+impl<T: Read + Seek + Send> ReadSeek for T {}
 
 /// Why a file is refused: it is damaged, or it takes too much memory.
 pub(super) enum Refusal {
@@ -37,13 +41,13 @@ fn damaged() -> Refusal {
 }
 
 impl Claims {
-    pub(super) fn new(file: File, budget: Budget) -> Result<Self, Refusal> {
-        let length = file.metadata()?.len();
-        Ok(Self {
+    /// The claims of a file that is `length` bytes long.
+    pub(super) fn new(file: Box<dyn ReadSeek>, length: u64, budget: Budget) -> Self {
+        Self {
             file,
             length,
             budget,
-        })
+        }
     }
 
     /// Checks the footer: its length, and how deep its columns are nested. The library checks

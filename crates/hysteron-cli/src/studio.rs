@@ -1,0 +1,64 @@
+//! `hysteron studio`
+
+use crate::args;
+use crate::terminal::{Result, print, say};
+use hysteron_studio::{Fault, Server};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::mpsc::{Sender, channel};
+
+/// How the studio is told to end, while one runs.
+static STOP: Mutex<Option<Sender<()>>> = Mutex::new(None);
+
+/// Ends a studio that runs; false if none does.
+pub(crate) fn stop() -> bool {
+    let sender = STOP.lock().ok().and_then(|mut stop| stop.take());
+    sender.is_some_and(|sender| sender.send(()).is_ok())
+}
+
+pub(crate) fn run(args: &args::Studio) -> Result<()> {
+    let server = Server::bind(args.port, args.memory.max_memory)?;
+    for file in &args.files {
+        server.open(file).map_err(worded)?;
+    }
+    let (sender, receiver) = channel();
+    if let Ok(mut stop) = STOP.lock() {
+        *stop = Some(sender);
+    }
+    let address = server.address()?;
+    print(&address)?;
+    say(format_args!(
+        "the studio is open at this address; Ctrl-C ends it"
+    ));
+    if !args.no_open && !open(&address) {
+        say(format_args!(
+            "no browser was found: open the address in yours"
+        ));
+    }
+    Ok(server.run(receiver)?)
+}
+
+fn worded(fault: Fault) -> String {
+    match fault.remedy {
+        Some(remedy) => format!("{}: {remedy}", fault.problem),
+        None => fault.problem,
+    }
+}
+
+/// Opens the address in the user's browser.
+fn open(address: &str) -> bool {
+    let (program, before): (&str, &[&str]) = if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else if cfg!(windows) {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else {
+        ("xdg-open", &[])
+    };
+    let mut command = Command::new(program);
+    command.args(before).arg(address);
+    let quiet = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    quiet.spawn().is_ok()
+}

@@ -1,0 +1,83 @@
+// The calls to the session.
+
+/** @typedef {{code: number, problem: string, remedy: string | null}} Fault */
+/** @typedef {{input: string|null, output: string|null, time: string|null, load: string|null}} Roles */
+/** @typedef {{name: string, min: number|null, max: number|null, not_numbers: number, picture: ([number, number]|null)[]}} Column */
+/** @typedef {{id: number, name: string, bytes: number, rows: number, columns: Column[], roles: Roles, reasons: string[], notes: string[], problem: Fault|null, mend: boolean, purpose: string, marked: [number, number]|null, samples: number, branches: number, input: string|null, output: string|null}} File */
+/** @typedef {{rmse: number, max_abs: number, nrmse_percent: number|null, samples: number}} Errors */
+/** @typedef {{id: number, files: number[], options: Record<string, string>, hold_out: string, levels: number, rmse: number, nrmse_percent: number, max_abs: number, held_out: null|{model: Errors, rivals: (Errors & {name: string})[]}, advice: string[], inverse: boolean, timed: boolean, load: [number, number]|null, input: string, output: string, confidence: boolean}} Fit */
+/** @typedef {{id: number, stage: string, share: number|null}} JobView */
+/** @typedef {{name: string, default: string, range: string, purpose: string}} Option */
+/** @typedef {{files: File[], fits: Fit[], jobs: JobView[], best: number|null, best_by: string, options: Option[], memory: [number, number]}} Overview */
+/** @typedef {{fit: number|null, x: (number|null)[], y: (number|null)[]}} Line */
+/** @typedef {{band: string, x: string, y: string, lines: Line[], samples: number, marked: [number, number]|null}} Curves */
+
+/** @type {(fault: Fault) => void} */
+let onFault = () => {};
+
+/** @param {(fault: Fault) => void} listener */
+export function whenRefused(listener) {
+  onFault = listener;
+}
+
+/**
+ * @param {string} path
+ * @param {BodyInit} [body]
+ * @param {Record<string, string>} [headers]
+ * @returns {Promise<any>}
+ */
+async function call(path, body, headers) {
+  let answer;
+  try {
+    answer = await fetch(`api/${path}`, { method: "POST", body, headers });
+  } catch {
+    throw refused({ code: 0, problem: "the studio does not answer", remedy: "is the command still running? Start it again and open the new address" });
+  }
+  if (answer.ok) return answer.json();
+  const text = await answer.text();
+  let fault;
+  try {
+    fault = JSON.parse(text);
+  } catch {
+    fault = { code: answer.status, problem: text, remedy: null };
+  }
+  throw refused(fault);
+}
+
+/** @param {Fault} fault */
+function refused(fault) {
+  onFault(fault);
+  return Object.assign(new Error(fault.problem), { fault });
+}
+
+/**
+ * Asks the session.
+ * @param {string} request
+ * @param {object} [more]
+ */
+export const ask = (request, more = {}) =>
+  call("session", JSON.stringify({ request, ...more }), { "content-type": "application/json" });
+
+/**
+ * Opens a file.
+ * @param {globalThis.File} file
+ */
+export const open = (file) => call(`open/${encodeURIComponent(file.name)}`, file);
+
+export const reload = () => call("reload");
+
+/**
+ * Saves what the session gives.
+ * @param {object} take
+ */
+export async function take(take) {
+  const { name, media, bytes } = await ask("take", take);
+  const data = Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0));
+  return { name, blob: new Blob([data], { type: media }), text: () => new TextDecoder().decode(data) };
+}
+
+/** @param {(told: {changes: number, jobs: JobView[], failed: Fault|null, named: number}) => void} told */
+export function listen(told) {
+  const events = new EventSource("api/events");
+  events.onmessage = (event) => told(JSON.parse(event.data));
+}

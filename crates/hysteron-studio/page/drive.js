@@ -1,0 +1,106 @@
+// A model driven by hand: move the input, or pull the output and let the inverse answer.
+
+import { ask } from "./api.js";
+import { by, el, fill, shown } from "./dom.js";
+import { draw, ink, stroke } from "./plot.js";
+
+const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "below every output of the model", high: "above every output of the model", passed: "inside a jump of the model", limited: "not in this time step: the drive is at its end" });
+
+/** @type {{fit: number|null, view: any, policy: string, waiting: object|null, busy: boolean, names: any}} */
+const now = { fit: null, view: null, policy: "hold", waiting: null, busy: false, names: null };
+
+/** @param {import("./api.js").Overview} overview */
+export async function show(overview) {
+  by("drive").hidden = overview.fits.length === 0;
+  if (overview.fits.length === 0) return void (now.fit = null);
+  if (!overview.fits.some((fit) => fit.id === now.fit)) {
+    now.fit = overview.best ?? overview.fits[0].id;
+    await begin(overview);
+  } else if (now.names !== overview.fits.length) await build(overview);
+}
+
+/** @param {import("./api.js").Overview} overview */
+async function begin(overview) {
+  now.view = await ask("drive", { fit: now.fit }).catch(() => null);
+  if (now.view) await build(overview);
+}
+
+/** @param {import("./api.js").Overview} overview */
+async function build(overview) {
+  now.names = overview.fits.length;
+  const fit = overview.fits.find((fit) => fit.id === now.fit);
+  if (!fit || !now.view) return;
+  const slider = (/** @type {"input"|"output"} */ what, /** @type {string} */ text, /** @type {[number, number]} */ [low, high]) => {
+    const more = what === "output" ? 0.05 * (high - low) : 0;
+    const send = (/** @type {any} */ event) => move({ [what]: Number(event.target.value) });
+    return el("div", { class: "field" },
+      el("label", { for: `drive-${what}` }, el("strong", {}, text)),
+      el("input", { id: `drive-${what}`, type: "range", min: low - more, max: high + more, step: "any", value: String(now.view[what]), disabled: what === "output" && !fit.inverse, oninput: send }),
+      el("span", { class: "value", id: `value-${what}` }));
+  };
+  const number = (/** @type {"dt"|"load"} */ what, /** @type {string} */ text) =>
+    now.view[what] === null ? null : el("label", { class: "field" }, el("span", {}, text), el("input", { type: "number", step: "any", id: `drive-${what}`, value: String(now.view[what]) }));
+  fill(
+    by("drive-body"),
+    el("div", { class: "drive" },
+      el("div", { class: "card" },
+        el("div", { class: "row" },
+          el("label", {}, "Model ", el("select", { "data-key": "drive-fit", onchange: (/** @type {any} */ e) => ((now.fit = Number(e.target.value)), begin(overview)) }, ...overview.fits.map((fit, n) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, `fit ${n + 1}`)))),
+          el("button", { "data-key": "drive-again", onclick: () => begin(overview) }, "Start again")),
+        slider("input", `Input: ${fit.input}`, now.view.inputs),
+        slider("output", `Output wanted: ${fit.output}`, now.view.outputs),
+        fit.inverse
+          ? el("label", { class: "field" }, el("span", {}, "When the output reverses"), el("select", { "data-key": "policy", onchange: (/** @type {any} */ e) => (now.policy = e.target.value) },
+              el("option", { value: "hold", selected: now.policy === "hold" }, "hold: the input stays until the output has to move"),
+              el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
+          : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
+        number("dt", "Time step [s]"), number("load", "Load"),
+        el("p", { id: "drive-status", role: "status" })),
+      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far. The bar is the dead band: between its ends the output stands still."))),
+  );
+  await answer(fit);
+}
+
+/** Sends the latest move only: a hand is faster than any answer. @param {object} what */
+async function move(what) {
+  now.waiting = what;
+  if (now.busy) return;
+  now.busy = true;
+  while (now.waiting) {
+    const next = now.waiting;
+    now.waiting = null;
+    const value = (/** @type {string} */ id) => { const node = /** @type {any} */ (document.getElementById(id)); return node ? Number(node.value) : null; };
+    const view = await ask("pull", { drive: now.view.drive, policy: now.policy, dt: value("drive-dt"), load: value("drive-load"), ...next }).catch(() => null);
+    if (view) {
+      now.view = view;
+      await answer(null);
+    }
+  }
+  now.busy = false;
+}
+
+/** @type {any} */
+let known = null;
+
+/** @param {any} fit */
+async function answer(fit) {
+  known = fit ?? known;
+  const { input, output, wanted, status, other, dead_band: band, trail, inputs, outputs } = now.view;
+  const active = document.activeElement?.id;
+  if (active !== "drive-input") by("drive-input").value = String(input);
+  if (active !== "drive-output") by("drive-output").value = String(output);
+  by("value-input").textContent = shown(input);
+  by("value-output").textContent = shown(output);
+  const parts = [];
+  if (wanted !== null) parts.push(`Wanted ${shown(wanted)}: ${STATUS[status] ?? status}.`);
+  if (other) parts.push(`With “${other[0]}” the input would be ${shown(other[1])}.`);
+  if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}.`);
+  by("drive-status").textContent = parts.join(" ") || "Move a slider: with the mouse, or with the arrow keys.";
+  const traces = [
+    { x: trail.map((/** @type {number[]} */ p) => p[0]), y: trail.map((/** @type {number[]} */ p) => p[1]), mode: "lines", name: "way", line: stroke(0), showlegend: false, hoverinfo: "skip" },
+    ...(band ? [{ x: band, y: [output, output], mode: "lines", name: "dead band", line: { color: "#e69f00", width: 7 }, opacity: 0.75, showlegend: false }] : []),
+    { x: [input], y: [output], mode: "markers", name: "now", marker: { size: 13, color: "#d55e00", line: { color: ink("card"), width: 2 } }, showlegend: false },
+  ];
+  const wide = (/** @type {[number, number]} */ [low, high]) => { const more = 0.07 * (high - low); return [low - more, high + more]; };
+  await draw(by("plot-drive"), traces, { x: known?.input ?? "input", y: known?.output ?? "output", xaxis: { range: wide(inputs) }, yaxis: { range: wide(outputs) }, dragmode: false });
+}

@@ -1,0 +1,66 @@
+// What can be taken home.
+
+import { take } from "./api.js";
+import { by, el, fill } from "./dom.js";
+import { picturesAs, shownViews } from "./look.js";
+
+/** @param {{name: string, blob: Blob}} file */
+function save({ name, blob }) {
+  const link = el("a", { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(/** @type {any} */ (link).href), 10000);
+}
+
+/** @type {{fit: number|null, file: number|null, language: string, seen: string}} */
+const now = { fit: null, file: null, language: "command", seen: "" };
+
+/** @param {import("./api.js").Overview} overview */
+export async function show(overview) {
+  const files = overview.files.filter((file) => !file.problem);
+  by("home").hidden = files.length === 0;
+  if (files.length === 0) return;
+  if (!overview.fits.some((fit) => fit.id === now.fit)) now.fit = overview.best;
+  if (!files.some((file) => file.id === now.file)) now.file = files[0].id;
+  const fit = overview.fits.find((fit) => fit.id === now.fit);
+  const get = (/** @type {string} */ text, /** @type {object} */ what) => el("button", { "data-key": text, onclick: () => take(what).then(save, () => {}) }, text);
+  const choose = (/** @type {"fit"|"file"} */ what, /** @type {[number, string][]} */ all) =>
+    el("select", { "data-key": `home-${what}`, onchange: (/** @type {any} */ e) => ((now[what] = Number(e.target.value)), show(overview)) }, ...all.map(([id, text]) => el("option", { value: String(id), selected: id === now[what] }, text)));
+  const numbers = () => {
+    const { views, bands } = shownViews();
+    for (const [band, id] of bands) {
+      if (!by(id).closest("[hidden]")) take({ what: "csv", ...views(band) }).then((file) => save({ ...file, name: `${id.slice(5)}.csv` }), () => {});
+    }
+  };
+  const code = el("pre", { tabindex: 0, "aria-label": "What was clicked, as text" });
+  const language = (/** @type {string} */ what, /** @type {string} */ text) =>
+    el("button", { "data-key": `as-${what}`, "aria-pressed": String(now.language === what), onclick: () => ((now.language = what), show(overview)) }, text);
+  fill(
+    by("home-body"),
+    fit ? el("div", { class: "card" },
+      el("div", { class: "row" },
+        el("label", {}, "Model ", choose("fit", overview.fits.map((fit, n) => [fit.id, `fit ${n + 1}${fit.id === overview.best ? " (best)" : ""}`]))),
+        get("Model (JSON)", { what: "model", fit: fit.id }),
+        get("C (ZIP)", { what: "c", fit: fit.id }),
+        get("FMU", { what: "fmu", fit: fit.id }),
+        fit.inverse ? get("Inverse as FMU", { what: "fmu", fit: fit.id, inverse: true }) : null),
+      el("div", { class: "row", style: "margin-top:.75rem" },
+        el("label", {}, "Report on ", choose("file", files.map((file) => [file.id, file.name]))),
+        get("Report (HTML)", { what: "report", fit: fit.id, file: now.file }))) : null,
+    el("div", { class: "card row" },
+      el("button", { onclick: () => picturesAs("svg") }, "Pictures (SVG)"),
+      el("button", { onclick: () => picturesAs("png") }, "Pictures (PNG)"),
+      el("button", { onclick: numbers }, "Numbers shown (CSV)"),
+      get("Session", { what: "session" }),
+      el("span", { class: "quiet" }, "A session holds recordings and fits. Drop it here to go on.")),
+    fit ? el("div", { class: "card" },
+      el("div", { class: "row" }, el("strong", {}, "The same without clicking"), language("command", "Command line"), language("python", "Python"), language("rust", "Rust"),
+        el("button", { onclick: () => navigator.clipboard?.writeText(now.seen) }, "Copy")),
+      code) : null,
+  );
+  if (fit) {
+    const file = await take({ what: now.language, fit: fit.id }).catch(() => null);
+    if (file) code.textContent = now.seen = file.text();
+  }
+}

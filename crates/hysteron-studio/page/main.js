@@ -1,0 +1,76 @@
+// The page: shows what the session has, whenever it changes.
+
+import { ask, listen, reload, whenRefused } from "./api.js";
+import { by, el, fill } from "./dom.js";
+import * as opening from "./open.js";
+import * as fitting from "./fit.js";
+import * as looking from "./look.js";
+import * as driving from "./drive.js";
+import * as home from "./home.js";
+import { isDark } from "./plot.js";
+
+/** The fits that are drawn. @type {Set<number>} */
+const drawn = new Set();
+/** The fits that were seen before: a new one is drawn. @type {Set<number>} */
+const known = new Set();
+/** @type {import("./api.js").Overview | null} */
+let overview = null;
+
+/** @param {import("./api.js").Overview} found */
+async function show(found) {
+  overview = found;
+  const ids = new Set(found.fits.map((fit) => fit.id));
+  for (const id of [...drawn]) if (!ids.has(id)) drawn.delete(id);
+  for (const id of ids) {
+    if (!known.has(id)) drawn.add(id);
+    known.add(id);
+  }
+  opening.show(found, show);
+  fitting.show(found, drawn, draw, show);
+  for (const link of document.querySelectorAll("nav a")) {
+    const section = by(String(link.getAttribute("href")).slice(1));
+    link.setAttribute("aria-disabled", String(section.hidden));
+  }
+  await looking.show(found, drawn, show);
+  await driving.show(found);
+  await home.show(found);
+  for (const link of document.querySelectorAll("nav a")) link.setAttribute("aria-disabled", String(by(String(link.getAttribute("href")).slice(1)).hidden));
+  document.body.dataset.shown = String(found.fits.length);
+}
+
+const draw = () => overview && looking.show(overview, drawn, show);
+const refresh = () => ask("overview").then(show, () => {});
+
+whenRefused((fault) => {
+  const node = by("fault");
+  node.hidden = false;
+  fill(node, el("span", {}, `${fault.problem}${fault.remedy ? `. What helps: ${fault.remedy}.` : ""}`), el("button", { onclick: () => (node.hidden = true) }, "Close"));
+});
+
+by("theme").addEventListener("click", () => {
+  document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+  if (overview) show(overview);
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => overview && show(overview));
+by("reload").addEventListener("click", () => reload().then(show, () => {}));
+
+let changes = -1;
+/** @type {string | null} */
+let failed = null;
+opening.start(show);
+listen((told) => {
+  fitting.working(told.jobs);
+  by("reload").hidden = told.named === 0;
+  const fault = told.failed ? JSON.stringify(told.failed) : null;
+  // What was cancelled is known to whoever cancelled it.
+  if (told.failed && fault !== failed && told.failed.code !== 103) {
+    const { problem, remedy } = told.failed;
+    by("fault").hidden = false;
+    fill(by("fault"), el("span", {}, `${problem}${remedy ? `. What helps: ${remedy}.` : ""}`), el("button", { onclick: () => (by("fault").hidden = true) }, "Close"));
+  }
+  failed = fault;
+  if (told.changes !== changes) {
+    changes = told.changes;
+    refresh();
+  }
+});

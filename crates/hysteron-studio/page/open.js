@@ -1,0 +1,139 @@
+// Files: what was found in them, and what each column is.
+
+import { ask, open } from "./api.js";
+import { by, el, fill, shown } from "./dom.js";
+
+const ROLES = [["", "not used"], ["input", "input"], ["output", "output"], ["time", "time"], ["load", "load"]];
+const PURPOSES = [["fit", "to fit"], ["validate", "for validation"], ["look", "only to look at"]];
+
+/**
+ * Listens to what is dropped and chosen.
+ * @param {(overview: import("./api.js").Overview) => void} opened
+ */
+export function start(opened) {
+  /** @param {Iterable<File>} files */
+  const all = async (files) => {
+    by("drop").setAttribute("aria-busy", "true");
+    try {
+      for (const file of files) opened(await open(file));
+    } finally {
+      by("drop").removeAttribute("aria-busy");
+    }
+  };
+  by("choose").addEventListener("change", (/** @type {any} */ event) => all([...event.target.files]).finally(() => (event.target.value = "")));
+  const over = (/** @type {boolean} */ is) => by("drop").classList.toggle("over", is);
+  addEventListener("dragover", (event) => (event.preventDefault(), over(true)));
+  addEventListener("dragleave", () => over(false));
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    over(false);
+    all([...(event.dataTransfer?.files ?? [])]);
+  });
+}
+
+/**
+ * Shows the files.
+ * @param {import("./api.js").Overview} overview
+ * @param {(overview: any) => void} changed
+ */
+export function show(overview, changed) {
+  by("drop").classList.toggle("empty", overview.files.length === 0);
+  fill(by("files"), ...overview.files.map((file) => card(file, changed)));
+}
+
+/**
+ * @param {import("./api.js").File} file
+ * @param {(overview: any) => void} changed
+ */
+function card(file, changed) {
+  const send = (/** @type {string} */ request, more = {}) => ask(request, { file: file.id, ...more }).then(changed, () => {});
+  const purpose = el(
+    "select",
+    { "data-key": `purpose-${file.id}`, "aria-label": `What ${file.name} is for`, onchange: (/** @type {any} */ e) => send("use", { purpose: e.target.value }) },
+    ...PURPOSES.map(([value, text]) => el("option", { value, selected: value === file.purpose }, text)),
+  );
+  const facts = file.problem ? `${file.rows} rows` : `${file.samples} samples, ${file.branches} ${file.branches === 1 ? "branch" : "branches"}`;
+  const mend = el(
+    "label",
+    {},
+    el("input", { type: "checkbox", "data-key": `mend-${file.id}`, checked: file.mend, onchange: (/** @type {any} */ e) => send("mend", { on: e.target.checked }) }),
+    " Repair rows",
+  );
+  return el(
+    "article",
+    { class: "card", "aria-label": file.name },
+    el("div", { class: "head" }, el("h3", {}, file.name), el("span", { class: "quiet" }, facts)),
+    el("div", { class: "columns" }, ...file.columns.map((column) => columnCard(file, column, send))),
+    file.problem &&
+      el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
+    file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
+    el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
+    el(
+      "div",
+      { class: "row" },
+      el("label", {}, "This file is ", purpose),
+      mend,
+      file.marked && el("span", { class: "quiet" }, `Rows ${file.marked[0]} to ${file.marked[1]} are for validation.`),
+      file.marked && el("button", { onclick: () => send("mark", { rows: null }) }, "Fit them again"),
+      el("button", { "aria-label": `Close ${file.name}`, onclick: () => send("close") }, "Close"),
+    ),
+  );
+}
+
+/**
+ * @param {import("./api.js").File} file
+ * @param {import("./api.js").Column} column
+ * @param {(request: string, more?: object) => void} send
+ */
+function columnCard(file, column, send) {
+  const roles = /** @type {any} */ (file.roles);
+  const role = ["input", "output", "time", "load"].find((name) => roles[name] === column.name) ?? "";
+  const choose = (/** @type {string} */ chosen) => {
+    const next = { ...roles };
+    for (const name of Object.keys(next)) if (next[name] === column.name) next[name] = null;
+    // The column that had this role takes the one that is free now.
+    if (chosen) {
+      if (role && next[chosen]) next[role] = next[chosen];
+      next[chosen] = column.name;
+    }
+    send("columns", { roles: next });
+  };
+  return el(
+    "div",
+    { class: role ? "column used" : "column" },
+    el("strong", { style: "overflow-wrap:anywhere" }, column.name),
+    picture(column),
+    el("div", { class: "quiet" }, `${shown(column.min)} to ${shown(column.max)}`, column.not_numbers > 0 && `, ${column.not_numbers} not numbers`),
+    el(
+      "select",
+      { "data-key": `role-${file.id}-${column.name}`, "aria-label": `What ${column.name} is`, onchange: (/** @type {any} */ e) => choose(e.target.value) },
+      ...ROLES.map(([value, text]) => el("option", { value, selected: value === role }, text)),
+    ),
+  );
+}
+
+/** @param {import("./api.js").Column} column */
+function picture(column) {
+  const ns = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(ns, "svg");
+  svg.setAttribute("viewBox", `0 0 ${Math.max(1, column.picture.length - 1)} 40`);
+  svg.setAttribute("preserveAspectRatio", "none");
+  svg.setAttribute("aria-hidden", "true");
+  const [min, max] = [column.min ?? 0, column.max ?? 0];
+  const y = (/** @type {number} */ value) => (max > min ? 38 - (36 * (value - min)) / (max - min) : 20);
+  let path = "";
+  let pen = "M";
+  column.picture.forEach((part, n) => {
+    if (!part) return void (pen = "M");
+    path += `${pen}${n} ${y(part[0]).toFixed(1)}L${n} ${y(part[1]).toFixed(1)}`;
+    pen = "L";
+  });
+  const line = document.createElementNS(ns, "path");
+  line.setAttribute("d", path);
+  line.setAttribute("fill", "none");
+  line.setAttribute("stroke", "currentColor");
+  line.setAttribute("stroke-width", "1.5");
+  line.setAttribute("vector-effect", "non-scaling-stroke");
+  svg.append(line);
+  return /** @type {any} */ (svg);
+}

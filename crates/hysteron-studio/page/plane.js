@@ -1,0 +1,63 @@
+// The plane of operators of one fit: weights, how well they are known, and their states at a sample.
+
+import { ask } from "./api.js";
+import { by, el, fill, shown } from "./dom.js";
+import { draw } from "./plot.js";
+
+const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
+const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
+
+/** @type {{kind: string, fit: number|null, at: [number, number]|null}} */
+const now = { kind: "weights", fit: null, at: null };
+
+/**
+ * Shows the states at the sample that was pointed at.
+ * @param {number|null} file
+ * @param {number} time
+ * @param {any} overview
+ * @param {Set<number>} drawn
+ */
+export function at(file, time, overview, drawn) {
+  if (file === null || drawn.size === 0) return;
+  Object.assign(now, { at: [file, time], kind: "states" });
+  show(overview, drawn);
+}
+
+/**
+ * @param {any} overview
+ * @param {Set<number>} drawn
+ */
+export async function show(overview, drawn) {
+  const ids = [...drawn];
+  if (now.fit === null || !drawn.has(now.fit)) now.fit = ids[ids.length - 1];
+  const fits = overview.fits.filter((/** @type {any} */ fit) => drawn.has(fit.id));
+  const again = () => show(overview, drawn);
+  const name = (/** @type {any} */ fit) => `fit ${overview.fits.indexOf(fit) + 1}`;
+  fill(
+    by("plane-tools"),
+    el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => ((now.fit = Number(e.target.value)), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
+    el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === now.kind, disabled: kind === "states" && !now.at }, text)))),
+  );
+  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.kind === "states" ? now.at : null }).catch(() => null);
+  if (!seen) {
+    now.kind = "weights";
+    return;
+  }
+  const classes = seen.kind === "excitation";
+  const ends = classes ? { zmin: -0.5, zmax: 3.5 } : seen.kind === "states" ? { zmin: 0, zmax: 1 } : { zmin: 0 };
+  const steps = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
+  const levels = seen.levels.map((/** @type {number} */ level) => shown(level));
+  const scale = classes ? steps.flatMap((step, n) => [[n / 4, step], [(n + 1) / 4, step]]) : "Viridis";
+  const places = levels.map((/** @type {string} */ _, /** @type {number} */ n) => n);
+  const every = Math.max(1, Math.ceil(levels.length / 8));
+  const ticks = { tickvals: places.filter((/** @type {number} */ n) => n % every === 0), ticktext: levels.filter((/** @type {string} */ _, /** @type {number} */ n) => n % every === 0), showgrid: false, zeroline: false };
+  await draw(by("plot-plane"), [{
+    type: "heatmap", z: seen.values, colorscale: scale, ...ends, hoverongaps: false, xgap: 1, ygap: 1,
+    hovertemplate: "α %{x}, β %{y}: %{z:.4g}<extra></extra>",
+    colorbar: classes ? { tickvals: [0, 1, 2, 3], ticktext: CLASSES, thickness: 12 } : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
+  }], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: ticks, yaxis: ticks, dragmode: false });
+  const [input, measured, modelled] = seen.sample ?? [];
+  by("plane-caption").textContent = seen.sample
+    ? `States of the operators at row ${seen.row}: input ${shown(input)}, measured ${shown(measured)}, model ${shown(modelled)}. The edge is the staircase of what the model remembers.`
+    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states.";
+}

@@ -1,0 +1,86 @@
+// Pictures by plotly.js, in the colours of the page.
+
+/** @type {any} */
+const Plotly = /** @type {any} */ (globalThis).Plotly;
+
+// Told apart by people who do not see all colours (Okabe and Ito 2008), and by their dashes.
+const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const DASHES = ["solid", "dash", "dot", "dashdot"];
+
+/** @param {number} id */
+export const colour = (id) => COLOURS[id % COLOURS.length];
+
+export const isDark = () => {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+};
+
+/** @param {string} name */
+export const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+/**
+ * The look of a line: what was measured is a plain line in the ink of the page.
+ * @param {number | null} place of the fit in the list; null for what was measured
+ */
+export function stroke(place) {
+  if (place === null) return { color: isDark() ? "#c3ccd5" : "#4a5561", width: 1.6 };
+  return { color: colour(place), width: 1.8, dash: DASHES[Math.floor(place / COLOURS.length) % DASHES.length] };
+}
+
+/**
+ * Draws, or draws again.
+ * @param {HTMLElement} node
+ * @param {object[]} traces
+ * @param {{x: string, y: string, [more: string]: any}} what
+ */
+export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
+  const narrow = node.clientWidth < 480;
+  const axis = { gridcolor: ink("line"), zerolinecolor: ink("line"), linecolor: ink("line"), automargin: true, exponentformat: "power" };
+  const layout = {
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    font: { color: ink("ink"), family: "system-ui, sans-serif", size: narrow ? 12 : 13 },
+    margin: { l: 8, r: 12, t: 8, b: 8 },
+    showlegend: traces.length > 1,
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    hovermode: "closest",
+    dragmode: "zoom",
+    xaxis: { ...axis, title: { text: plain(x), standoff: 6 }, ...xaxis },
+    yaxis: { ...axis, title: { text: plain(y), standoff: 6 }, ...yaxis },
+    ...more,
+  };
+  const config = {
+    responsive: true,
+    displaylogo: false,
+    displayModeBar: narrow ? false : "hover",
+    modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+    toImageButtonOptions: { format: "svg", filename: node.id },
+  };
+  return Plotly.react(node, traces, layout, config);
+}
+
+/**
+ * Plotly takes some markup in texts. Names come from files, and are text only.
+ * @param {string} text
+ */
+export const plain = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;").replaceAll("$", "＄");
+
+/**
+ * Listens once, however often the picture is drawn again.
+ * @param {any} node
+ * @param {string} event
+ * @param {(event: any) => void} listener
+ */
+export function on(node, event, listener) {
+  node.removeAllListeners?.(event);
+  node.on(event, listener);
+}
+
+/**
+ * The picture as a file.
+ * @param {HTMLElement} node
+ * @param {"svg" | "png"} format
+ */
+export function save(node, format) {
+  return Plotly.downloadImage(node, { format, filename: node.id, width: node.clientWidth, height: node.clientHeight, scale: format === "png" ? 2 : 1 });
+}

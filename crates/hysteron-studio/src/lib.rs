@@ -1,0 +1,19 @@
+//! The studio: a local page in which one sees a recording and its loop, fits models, drives them by
+//! hand and takes them home.
+//!
+//! [`Session`] is what is open: recordings, fits, models that are driven. It takes a [`Request`] and
+//! gives a [`Response`], knows no transport, and touches no file but in the temporary folder of an
+//! export. [`Server`] (feature `server`) is one transport: a page and its calls on 127.0.0.1.
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "server")]
+mod server;
+mod session;
+
+#[cfg(feature = "server")]
+pub use server::Server;
+pub use session::{
+    Answer, Band, ColumnView, Curves, Download, DriveView, Fault, FileView, Finished, FitView,
+    Held, Id, Job, JobView, Line, Overview, Part, PlaneKind, PlaneView, Pull, Purpose, Request,
+    Response, Session, Take, View,
+};

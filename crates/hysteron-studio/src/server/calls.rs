@@ -1,0 +1,170 @@
+//! The calls of the page.
+
+use super::Shared;
+use super::guard::Guard;
+use crate::{Fault, Request, Response as Found};
+use axum::Json;
+use axum::body::Body;
+use axum::extract::rejection::JsonRejection;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::sse::{Event, Sse};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use std::convert::Infallible;
+use std::sync::{Arc, PoisonError};
+use std::time::Duration;
+use tokio_stream::wrappers::IntervalStream;
+use tokio_stream::{Stream, StreamExt};
+
+pub(super) type Parts = (Arc<Guard>, Arc<Shared>);
+
+/// A request to the session, and its response or fault, as JSON.
+pub(super) async fn session(
+    State((_, shared)): State<Parts>,
+    request: Result<Json<Request>, JsonRejection>,
+) -> Response {
+    let Ok(Json(request)) = request else {
+        return refused(&Fault::defect(
+            "the page asked for what the session does not know",
+        ));
+    };
+    let changes = !matches!(
+        request,
+        Request::Overview
+            | Request::Curves(_)
+            | Request::Plane { .. }
+            | Request::Pull(_)
+            | Request::Take(_)
+            | Request::Drive { .. }
+    );
+    let done = tokio::task::spawn_blocking(move || {
+        let mut answer = shared.session().handle(request)?;
+        if let Some(job) = answer.job.take() {
+            let shared = shared.clone();
+            std::thread::spawn(move || {
+                let finished = job.run();
+                let found = shared.session().finish(finished);
+                *shared.failed.lock().unwrap_or_else(PoisonError::into_inner) = found.err();
+                shared.changed();
+            });
+        }
+        if changes {
+            shared.changed();
+        }
+        Ok(answer.response)
+    });
+    answered(done.await)
+}
+
+/// The bytes of a file that was dropped on the page.
+pub(super) async fn open(
+    State((_, shared)): State<Parts>,
+    Path((_, name)): Path<(String, String)>,
+    headers: HeaderMap,
+    body: Body,
+) -> Response {
+    // A session holds its recordings as text, which takes a third more.
+    let room = shared.session().room();
+    let most = room.saturating_add(room / 2).saturating_add(1 << 20);
+    let length = headers.get(header::CONTENT_LENGTH);
+    let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+    let too_large = || refused(&Fault::too_large("the file", room));
+    if length.is_some_and(|length| length > most) {
+        return too_large();
+    }
+    let mut bytes = Vec::new();
+    let mut parts = body.into_data_stream();
+    while let Some(part) = parts.next().await {
+        let Ok(part) = part else {
+            return refused(&Fault::missing("the file was cut off", "drop it again"));
+        };
+        if (bytes.len() + part.len()) as u64 > most {
+            return too_large();
+        }
+        bytes.extend_from_slice(&part);
+    }
+    let done = tokio::task::spawn_blocking(move || {
+        let mut session = shared.session();
+        session.open(&name, bytes)?;
+        let response = session.handle(Request::Overview)?.response;
+        drop(session);
+        shared.changed();
+        Ok(response)
+    });
+    answered(done.await)
+}
+
+/// Reads the files again that were named on the command line.
+pub(super) async fn reload(State((_, shared)): State<Parts>) -> Response {
+    let done = tokio::task::spawn_blocking(move || {
+        let named = shared.named.lock().unwrap_or_else(PoisonError::into_inner);
+        for path in named.iter() {
+            shared.open_named(path)?;
+        }
+        shared.changed();
+        Ok(shared.session().handle(Request::Overview)?.response)
+    });
+    answered(done.await)
+}
+
+/// What a page is told while it is open.
+#[derive(Serialize)]
+struct Told {
+    /// Goes up with every change of the session.
+    changes: u64,
+    jobs: Vec<crate::JobView>,
+    failed: Option<Fault>,
+    /// Whether files were named on the command line.
+    named: usize,
+}
+
+/// Progress and changes as server-sent events.
+pub(super) async fn events(
+    State((_, shared)): State<Parts>,
+) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
+    const EVERY: Duration = Duration::from_millis(150);
+    let mut last = String::new();
+    let ticks = IntervalStream::new(tokio::time::interval(EVERY));
+    let told = ticks.filter_map(move |_| {
+        let told = Told {
+            changes: *shared.changes.borrow(),
+            // While a call holds the session, there is nothing new.
+            jobs: shared.session.try_lock().ok()?.jobs(),
+            failed: shared
+                .failed
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone(),
+            named: shared
+                .named
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .len(),
+        };
+        let told = serde_json::to_string(&told).ok()?;
+        (told != last).then(|| {
+            last.clone_from(&told);
+            Ok(Event::default().data(told))
+        })
+    });
+    Sse::new(told).keep_alive(axum::response::sse::KeepAlive::default())
+}
+
+fn answered(done: Result<Result<Found, Fault>, tokio::task::JoinError>) -> Response {
+    match done {
+        Ok(Ok(found)) => Json(found).into_response(),
+        Ok(Err(fault)) => refused(&fault),
+        Err(_) => refused(&Fault::defect("a call ended in a panic")),
+    }
+}
+
+fn refused(fault: &Fault) -> Response {
+    let status = match fault.code {
+        100 => StatusCode::NOT_FOUND,
+        101 => StatusCode::PAYLOAD_TOO_LARGE,
+        104 => StatusCode::INTERNAL_SERVER_ERROR,
+        _ => StatusCode::UNPROCESSABLE_ENTITY,
+    };
+    (status, Json(fault)).into_response()
+}

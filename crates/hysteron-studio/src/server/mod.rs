@@ -1,0 +1,165 @@
+//! The session over HTTP: a page, its calls, and the progress of the work as events.
+//!
+//! Only this machine and only this user: bound to 127.0.0.1, with a secret in every address.
+//! `guard` checks each call, `page` has the page, `calls` answers.
+
+mod calls;
+mod guard;
+mod page;
+
+use crate::{Fault, Session};
+use axum::Router;
+use axum::routing::{get, post};
+use guard::Guard;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+/// A studio on this machine, before it runs.
+#[derive(Debug)]
+pub struct Server {
+    listener: std::net::TcpListener,
+    token: String,
+    shared: Arc<Shared>,
+}
+
+/// What all calls share.
+#[derive(Debug)]
+struct Shared {
+    session: Mutex<Session>,
+    /// The files that were named on the command line. Only these are read from the disk again.
+    named: Mutex<Vec<PathBuf>>,
+    /// What ended without a fit, for the page.
+    failed: Mutex<Option<Fault>>,
+    /// Counts what changed, for the events.
+    changes: watch::Sender<u64>,
+}
+
+impl Shared {
+    fn session(&self) -> MutexGuard<'_, Session> {
+        // A panic inside leaves the session as it was before the request, or closes a job.
+        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn changed(&self) {
+        self.changes.send_modify(|count| *count += 1);
+    }
+
+    fn open_named(&self, path: &Path) -> Result<(), Fault> {
+        let failed = |source| hysteron::Error::File {
+            path: path.to_owned(),
+            source,
+        };
+        let mut session = self.session();
+        let room = session.room();
+        let about = std::fs::metadata(path).map_err(failed)?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if about.len() > room {
+            return Err(Fault::too_large(&name, room));
+        }
+        session.open(&name, std::fs::read(path).map_err(failed)?)?;
+        Ok(())
+    }
+}
+
+impl Server {
+    /// Binds 127.0.0.1 at `port`; 0 takes a free one. The files take at most `budget` bytes of
+    /// memory.
+    ///
+    /// # Errors
+    /// Where the port is taken, or the system gives no random numbers.
+    pub fn bind(port: u16, budget: u64) -> std::io::Result<Self> {
+        let listener = std::net::TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        let mut secret = [0; 24];
+        getrandom::fill(&mut secret).map_err(std::io::Error::other)?;
+        let token = secret.iter().map(|byte| format!("{byte:02x}")).collect();
+        let shared = Arc::new(Shared {
+            session: Mutex::new(Session::new(budget)),
+            named: Mutex::new(Vec::new()),
+            failed: Mutex::new(None),
+            changes: watch::Sender::new(0),
+        });
+        Ok(Self {
+            listener,
+            token,
+            shared,
+        })
+    }
+
+    /// Opens a file of the disk. The page can have it read again, and no other.
+    ///
+    /// # Errors
+    /// [`Fault`] for a file that cannot be read.
+    pub fn open(&self, path: &Path) -> Result<(), Fault> {
+        self.shared.open_named(path)?;
+        let mut named = self
+            .shared
+            .named
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        named.push(path.to_owned());
+        Ok(())
+    }
+
+    /// The address for the user, with the secret.
+    ///
+    /// # Errors
+    /// Where the system does not tell the port.
+    pub fn address(&self) -> std::io::Result<String> {
+        let port = self.listener.local_addr()?.port();
+        Ok(format!("http://127.0.0.1:{port}/?token={}", self.token))
+    }
+
+    /// Serves until `stop` says so. Work under way is then cancelled.
+    ///
+    /// # Errors
+    /// Where the system takes the port away.
+    pub fn run(self, stop: std::sync::mpsc::Receiver<()>) -> std::io::Result<()> {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .enable_all()
+            .build()?;
+        let shared = self.shared.clone();
+        let (end, mut ended) = watch::channel(false);
+        std::thread::spawn(move || {
+            // A sender that is gone ends the studio too.
+            let _ = stop.recv();
+            let _ = end.send(true);
+        });
+        let served = runtime.block_on(async move {
+            let address: SocketAddr = self.listener.local_addr()?;
+            let guard = Guard::new(address.port(), self.token);
+            let app = app(guard, self.shared);
+            let listener = TcpListener::from_std(self.listener)?;
+            tokio::select! {
+                served = axum::serve(listener, app) => served,
+                _ = ended.wait_for(|ended| *ended) => Ok(()),
+            }
+        });
+        shared.session().cancel_all();
+        // Events are open as long as a page is.
+        runtime.shutdown_background();
+        served
+    }
+}
+
+fn app(guard: Guard, shared: Arc<Shared>) -> Router {
+    let guard = Arc::new(guard);
+    Router::new()
+        .route("/", get(guard::enter))
+        .route("/{token}/", get(page::index))
+        .route("/{token}/{file}", get(page::file))
+        .route("/{token}/api/session", post(calls::session))
+        .route("/{token}/api/open/{name}", post(calls::open))
+        .route("/{token}/api/reload", post(calls::reload))
+        .route("/{token}/api/events", get(calls::events))
+        .fallback(guard::nothing)
+        .layer(axum::middleware::from_fn_with_state(
+            guard.clone(),
+            guard::check,
+        ))
+        .with_state((guard, shared))
+}

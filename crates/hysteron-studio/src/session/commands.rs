@@ -1,0 +1,189 @@
+//! What was clicked, as commands: for the shell, in Python and in Rust.
+
+use super::Session;
+use super::fitting::Fitted;
+use super::opened::Opened;
+use super::request::Id;
+
+/// The files of a fit that are still open.
+fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {
+    let open = ids.iter().filter_map(|id| session.file(*id).ok());
+    open.collect()
+}
+
+/// Roles of a file, as name of the option and column.
+fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
+    let roles = &file.roles;
+    let all = [
+        ("input", &roles.input),
+        ("output", &roles.output),
+        ("time", &roles.time),
+        ("load", &roles.load),
+    ];
+    let named = all.into_iter();
+    named
+        .filter_map(|(name, column)| Some((name, column.as_deref()?)))
+        .collect()
+}
+
+/// A word that a POSIX shell takes as it is.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
+    match !word.is_empty() && !word.starts_with('-') && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
+/// A file as an argument: one that begins with a hyphen is no option.
+fn path(name: &str) -> String {
+    match name.starts_with('-') {
+        true => quoted(&format!("./{name}")),
+        false => quoted(name),
+    }
+}
+
+pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
+    let fitted = files(session, &fit.files);
+    let names: Vec<String> = fitted.iter().map(|file| path(&file.name)).collect();
+    let mut words = vec![format!("hysteron fit {}", names.join(" "))];
+    let columns: Vec<String> = fitted.first().map_or(Vec::new(), |file| {
+        let roles = roles(file).into_iter();
+        roles
+            .map(|(name, column)| format!("--{name} {}", quoted(column)))
+            .collect()
+    });
+    words.extend(columns.iter().cloned());
+    words.extend(
+        fitted
+            .iter()
+            .any(|file| file.mend)
+            .then(|| "--repair".to_owned()),
+    );
+    let option =
+        |(name, text): (&String, &String)| format!("--{} {}", name.replace('_', "-"), quoted(text));
+    words.extend(fit.options.iter().map(option));
+    words.extend(match fit.words.as_str() {
+        "" => Vec::new(),
+        "files" => {
+            let others = files(session, &fit.validated);
+            others
+                .iter()
+                .map(|file| format!("--hold-out {}", path(&file.name)))
+                .collect()
+        }
+        part => vec![format!("--hold-out {part}")],
+    });
+    words.push("-o model.json".into());
+    let mut text = words.join(" \\\n    ") + "\n";
+    let test = files(session, &fit.validated);
+    if let Some(file) = test.first().or(fitted.first()) {
+        text += &format!(
+            "hysteron evaluate model.json {} \\\n    {} --report report\n",
+            path(&file.name),
+            columns.join(" "),
+        );
+    }
+    text += "hysteron export c model.json -o model-c\n";
+    text
+}
+
+/// A string literal of Python or Rust. Of what both escape, names hold quotes and backslashes only.
+fn literal(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+pub(super) fn python(session: &Session, fit: &Fitted) -> String {
+    let read = |file: &&Opened| {
+        let roles = roles(file).into_iter();
+        let mut words: Vec<String> = roles
+            .map(|(name, column)| format!("{name}={}", literal(column)))
+            .collect();
+        words.extend(file.mend.then(|| "repair=True".to_owned()));
+        format!(
+            "pyhysteron.read({}, {})",
+            literal(&file.name),
+            words.join(", ")
+        )
+    };
+    let list = |files: Vec<&Opened>| {
+        let each: Vec<String> = files.iter().map(read).collect();
+        format!("[\n    {},\n]", each.join(",\n    "))
+    };
+    let mut words = vec!["recordings".to_owned()];
+    for (name, text) in &fit.options {
+        words.push(format!("{name}={}", python_value(name, text)));
+    }
+    let mut text = format!(
+        "import pyhysteron\n\nrecordings = {}\n",
+        list(files(session, &fit.files))
+    );
+    match fit.words.as_str() {
+        "" => {}
+        "files" => {
+            text += &format!("tests = {}\n", list(files(session, &fit.validated)));
+            words.push("hold_out=tests".into());
+        }
+        part => words.push(format!("hold_out={}", literal(part))),
+    }
+    text += &format!("model = pyhysteron.fit({})\n", words.join(", "));
+    text + "print(model.fit.nrmse_percent)\nmodel.save(\"model.json\")\n"
+}
+
+fn python_value(name: &str, text: &str) -> String {
+    match (name, text) {
+        ("robust", "auto") => "True".into(),
+        ("robust", "off") => "False".into(),
+        ("sign", "positive") => "1".into(),
+        ("sign", "negative") => "-1".into(),
+        ("smooth", "off") => "0.0".into(),
+        _ if text.contains(',') => format!("({text})"),
+        _ if text.parse::<f64>().is_ok() => text.into(),
+        _ => literal(text),
+    }
+}
+
+pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
+    let read = |file: &&Opened| {
+        let roles = roles(file);
+        let of = |name: &str| {
+            let found = roles.iter().find(|(role, _)| *role == name);
+            found.map(|(_, column)| literal(column))
+        };
+        let option = |name| of(name).map_or("None".into(), |column| format!("Some({column})"));
+        format!(
+            "    Recording::read({}.as_ref(), Columns {{ input: {}, output: {}, time: {}, load: {} \
+             }}, Repair::{})?.0,\n",
+            literal(&file.name),
+            of("input").unwrap_or_default(),
+            of("output").unwrap_or_default(),
+            option("time"),
+            option("load"),
+            if file.mend { "Mend" } else { "Refuse" },
+        )
+    };
+    let list = |ids: &[Id]| files(session, ids).iter().map(read).collect::<String>();
+    let mut text =
+        "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n\n".to_owned();
+    text += &format!("let recordings = vec![\n{}];\n", list(&fit.files));
+    text += "let fit = Fit::new()";
+    for (name, word) in &fit.options {
+        text += &format!("\n    .with({}, {})?", literal(name), literal(word));
+    }
+    text += ";\n";
+    text += &match fit.words.as_str() {
+        "" => "let model = fit.run(&recordings)?;\n".to_owned(),
+        "files" => format!(
+            "let hold_out = HoldOut::Recordings(vec![\n{}]);\n{HELD}",
+            list(&fit.validated)
+        ),
+        part => format!(
+            "let hold_out: HoldOut = {}.parse()?;\n{HELD}",
+            literal(part)
+        ),
+    };
+    text + "model.write(\"model.json\")?;\n"
+}
+
+const HELD: &str = "let (model, held_out) = fit_holding_out(&fit, &recordings, &hold_out)?;\n\
+                    println!(\"{:?}\", held_out.model);\n";

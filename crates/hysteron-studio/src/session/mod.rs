@@ -1,0 +1,229 @@
+//! The session: what is open, without a transport. A request in, a response out.
+//!
+//! `request` defines both, `fault` what is wrong. `opened` is a file, `fitting` a fit while it runs
+//! and afterwards, `look` the pictures, `drive` a model moved by hand, `take_home` what can be taken
+//! away, `commands` the same work as text, `saved` the session as a file.
+
+mod commands;
+mod drive;
+mod fault;
+mod fitting;
+mod look;
+mod opened;
+mod request;
+mod saved;
+mod take_home;
+
+pub use drive::{DriveView, Pull};
+pub use fault::Fault;
+pub use fitting::{Finished, FitView, Held, Job, JobView};
+pub use look::{Band, Curves, Line, PlaneKind, PlaneView, View};
+pub use opened::{ColumnView, FileView, Part};
+pub use request::{Id, Overview, Purpose, Request, Response};
+pub use take_home::{Download, Take};
+
+use drive::Drive;
+use fitting::{Fitted, Watch};
+use opened::Opened;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The most fits, and the most models driven, that a session keeps. The oldest drive goes first.
+const MOST: usize = 100;
+
+/// What is open in the studio.
+#[derive(Debug)]
+pub struct Session {
+    files: Vec<Opened>,
+    fits: Vec<Fitted>,
+    running: BTreeMap<Id, Arc<Watch>>,
+    drives: BTreeMap<Id, Drive>,
+    last: Id,
+    budget: u64,
+}
+
+/// What a request leads to: a response, and a job where there is long work to do. The transport runs
+/// the job, on another thread if it can, and hands what it finished to [`Session::finish`].
+#[derive(Debug)]
+pub struct Answer {
+    /// The response.
+    pub response: Response,
+    /// The work.
+    pub job: Option<Job>,
+}
+
+impl From<Response> for Answer {
+    fn from(response: Response) -> Self {
+        Self {
+            response,
+            job: None,
+        }
+    }
+}
+
+impl Session {
+    /// An empty session, whose files take at most `budget` bytes of memory.
+    ///
+    /// ```
+    /// use hysteron_studio::{Request, Response, Session};
+    /// let mut session = Session::new(1 << 30);
+    /// let file = session.open("run.csv", "T,lift\n20,0\n80,14\n20,1\n".into())?;
+    /// let Response::Overview(seen) = session.handle(Request::Overview)?.response else { panic!() };
+    /// assert_eq!(seen.files[0].id, file);
+    /// assert_eq!(seen.files[0].roles.input.as_deref(), Some("T"));
+    /// # Ok::<(), hysteron_studio::Fault>(())
+    /// ```
+    #[must_use]
+    pub fn new(budget: u64) -> Self {
+        Self {
+            files: Vec::new(),
+            fits: Vec::new(),
+            running: BTreeMap::new(),
+            drives: BTreeMap::new(),
+            last: 0,
+            budget,
+        }
+    }
+
+    /// Opens the bytes of a file: a recording, or a session that was saved, which replaces this one.
+    /// A file with the name of one that is open is its new version, and keeps its columns.
+    ///
+    /// # Errors
+    /// [`Fault`] for a file that is no table, or that takes more memory than is left.
+    pub fn open(&mut self, name: &str, bytes: Vec<u8>) -> Result<Id, Fault> {
+        let name = opened::plain_name(name);
+        if saved::is_session(&bytes) {
+            return self.restore(&bytes);
+        }
+        let old = self.files.iter().position(|file| file.name == name);
+        let of_old = old.map_or(0, |n| self.files[n].size());
+        let left = self.room() + of_old;
+        if bytes.len() as u64 > left {
+            return Err(Fault::too_large(&name, left));
+        }
+        match old {
+            Some(n) => {
+                let again = self.files[n].again(bytes, left)?;
+                let id = again.id;
+                self.files[n] = again;
+                self.forget_courses(id);
+                Ok(id)
+            }
+            None => {
+                let id = self.next();
+                self.files.push(Opened::new(id, name, bytes, left)?);
+                Ok(id)
+            }
+        }
+    }
+
+    /// Memory that is left for files, in bytes.
+    #[must_use]
+    pub fn room(&self) -> u64 {
+        let taken = self.files.iter().map(Opened::size).sum();
+        self.budget.saturating_sub(taken)
+    }
+
+    /// Answers a request.
+    ///
+    /// # Errors
+    /// [`Fault`], with a code for each kind. The session is then as before.
+    pub fn handle(&mut self, request: Request) -> Result<Answer, Fault> {
+        match request {
+            Request::Overview => {}
+            Request::Close { file } => {
+                self.file(file)?;
+                self.files.retain(|other| other.id != file);
+                self.forget_courses(file);
+            }
+            Request::Columns { file, roles } => {
+                let left = self.room();
+                self.file_mut(file)?.set_roles(roles, left);
+                self.forget_courses(file);
+            }
+            Request::Mend { file, on } => {
+                let left = self.room();
+                self.file_mut(file)?.set_mend(on, left);
+                self.forget_courses(file);
+            }
+            Request::Use { file, purpose } => self.file_mut(file)?.purpose = purpose,
+            Request::Mark { file, rows } => self.file_mut(file)?.mark(rows)?,
+            Request::MarkSpan { file, from, to } => {
+                let rows = self.file(file)?.rows_in(from, to)?;
+                self.file_mut(file)?.mark(Some(rows))?;
+            }
+            Request::Fit { options, hold_out } => return self.fit(options, hold_out),
+            Request::Cancel { job } => {
+                let watch = self.running.get(&job);
+                watch.ok_or_else(|| Fault::gone("work", job))?.cancel();
+            }
+            Request::Forget { fit } => {
+                self.fitted(fit)?;
+                self.fits.retain(|other| other.id != fit);
+                self.drives.retain(|_, drive| drive.fit != fit);
+            }
+            Request::Curves(view) => return Ok(Response::Curves(self.curves(&view)?).into()),
+            Request::Plane { fit, kind, at } => {
+                return Ok(Response::Plane(self.plane(fit, kind, at)?).into());
+            }
+            Request::Drive { fit } => return Ok(Response::Driven(self.drive(fit)?).into()),
+            Request::Pull(pull) => return Ok(Response::Driven(self.pull(&pull)?).into()),
+            Request::Take(take) => return Ok(Response::Taken(self.take(&take)?).into()),
+        }
+        Ok(Response::Overview(Box::new(self.overview())).into())
+    }
+
+    /// All that is open.
+    #[must_use]
+    pub fn overview(&self) -> Overview {
+        let (best, best_by) = fitting::best(&self.fits);
+        Overview {
+            files: self.files.iter().map(Opened::view).collect(),
+            fits: self.fits.iter().map(Fitted::view).collect(),
+            jobs: self.jobs(),
+            best,
+            best_by,
+            options: &hysteron::FIT_OPTIONS,
+            memory: (self.budget - self.room(), self.budget),
+        }
+    }
+
+    /// The work that is under way.
+    #[must_use]
+    pub fn jobs(&self) -> Vec<JobView> {
+        let jobs = self.running.iter();
+        jobs.map(|(id, watch)| watch.view(*id)).collect()
+    }
+
+    /// Cancels all work. Its threads end at their next report.
+    pub fn cancel_all(&self) {
+        self.running.values().for_each(|watch| watch.cancel());
+    }
+
+    fn next(&mut self) -> Id {
+        self.last += 1;
+        self.last
+    }
+
+    fn file(&self, id: Id) -> Result<&Opened, Fault> {
+        let file = self.files.iter().find(|file| file.id == id);
+        file.ok_or_else(|| Fault::gone("file", id))
+    }
+
+    fn file_mut(&mut self, id: Id) -> Result<&mut Opened, Fault> {
+        let file = self.files.iter_mut().find(|file| file.id == id);
+        file.ok_or_else(|| Fault::gone("file", id))
+    }
+
+    fn fitted(&self, id: Id) -> Result<&Fitted, Fault> {
+        let fit = self.fits.iter().find(|fit| fit.id == id);
+        fit.ok_or_else(|| Fault::gone("fit", id))
+    }
+
+    /// What fits gave on a file that has changed is to be computed again.
+    fn forget_courses(&mut self, file: Id) {
+        for fit in &mut self.fits {
+            fit.courses.remove(&file);
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! A file that is open: its bytes, its columns, and the recording that they make.
+
+use super::fault::Fault;
+use super::look::when;
+use super::request::{Id, Purpose};
+use bytes::Bytes;
+use hysteron::{
+    ColumnSummary, Columns, Quantity, ReadOptions, Recording, Repair, TablePreview, TableReader,
+    branches, preview_table, usual_tolerance,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Columns by their names.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Part {
+    /// The input.
+    pub input: Option<String>,
+    /// The output.
+    pub output: Option<String>,
+    /// The time.
+    pub time: Option<String>,
+    /// The load.
+    pub load: Option<String>,
+}
+
+/// A file that is open.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) id: Id,
+    pub(super) name: String,
+    pub(super) bytes: Bytes,
+    preview: TablePreview,
+    /// What was assumed about the table as a whole.
+    remarks: Vec<String>,
+    pub(super) roles: Part,
+    pub(super) mend: bool,
+    pub(super) purpose: Purpose,
+    pub(super) marked: Option<(usize, usize)>,
+    recording: Result<Arc<Recording>, Fault>,
+    notes: Vec<String>,
+}
+
+/// A column as the page shows it.
+#[derive(Debug, Clone, Serialize)]
+pub struct ColumnView {
+    /// Name, smallest and largest number, cells that are no numbers.
+    #[serde(flatten)]
+    pub summary: ColumnSummary,
+    /// The smallest and the largest number in each part of the rows.
+    pub picture: Vec<Option<(f64, f64)>>,
+}
+
+/// A file as the page shows it.
+#[derive(Debug, Clone, Serialize)]
+pub struct FileView {
+    /// Its number.
+    pub id: Id,
+    /// Its name, without a folder.
+    pub name: String,
+    /// Its size in bytes.
+    pub bytes: usize,
+    /// Rows below the header.
+    pub rows: u64,
+    /// Its columns.
+    pub columns: Vec<ColumnView>,
+    /// What each column is.
+    pub roles: Part,
+    /// Why these were guessed.
+    pub reasons: Vec<String>,
+    /// How the file was understood, and what was repaired.
+    pub notes: Vec<String>,
+    /// What is wrong with it as a recording.
+    pub problem: Option<Fault>,
+    /// Whether rows are repaired.
+    pub mend: bool,
+    /// What it is for.
+    pub purpose: Purpose,
+    /// Rows marked for validation, counted from 1.
+    pub marked: Option<(usize, usize)>,
+    /// Samples of the recording.
+    pub samples: usize,
+    /// Branches of its input.
+    pub branches: usize,
+    /// The input, with its unit.
+    pub input: Option<String>,
+    /// The output, with its unit.
+    pub output: Option<String>,
+}
+
+impl Opened {
+    pub(super) fn new(id: Id, name: String, bytes: Vec<u8>, memory: u64) -> Result<Self, Fault> {
+        let bytes = Bytes::from(bytes);
+        let mut table = TableReader::from_bytes(&name, bytes.clone(), memory)?;
+        let preview = preview_table(&mut table)?;
+        let remarks = table.remarks().map(ToString::to_string).collect();
+        let guess = preview.roles.clone();
+        let mut opened = Self {
+            id,
+            name,
+            bytes,
+            preview,
+            remarks,
+            roles: Part {
+                input: guess.input,
+                output: guess.output,
+                time: guess.time,
+                load: guess.load,
+            },
+            mend: false,
+            purpose: Purpose::Fit,
+            marked: None,
+            recording: Err(Fault::defect("not read yet")),
+            notes: Vec::new(),
+        };
+        opened.read(memory);
+        Ok(opened)
+    }
+
+    /// The file in a new version.
+    pub(super) fn again(&self, bytes: Vec<u8>, memory: u64) -> Result<Self, Fault> {
+        let mut new = Self::new(self.id, self.name.clone(), bytes, memory)?;
+        (new.mend, new.purpose, new.marked) = (self.mend, self.purpose, self.marked);
+        let same = |columns: &TablePreview| {
+            let names = columns.table.columns.iter();
+            names.map(|column| column.name.clone()).collect::<Vec<_>>()
+        };
+        if same(&new.preview) == same(&self.preview) {
+            new.roles = self.roles.clone();
+        }
+        new.read(memory);
+        Ok(new)
+    }
+
+    pub(super) fn set_roles(&mut self, roles: Part, memory: u64) {
+        self.roles = roles;
+        self.read(memory);
+    }
+
+    pub(super) fn set_mend(&mut self, on: bool, memory: u64) {
+        self.mend = on;
+        self.read(memory);
+    }
+
+    pub(super) fn mark(&mut self, rows: Option<(usize, usize)>) -> Result<(), Fault> {
+        if let Some((first, last)) = rows {
+            let count = self.recording()?.len();
+            if first < 1 || last < first || last > count || last - first + 1 == count {
+                return Err(Fault::missing(
+                    &format!("rows {first} to {last} of {count} cannot be marked"),
+                    "mark a part of the recording",
+                ));
+            }
+        }
+        self.marked = rows;
+        Ok(())
+    }
+
+    /// The first and the last row in a span of the time, counted from 1.
+    pub(super) fn rows_in(&self, from: f64, to: f64) -> Result<(usize, usize), Fault> {
+        let recording = self.recording()?;
+        let inside = |n: &usize| (from..=to).contains(&when(recording, *n));
+        let mut rows = (0..recording.len()).filter(inside);
+        let first = rows.next();
+        first
+            .map(|first| (first + 1, rows.last().unwrap_or(first) + 1))
+            .ok_or_else(|| Fault::missing("there is no sample in this span", "mark a longer one"))
+    }
+
+    pub(super) fn recording(&self) -> Result<&Arc<Recording>, Fault> {
+        self.recording.as_ref().map_err(Clone::clone)
+    }
+
+    /// Memory of the bytes, and of the numbers read from them.
+    pub(super) fn size(&self) -> u64 {
+        let samples = self
+            .recording
+            .as_ref()
+            .map_or(0, |recording| recording.len());
+        (self.bytes.len() + 4 * size_of::<f64>() * samples) as u64
+    }
+
+    /// Makes the recording of the columns.
+    fn read(&mut self, memory: u64) {
+        let (recording, notes) = match self.try_read(memory) {
+            Ok((recording, notes)) => (Ok(Arc::new(recording)), notes),
+            Err(fault) => (Err(fault), self.remarks.clone()),
+        };
+        (self.recording, self.notes) = (recording, notes);
+        let count = self
+            .recording
+            .as_ref()
+            .map_or(0, |recording| recording.len());
+        self.marked = self.marked.filter(|(_, last)| *last <= count);
+    }
+
+    fn try_read(&self, memory: u64) -> Result<(Recording, Vec<String>), Fault> {
+        let Part {
+            input,
+            output,
+            time,
+            load,
+        } = &self.roles;
+        let (Some(input), Some(output)) = (input, output) else {
+            let problem = format!("{}: input or output is not chosen", self.name);
+            return Err(Fault::missing(&problem, "choose a column for each"));
+        };
+        let columns = Columns {
+            time: time.as_deref(),
+            load: load.as_deref(),
+            ..Columns::new(input, output)
+        };
+        let repair = if self.mend {
+            Repair::Mend
+        } else {
+            Repair::Refuse
+        };
+        let options = ReadOptions {
+            repair,
+            max_memory: memory,
+        };
+        let read = Recording::from_bytes(&self.name, self.bytes.clone(), columns, options);
+        let (recording, notes) = read?;
+        Ok((recording, notes.iter().map(ToString::to_string).collect()))
+    }
+
+    pub(super) fn view(&self) -> FileView {
+        let columns = self
+            .preview
+            .table
+            .columns
+            .iter()
+            .zip(&self.preview.pictures);
+        let columns = columns.map(|(summary, picture)| ColumnView {
+            summary: summary.clone(),
+            picture: picture.clone(),
+        });
+        let recording = self.recording.as_ref().ok();
+        let shown = |of: fn(&Recording) -> &Quantity| recording.map(|r| of(r).to_column());
+        FileView {
+            id: self.id,
+            name: self.name.clone(),
+            bytes: self.bytes.len(),
+            rows: self.preview.table.rows,
+            columns: columns.collect(),
+            roles: self.roles.clone(),
+            reasons: self.preview.roles.reasons.clone(),
+            notes: self.notes.clone(),
+            problem: self.recording.as_ref().err().cloned(),
+            mend: self.mend,
+            purpose: self.purpose,
+            marked: self.marked,
+            samples: recording.map_or(0, |recording| recording.len()),
+            branches: recording.map_or(0, |recording| {
+                let input = &recording.input;
+                branches(input, usual_tolerance(input))
+                    .last()
+                    .map_or(0, |last| last + 1)
+            }),
+            input: shown(|recording| &recording.input_quantity),
+            output: shown(|recording| &recording.output_quantity),
+        }
+    }
+}
+
+/// The last part of a path, safe to show.
+pub(super) fn plain_name(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let last: String = hysteron::printable(last).chars().take(200).collect();
+    match last.trim() {
+        "" | "-" => "recording.csv".into(),
+        name => name.into(),
+    }
+}

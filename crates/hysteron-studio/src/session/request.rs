@@ -1,0 +1,153 @@
+//! The requests of a session and its responses.
+
+use super::drive::{DriveView, Pull};
+use super::fitting::{FitView, Held, JobView};
+use super::look::{Curves, PlaneKind, PlaneView, View};
+use super::opened::{FileView, Part};
+use super::take_home::{Download, Take};
+use hysteron::FitOption;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The number of a file, a fit, a job or a drive. None is given twice in a session.
+pub type Id = u64;
+
+/// What a file is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Purpose {
+    /// It is fitted.
+    #[default]
+    Fit,
+    /// It tests the fits.
+    Validate,
+    /// It is only looked at.
+    Look,
+}
+
+/// What is asked of a session.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "request", rename_all = "snake_case")]
+pub enum Request {
+    /// All that is open.
+    Overview,
+    /// Closes a file.
+    Close {
+        /// The file.
+        file: Id,
+    },
+    /// Says which columns of a file are input, output, time and load.
+    Columns {
+        /// The file.
+        file: Id,
+        /// Its columns.
+        roles: Part,
+    },
+    /// Repairs rows that cannot be used, or refuses them.
+    Mend {
+        /// The file.
+        file: Id,
+        /// Whether they are repaired.
+        on: bool,
+    },
+    /// Says what a file is for.
+    Use {
+        /// The file.
+        file: Id,
+        /// What it is for.
+        purpose: Purpose,
+    },
+    /// Marks rows for validation.
+    Mark {
+        /// The file.
+        file: Id,
+        /// The first and the last row, counted from 1; `None` for no rows.
+        rows: Option<(usize, usize)>,
+    },
+    /// Marks the rows in a span of the time for validation.
+    MarkSpan {
+        /// The file.
+        file: Id,
+        /// Where the span begins, in seconds, or in samples from 1 without a time.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+    /// Fits a model to the files that are for it. The answer has a job.
+    Fit {
+        /// Options that differ from their defaults, by name, as texts: [`hysteron::Fit::with`].
+        #[serde(default)]
+        options: BTreeMap<String, String>,
+        /// What tests the fit.
+        #[serde(default)]
+        hold_out: Held,
+    },
+    /// Cancels a job.
+    Cancel {
+        /// The job.
+        job: Id,
+    },
+    /// Removes a fit.
+    Forget {
+        /// The fit.
+        fit: Id,
+    },
+    /// Lines to draw.
+    Curves(View),
+    /// The plane of a fit.
+    Plane {
+        /// The fit.
+        fit: Id,
+        /// What is shown of each operator.
+        kind: PlaneKind,
+        /// The file, and the time (without one the number) of the sample whose states are shown.
+        #[serde(default)]
+        at: Option<(Id, f64)>,
+    },
+    /// Starts to drive a model by hand.
+    Drive {
+        /// The fit.
+        fit: Id,
+    },
+    /// Moves a model that is driven.
+    Pull(Pull),
+    /// Something to take home.
+    Take(Take),
+}
+
+/// What a session answers.
+#[derive(Debug, Serialize)]
+#[serde(tag = "response", rename_all = "snake_case")]
+pub enum Response {
+    /// All that is open.
+    Overview(Box<Overview>),
+    /// A job was made.
+    Started(JobView),
+    /// Lines to draw.
+    Curves(Curves),
+    /// A plane.
+    Plane(PlaneView),
+    /// A model that is driven.
+    Driven(DriveView),
+    /// Something to take home.
+    Taken(Download),
+}
+
+/// All that is open.
+#[derive(Debug, Serialize)]
+pub struct Overview {
+    /// The files, in the order of opening.
+    pub files: Vec<FileView>,
+    /// The fits, the oldest first.
+    pub fits: Vec<FitView>,
+    /// Work under way.
+    pub jobs: Vec<JobView>,
+    /// The best fit.
+    pub best: Option<Id>,
+    /// By what it is the best.
+    pub best_by: &'static str,
+    /// The options of a fit.
+    pub options: &'static [FitOption],
+    /// Memory of the files, and its limit, in bytes.
+    pub memory: (u64, u64),
+}

@@ -1,0 +1,214 @@
+//! What can be taken home: the model, code, a report, the numbers of a picture, the same work as
+//! commands, the session.
+
+use super::fault::Fault;
+use super::look::View;
+use super::request::Id;
+use super::{Session, commands};
+use base64::Engine;
+use hysteron::{Recording, evaluate};
+use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
+use hysteron_report::Report;
+use serde::{Deserialize, Serialize, Serializer};
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+/// What is to be taken home.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum Take {
+    /// The model file.
+    Model {
+        /// The fit.
+        fit: Id,
+    },
+    /// C99 for a microcontroller, as an archive.
+    C {
+        /// The fit.
+        fit: Id,
+    },
+    /// A block for Simulink and other tools.
+    Fmu {
+        /// The fit.
+        fit: Id,
+        /// The inverse instead of the model.
+        #[serde(default)]
+        inverse: bool,
+    },
+    /// The report of a fit on a file, one page.
+    Report {
+        /// The fit.
+        fit: Id,
+        /// The file.
+        file: Id,
+    },
+    /// The numbers of a picture, as a table.
+    Csv(View),
+    /// The commands that do what was clicked.
+    Command {
+        /// The fit.
+        fit: Id,
+    },
+    /// The same in Python.
+    Python {
+        /// The fit.
+        fit: Id,
+    },
+    /// The same in Rust.
+    Rust {
+        /// The fit.
+        fit: Id,
+    },
+    /// The session, which opens again. It holds the recordings.
+    Session,
+}
+
+/// A file for the user.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Download {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub media: &'static str,
+    /// Its bytes; in JSON as base64.
+    #[serde(serialize_with = "base64")]
+    pub bytes: Vec<u8>,
+}
+
+fn base64<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&base64::engine::general_purpose::STANDARD.encode(bytes))
+}
+
+impl Session {
+    pub(super) fn take(&mut self, take: &Take) -> Result<Download, Fault> {
+        let text = |name: &str, media, text: String| Download {
+            name: name.into(),
+            media,
+            bytes: text.into_bytes(),
+        };
+        Ok(match *take {
+            Take::Model { fit } => {
+                let model = &self.fitted(fit)?.model;
+                text("model.json", "application/json", model.to_json())
+            }
+            Take::C { fit } => self.c(fit)?,
+            Take::Fmu { fit, inverse } => self.fmu(fit, inverse)?,
+            Take::Report { fit, file } => self.report(fit, file)?,
+            Take::Csv(ref view) => text("picture.csv", "text/csv", self.csv(view)?),
+            Take::Command { fit } => text(
+                "fit.sh",
+                "text/plain",
+                commands::shell(self, self.fitted(fit)?),
+            ),
+            Take::Python { fit } => text(
+                "fit.py",
+                "text/plain",
+                commands::python(self, self.fitted(fit)?),
+            ),
+            Take::Rust { fit } => text(
+                "fit.rs",
+                "text/plain",
+                commands::rust(self, self.fitted(fit)?),
+            ),
+            Take::Session => text("studio.session.json", "application/json", self.to_json()),
+        })
+    }
+
+    fn c(&self, fit: Id) -> Result<Download, Fault> {
+        let fitted = self.fitted(fit)?;
+        let folder = tempfile::tempdir().map_err(no_folder)?;
+        let target = folder.path().join("c");
+        let options = COptions {
+            real: CReal::Float,
+            name: Some("model"),
+            source: Path::new("model.json"),
+            adaptation: false,
+        };
+        let sampling = CSampling {
+            dt: fitted.dt.filter(|_| fitted.model.is_timed()),
+            drive: None,
+        };
+        let made = hysteron_export::c_sampled(&fitted.model, &target, &options, &sampling)?;
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for file in made.files {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let bytes = std::fs::read(&file).map_err(no_folder)?;
+            let stored = zip::write::SimpleFileOptions::default();
+            zip.start_file(format!("model-c/{name}"), stored)
+                .and_then(|()| Ok(zip.write_all(&bytes)?))
+                .map_err(|error| Fault::defect(&error.to_string()))?;
+        }
+        let zip = zip
+            .finish()
+            .map_err(|error| Fault::defect(&error.to_string()))?;
+        Ok(Download {
+            name: "model-c.zip".into(),
+            media: "application/zip",
+            bytes: zip.into_inner(),
+        })
+    }
+
+    fn fmu(&self, fit: Id, inverse: bool) -> Result<Download, Fault> {
+        let model = &self.fitted(fit)?.model;
+        let name = if inverse { "inverse.fmu" } else { "model.fmu" };
+        let folder = tempfile::tempdir().map_err(no_folder)?;
+        let target = folder.path().join(name);
+        let options = FmuOptions {
+            inverse,
+            ..FmuOptions::default()
+        };
+        hysteron_export::fmu(model, &options, &target)?;
+        Ok(Download {
+            name: name.into(),
+            media: "application/octet-stream",
+            bytes: std::fs::read(&target).map_err(no_folder)?,
+        })
+    }
+
+    fn report(&self, fit: Id, file: Id) -> Result<Download, Fault> {
+        let model = &self.fitted(fit)?.model;
+        let opened = self.file(file)?;
+        let recording = opened.recording()?;
+        let evaluation = evaluate(model, recording)?;
+        let title = format!("fit {fit} on {}", opened.name);
+        let seen: &Recording = &*model.behind_body(recording)?;
+        let report = Report {
+            title: &title,
+            model,
+            recording: seen,
+            evaluation: &evaluation,
+        };
+        let folder = tempfile::tempdir().map_err(no_folder)?;
+        let written = report.write(&folder.path().join("report"));
+        let written = written.map_err(|error| Fault::defect(&error.to_string()))?;
+        Ok(Download {
+            name: "report.html".into(),
+            media: "text/html",
+            bytes: std::fs::read(&written[0]).map_err(no_folder)?,
+        })
+    }
+
+    fn csv(&mut self, view: &View) -> Result<String, Fault> {
+        let curves = self.curves(view)?;
+        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        let mut text = format!("line,{},{}\n", quoted(&curves.x), quoted(&curves.y));
+        for line in &curves.lines {
+            let name = line
+                .fit
+                .map_or("measured".into(), |fit| format!("fit {fit}"));
+            for (x, y) in line.x.iter().zip(&line.y) {
+                if let (Some(x), Some(y)) = (x, y) {
+                    text += &format!("{name},{x},{y}\n");
+                }
+            }
+        }
+        Ok(text)
+    }
+}
+
+fn no_folder(error: std::io::Error) -> Fault {
+    Fault::missing(
+        &format!("a temporary folder cannot be used: {error}"),
+        "make room on the disk",
+    )
+}

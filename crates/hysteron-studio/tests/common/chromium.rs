@@ -1,0 +1,168 @@
+//! A headless Chromium, driven through its protocol.
+#![allow(dead_code, clippy::unwrap_used, clippy::panic)]
+
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+pub struct Chromium {
+    child: Child,
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    folder: tempfile::TempDir,
+    last: u64,
+    /// What pages wrote to their consoles as errors, and what they threw.
+    pub errors: Vec<String>,
+}
+
+/// A page of the browser.
+#[derive(Debug, Clone)]
+pub struct Tab(String);
+
+const PATIENCE: Duration = Duration::from_secs(180);
+
+impl Chromium {
+    /// `None` where there is none.
+    pub fn start() -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let mut child = Command::new("chromium")
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+            ])
+            .args([
+                "--no-first-run",
+                "--disable-extensions",
+                "--remote-debugging-port=0",
+            ])
+            .arg(format!(
+                "--user-data-dir={}",
+                folder.path().join("profile").display()
+            ))
+            .arg("about:blank")
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .ok()?;
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let found = lines.by_ref().map_while(Result::ok);
+        let mut found =
+            found.filter_map(|line| Some(line.split_once("listening on ")?.1.trim().to_owned()));
+        let address = found.next().unwrap();
+        // Its pipe must not fill.
+        std::thread::spawn(move || lines.map_while(Result::ok).for_each(drop));
+        let (socket, _) = tungstenite::connect(address.as_str()).unwrap();
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        }
+        Some(Self {
+            child,
+            socket,
+            folder,
+            last: 0,
+            errors: Vec::new(),
+        })
+    }
+
+    fn call(&mut self, tab: Option<&Tab>, method: &str, params: Value) -> Value {
+        self.last += 1;
+        let mut message = json!({"id": self.last, "method": method, "params": params});
+        if let Some(Tab(session)) = tab {
+            message["sessionId"] = json!(session);
+        }
+        self.socket
+            .send(Message::text(message.to_string()))
+            .unwrap();
+        loop {
+            let Message::Text(text) = self.socket.read().unwrap() else {
+                continue;
+            };
+            let answer: Value = serde_json::from_str(&text).unwrap();
+            match answer["method"].as_str() {
+                Some("Runtime.exceptionThrown") => self.errors.push(text.to_string()),
+                Some("Log.entryAdded") if answer["params"]["entry"]["level"] == "error" => {
+                    self.errors.push(text.to_string());
+                }
+                _ => {}
+            }
+            if answer["id"] == self.last {
+                assert!(answer["error"].is_null(), "{method}: {answer}");
+                return answer["result"].clone();
+            }
+        }
+    }
+
+    /// Opens an address in a new page of this size.
+    pub fn open(&mut self, address: &str, width: u32, height: u32) -> Tab {
+        let made = self.call(None, "Target.createTarget", json!({"url": "about:blank"}));
+        let attach = json!({"targetId": made["targetId"], "flatten": true});
+        let attached = self.call(None, "Target.attachToTarget", attach);
+        let tab = Tab(attached["sessionId"].as_str().unwrap().to_owned());
+        for domain in ["Page", "Runtime", "Log"] {
+            self.call(Some(&tab), &format!("{domain}.enable"), json!({}));
+        }
+        self.size(&tab, width, height);
+        self.call(Some(&tab), "Page.navigate", json!({"url": address}));
+        tab
+    }
+
+    pub fn size(&mut self, tab: &Tab, width: u32, height: u32) {
+        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1,
+            "mobile": width < 500});
+        self.call(Some(tab), "Emulation.setDeviceMetricsOverride", metrics);
+    }
+
+    /// The value of an expression, once its promise is kept.
+    pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
+        let params = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
+        let found = self.call(Some(tab), "Runtime.evaluate", params);
+        assert!(found["exceptionDetails"].is_null(), "{expression}: {found}");
+        found["result"]["value"].clone()
+    }
+
+    /// Waits until an expression is true.
+    pub fn wait(&mut self, tab: &Tab, expression: &str) {
+        let begin = Instant::now();
+        while self.value(tab, &format!("Boolean({expression})")) != true {
+            if begin.elapsed() > PATIENCE {
+                let page = self.value(tab, "document.body.innerText");
+                panic!("never: {expression}\n{page}\n{:?}", self.errors);
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Drops a file on the page, as a hand does.
+    pub fn drop_file(&mut self, tab: &Tab, name: &str, text: &str) {
+        let (name, text) = (json!(name), json!(text));
+        let code = format!(
+            "(() => {{ const data = new DataTransfer(); data.items.add(new File([{text}], {name}));
+             document.querySelector('#drop').dispatchEvent(new DragEvent('drop',
+             {{dataTransfer: data, bubbles: true, cancelable: true}})); }})()"
+        );
+        self.value(tab, &code);
+    }
+
+    /// A picture of the whole page.
+    pub fn picture(&mut self, tab: &Tab) -> Vec<u8> {
+        use base64::Engine;
+        let params = json!({"format": "png", "captureBeyondViewport": true});
+        let found = self.call(Some(tab), "Page.captureScreenshot", params);
+        let text = found["data"].as_str().unwrap();
+        base64::engine::general_purpose::STANDARD
+            .decode(text)
+            .unwrap()
+    }
+}
+
+impl Drop for Chromium {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

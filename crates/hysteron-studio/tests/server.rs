@@ -1,0 +1,182 @@
+//! Who may call the studio, and what it hands out.
+#![allow(clippy::unwrap_used, clippy::panic)]
+#![cfg(feature = "server")]
+
+mod common;
+
+use common::Studio;
+
+const ASK: &str = "{\"request\":\"overview\"}";
+
+#[test]
+fn only_this_page_may_call() {
+    let studio = Studio::start(1 << 24, &[]);
+    let post = "POST /TOKEN/api/session HTTP/1.1\nContent-Type: application/json\n";
+    let own = "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT";
+    let status = |head: &str| studio.call(head, ASK.as_bytes()).0;
+    assert_eq!(status(&format!("{post}{own}")), 200);
+    assert_eq!(
+        status(&format!("{post}{own}\nSec-Fetch-Site: same-origin")),
+        200
+    );
+    let refused = [
+        // Another name for this machine, as after DNS rebinding, and none at all.
+        "Host: evil.example:PORT\nOrigin: http://evil.example:PORT",
+        "Host: 127.0.0.1\nOrigin: http://127.0.0.1",
+        "Host: 127.0.0.1:PORT.evil.example\nOrigin: http://127.0.0.1:PORT",
+        // Another page.
+        "Host: 127.0.0.1:PORT\nOrigin: http://evil.example",
+        "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:1",
+        "Host: 127.0.0.1:PORT\nOrigin: null",
+        "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT\nOrigin: http://evil.example",
+        "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT\nSec-Fetch-Site: cross-site",
+        // No origin where something could change.
+        "Host: 127.0.0.1:PORT",
+    ];
+    for head in refused {
+        assert_eq!(status(&format!("{post}{head}")), 403, "{head}");
+    }
+    // The secret is in every path.
+    let mut wrong = studio.token.clone();
+    wrong.replace_range(..1, if wrong.starts_with('0') { "1" } else { "0" });
+    for path in [
+        "/api/session",
+        "/x/api/session",
+        "//api/session",
+        &format!("/{wrong}/api/session"),
+    ] {
+        let head = post.replace("/TOKEN/api/session", path);
+        assert_eq!(status(&format!("{head}{own}")), 403, "{path}");
+    }
+    for path in [
+        "/",
+        "/?token=",
+        "/?token=0",
+        &format!("/?token={wrong}"),
+        "/main.js",
+        "/x/events",
+    ] {
+        assert_eq!(
+            status(&format!("GET {path} HTTP/1.1\n{own}")),
+            403,
+            "{path}"
+        );
+    }
+    let (status, head, _) = studio.call(&format!("GET /?token=TOKEN HTTP/1.1\n{own}"), b"");
+    assert_eq!(status, 303);
+    assert!(
+        head.contains(&format!("location: /{}/", studio.token)),
+        "{head}"
+    );
+    studio.end();
+}
+
+#[test]
+fn the_page_is_whole_and_says_what_it_may() {
+    let studio = Studio::start(1 << 24, &[]);
+    let get = |path: &str| studio.call(&format!("GET {path} HTTP/1.1\nHost: 127.0.0.1:PORT"), b"");
+    let (status, head, page) = get("/TOKEN/");
+    assert_eq!(status, 200);
+    for part in [
+        "content-security-policy: default-src 'none'; script-src 'self';",
+        "nosniff",
+    ] {
+        assert!(head.contains(part), "{head}");
+    }
+    assert!(
+        !page.contains("http:") && !page.contains("https:"),
+        "asks the outside"
+    );
+    let names = page
+        .split(['"'])
+        .filter(|part| part.ends_with(".js") || part.ends_with(".css"));
+    for name in names {
+        assert_eq!(get(&format!("/TOKEN/{name}")).0, 200, "{name}");
+    }
+    studio.end();
+}
+
+#[test]
+fn no_path_leads_to_the_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    let named = folder.path().join("run.csv");
+    std::fs::write(&named, "a,b\n1,2\n2,3\n1,1\n").unwrap();
+    std::fs::write(folder.path().join("secret.csv"), "secret,b\n1,2\n2,3\n").unwrap();
+    let studio = Studio::start(1 << 24, &[&named]);
+    let paths = [
+        "/TOKEN/../../etc/passwd",
+        "/TOKEN/..%2f..%2fetc%2fpasswd",
+        "/TOKEN/%2e%2e/%2e%2e/etc/passwd",
+        "/TOKEN//etc/passwd",
+        "/TOKEN/Cargo.toml",
+        "/TOKEN/../secret.csv",
+        "/TOKEN/run.csv",
+        "/TOKEN/style.css%00.js",
+        "/TOKEN/api/open/secret.csv",
+    ];
+    for path in paths {
+        let (status, _, body) =
+            studio.call(&format!("GET {path} HTTP/1.1\nHost: 127.0.0.1:PORT"), b"");
+        assert!(matches!(status, 403..=405), "{path}: {status}");
+        assert!(
+            !body.contains("root:") && !body.contains("secret"),
+            "{path}: {body}"
+        );
+    }
+    // A name that is a path opens what was sent, and nothing else.
+    let own = "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT";
+    let head = format!("POST /TOKEN/api/open/..%2f..%2fetc%2fpasswd HTTP/1.1\n{own}");
+    let (status, _, body) = studio.call(&head, b"x,y\n1,2\n2,4\n1,1\n");
+    assert_eq!(status, 200, "{body}");
+    assert!(
+        body.contains("\"passwd\"") && !body.contains("root:"),
+        "{body}"
+    );
+    // Only the file that was named is read again.
+    std::fs::write(&named, "a,b\n1,2\n2,3\n1,1\n2,9\n").unwrap();
+    let head = format!("POST /TOKEN/api/reload HTTP/1.1\n{own}");
+    let (status, _, body) = studio.call(&head, b"");
+    assert_eq!(status, 200);
+    assert!(
+        body.contains("\"rows\":4") && !body.contains("secret"),
+        "{body}"
+    );
+    studio.end();
+}
+
+#[test]
+fn an_upload_beyond_the_memory_is_refused() {
+    let studio = Studio::start(1 << 20, &[]);
+    let own = "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT";
+    // 10 GB are announced: refused before the first byte.
+    let head = format!("POST /TOKEN/api/open/big.csv HTTP/1.1\n{own}\nContent-Length: 10000000000");
+    assert_eq!(studio.call(&head, b"a,b\n").0, 413);
+    // Nothing is announced, and no end comes.
+    let head = format!(
+        "POST /TOKEN/api/open/big.csv HTTP/1.1\n{own}\nTransfer-Encoding: chunked\nX-content-length: none"
+    );
+    let chunk = [b"10000\r\n".as_slice(), &[b'1'; 0x10000], b"\r\n"].concat();
+    assert_eq!(studio.call(&head, &chunk.repeat(64)).0, 413);
+    let head = format!("POST /TOKEN/api/open/small.csv HTTP/1.1\n{own}");
+    assert_eq!(studio.call(&head, b"a,b\n1,2\n2,3\n").0, 200);
+    // What is no request is refused with words.
+    let head = format!("POST /TOKEN/api/session HTTP/1.1\n{own}\nContent-Type: application/json");
+    for body in [
+        "",
+        "{",
+        "[]",
+        "{\"request\":\"rm\"}",
+        "{\"request\":\"close\",\"file\":-1}",
+    ] {
+        let (status, _, text) = studio.call(&head, body.as_bytes());
+        assert!(
+            status == 500 && text.contains("\"code\":104"),
+            "{body}: {status} {text}"
+        );
+    }
+    assert_eq!(
+        studio.call(&head, b"{\"request\":\"close\",\"file\":77}").0,
+        404
+    );
+    studio.end();
+}
