@@ -164,7 +164,7 @@ impl Opened {
         let mut rows = (0..recording.len()).filter(inside);
         let first = rows.next();
         first
-            .map(|first| (first + 1, rows.last().unwrap_or(first) + 1))
+            .map(|first| (first + 1, rows.next_back().unwrap_or(first) + 1))
             .ok_or_else(|| Fault::missing("there is no sample in this span", "mark a longer one"))
     }
 
