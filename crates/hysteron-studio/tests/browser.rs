@@ -7,8 +7,6 @@ mod chromium;
 mod common;
 #[path = "../../hysteron/tests/common/mod.rs"]
 mod recordings;
-#[path = "../../hysteron/tests/common/skip.rs"]
-mod skip;
 
 use chromium::{Chromium, Tab};
 use common::Studio;
@@ -22,7 +20,7 @@ fn browser() -> Option<Chromium> {
             std::env::var_os("HYSTERON_NO_SKIP").is_none(),
             "there is no chromium"
         );
-        skip::skipped("there is no chromium");
+        recordings::skip::skipped("there is no chromium");
     }
     found
 }

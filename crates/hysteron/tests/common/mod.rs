@@ -1,6 +1,6 @@
 //! Measured recordings.
 
-mod skip;
+pub mod skip;
 
 use std::path::{Path, PathBuf};
 
