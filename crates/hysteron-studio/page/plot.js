@@ -49,12 +49,12 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
     yaxis: { ...axis, title: { text: plain(y), standoff: 6 }, ...yaxis },
     ...more,
   };
+  // On a narrow page a finger scrolls: the buttons zoom.
+  if (narrow && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
   const config = {
     responsive: true,
     displaylogo: false,
-    displayModeBar: narrow ? false : "hover",
-    modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
-    toImageButtonOptions: { format: "svg", filename: node.id },
+    displayModeBar: false,
   };
   return Plotly.react(node, traces, layout, config);
 }
