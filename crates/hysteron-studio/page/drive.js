@@ -19,6 +19,8 @@ export async function show(overview) {
     now.fit = overview.best ?? overview.fits[0].id;
     await begin(overview);
   } else if (now.names !== overview.fits.length) await build(overview);
+  // The colours of the page may have changed.
+  else if (now.view) await answer(null);
 }
 
 /** @param {import("./api.js").Overview} overview */
