@@ -6,22 +6,30 @@ import { draw, ink, stroke } from "./plot.js";
 
 const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "below every output of the model", high: "above every output of the model", passed: "inside a jump of the model", limited: "not in this time step: the drive is at its end" });
 
-/** @type {{fit: number|null, view: any, policy: string, waiting: object|null, busy: boolean, names: any}} */
-const now = { fit: null, view: null, policy: "hold", waiting: null, busy: false, names: null };
+/** Until the user chooses a fit or moves one, it is the best. @type {{fit: number|null, chosen: boolean, loop: any, view: any, policy: string, waiting: object|null, busy: boolean, names: any}} */
+const now = { fit: null, chosen: false, loop: null, view: null, policy: "hold", waiting: null, busy: false, names: null };
 
 /** @param {import("./api.js").Overview} overview */
 export async function show(overview) {
   by("drive").hidden = overview.fits.length === 0;
   if (overview.fits.length === 0) return void (now.fit = null);
-  if (!overview.fits.some((fit) => fit.id === now.fit)) {
+  const gone = !overview.fits.some((fit) => fit.id === now.fit);
+  if (gone || (!now.chosen && now.fit !== overview.best)) {
+    now.chosen = false;
     now.fit = overview.best ?? overview.fits[0].id;
     await begin(overview);
   } else if (now.names !== overview.fits.length) await build(overview);
+  // The colours of the page may have changed.
+  else if (now.view) await answer(null);
 }
 
 /** @param {import("./api.js").Overview} overview */
 async function begin(overview) {
   now.view = await ask("drive", { fit: now.fit }).catch(() => null);
+  const fit = overview.fits.find((fit) => fit.id === now.fit);
+  const file = fit?.files.find((id) => overview.files.some((file) => file.id === id && !file.problem));
+  const loop = file === undefined ? null : await ask("curves", { file, picture: "loop", pixels: [600, 440] }).catch(() => null);
+  now.loop = loop?.lines[0] ?? null;
   if (now.view) await build(overview);
 }
 
@@ -45,7 +53,7 @@ async function build(overview) {
     el("div", { class: "drive" },
       el("div", { class: "card" },
         el("div", { class: "row" },
-          el("label", {}, "Model ", el("select", { "data-key": "drive-fit", onchange: (/** @type {any} */ e) => ((now.fit = Number(e.target.value)), begin(overview)) }, ...overview.fits.map((fit, n) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, `fit ${n + 1}`)))),
+          el("label", {}, "Model ", el("select", { "data-key": "drive-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), begin(overview)) }, ...overview.fits.map((fit, n) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, `fit ${n + 1}`)))),
           el("button", { "data-key": "drive-again", onclick: () => begin(overview) }, "Start again")),
         slider("input", `Input: ${fit.input}`, now.view.inputs),
         slider("output", `Output wanted: ${fit.output}`, now.view.outputs),
@@ -56,7 +64,7 @@ async function build(overview) {
           : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
         number("dt", "Time step [s]"), number("load", "Load"),
         el("p", { id: "drive-status", role: "status" })),
-      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far. The bar is the dead band: between its ends the output stands still."))),
+      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far, over what was measured (grey). The bar is the dead band: between its ends the output stands still."))),
   );
   await answer(fit);
 }
@@ -64,6 +72,7 @@ async function build(overview) {
 /** Sends the latest move only: a hand is faster than any answer. @param {object} what */
 async function move(what) {
   now.waiting = what;
+  now.chosen = true;
   if (now.busy) return;
   now.busy = true;
   while (now.waiting) {
@@ -97,6 +106,7 @@ async function answer(fit) {
   if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}.`);
   by("drive-status").textContent = parts.join(" ") || "Move a slider: with the mouse, or with the arrow keys.";
   const traces = [
+    ...(now.loop ? [{ x: now.loop.x, y: now.loop.y, mode: "lines", name: "measured", line: { ...stroke(null), width: 1 }, opacity: 0.45, showlegend: false, hoverinfo: "skip" }] : []),
     { x: trail.map((/** @type {number[]} */ p) => p[0]), y: trail.map((/** @type {number[]} */ p) => p[1]), mode: "lines", name: "way", line: stroke(0), showlegend: false, hoverinfo: "skip" },
     ...(band ? [{ x: band, y: [output, output], mode: "lines", name: "dead band", line: { color: "#e69f00", width: 7 }, opacity: 0.75, showlegend: false }] : []),
     { x: [input], y: [output], mode: "markers", name: "now", marker: { size: 13, color: "#d55e00", line: { color: ink("card"), width: 2 } }, showlegend: false },

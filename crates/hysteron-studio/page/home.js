@@ -13,20 +13,20 @@ function save({ name, blob }) {
   setTimeout(() => URL.revokeObjectURL(/** @type {any} */ (link).href), 10000);
 }
 
-/** @type {{fit: number|null, file: number|null, language: string, seen: string}} */
-const now = { fit: null, file: null, language: "command", seen: "" };
+/** Until the user chooses a fit, it is the best. @type {{fit: number|null, chosen: boolean, file: number|null, language: string, seen: string}} */
+const now = { fit: null, chosen: false, file: null, language: "command", seen: "" };
 
 /** @param {import("./api.js").Overview} overview */
 export async function show(overview) {
   const files = overview.files.filter((file) => !file.problem);
   by("home").hidden = files.length === 0;
   if (files.length === 0) return;
-  if (!overview.fits.some((fit) => fit.id === now.fit)) now.fit = overview.best;
+  if (!now.chosen || !overview.fits.some((fit) => fit.id === now.fit)) now.fit = overview.best;
   if (!files.some((file) => file.id === now.file)) now.file = files[0].id;
   const fit = overview.fits.find((fit) => fit.id === now.fit);
   const get = (/** @type {string} */ text, /** @type {object} */ what) => el("button", { "data-key": text, onclick: () => take(what).then(save, () => {}) }, text);
   const choose = (/** @type {"fit"|"file"} */ what, /** @type {[number, string][]} */ all) =>
-    el("select", { "data-key": `home-${what}`, onchange: (/** @type {any} */ e) => ((now[what] = Number(e.target.value)), show(overview)) }, ...all.map(([id, text]) => el("option", { value: String(id), selected: id === now[what] }, text)));
+    el("select", { "data-key": `home-${what}`, onchange: (/** @type {any} */ e) => ((now[what] = Number(e.target.value)), (now.chosen ||= what === "fit"), show(overview)) }, ...all.map(([id, text]) => el("option", { value: String(id), selected: id === now[what] }, text)));
   const numbers = () => {
     const { views, bands } = shownViews();
     for (const [band, id] of bands) {

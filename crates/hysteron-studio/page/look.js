@@ -17,7 +17,7 @@ const now = { file: null, window: null, marking: false, overview: null, drawn: n
 /** @param {string} band */
 const view = (band) => {
   const node = by(/** @type {any} */ (BANDS.find(([name]) => name === band))[1]);
-  return { file: now.file, fits: [...now.drawn], band, window: now.window, pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
+  return { file: now.file, fits: [...now.drawn], picture: band, window: now.window, pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
 };
 
 /** The pictures that can be taken home as numbers. */

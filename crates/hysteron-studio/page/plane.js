@@ -7,8 +7,8 @@ import { draw } from "./plot.js";
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
 const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
 
-/** @type {{kind: string, fit: number|null, at: [number, number]|null}} */
-const now = { kind: "weights", fit: null, at: null };
+/** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null}} */
+const now = { kind: "weights", fit: null, chosen: false, at: null };
 
 /**
  * Shows the states at the sample that was pointed at.
@@ -29,13 +29,16 @@ export function at(file, time, overview, drawn) {
  */
 export async function show(overview, drawn) {
   const ids = [...drawn];
-  if (now.fit === null || !drawn.has(now.fit)) now.fit = ids[ids.length - 1];
+  if (now.fit === null || !drawn.has(now.fit) || !now.chosen) {
+    now.fit = drawn.has(overview.best) ? overview.best : ids[ids.length - 1];
+    now.chosen = false;
+  }
   const fits = overview.fits.filter((/** @type {any} */ fit) => drawn.has(fit.id));
   const again = () => show(overview, drawn);
   const name = (/** @type {any} */ fit) => `fit ${overview.fits.indexOf(fit) + 1}`;
   fill(
     by("plane-tools"),
-    el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => ((now.fit = Number(e.target.value)), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
+    el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
     el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === now.kind, disabled: kind === "states" && !now.at }, text)))),
   );
   const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.kind === "states" ? now.at : null }).catch(() => null);

@@ -3,12 +3,12 @@
 /** @type {any} */
 const Plotly = /** @type {any} */ (globalThis).Plotly;
 
-// Told apart by people who do not see all colours (Okabe and Ito 2008), and by their dashes.
-const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+// Told apart by people who do not see all colours (after Okabe and Ito 2008), and by their dashes.
+const COLOURS = { light: ["#0072b2", "#d55e00", "#00835f", "#b0588a", "#a86f00", "#3d4db8"], dark: ["#56b4e9", "#f0a03c", "#3fcf9f", "#e9a3cb", "#f0e442", "#9fb0ff"] };
 const DASHES = ["solid", "dash", "dot", "dashdot"];
 
 /** @param {number} id */
-export const colour = (id) => COLOURS[id % COLOURS.length];
+export const colour = (id) => COLOURS[isDark() ? "dark" : "light"][id % 6];
 
 export const isDark = () => {
   const chosen = document.documentElement.dataset.theme;
@@ -24,7 +24,7 @@ export const ink = (name) => getComputedStyle(document.documentElement).getPrope
  */
 export function stroke(place) {
   if (place === null) return { color: isDark() ? "#c3ccd5" : "#4a5561", width: 1.6 };
-  return { color: colour(place), width: 1.8, dash: DASHES[Math.floor(place / COLOURS.length) % DASHES.length] };
+  return { color: colour(place), width: 1.8, dash: DASHES[place % DASHES.length] };
 }
 
 /**
@@ -49,12 +49,12 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
     yaxis: { ...axis, title: { text: plain(y), standoff: 6 }, ...yaxis },
     ...more,
   };
+  // On a narrow page a finger scrolls: the buttons zoom.
+  if (narrow && layout.dragmode === "zoom") layout.dragmode = /** @type {any} */ (false);
   const config = {
     responsive: true,
     displaylogo: false,
-    displayModeBar: narrow ? false : "hover",
-    modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
-    toImageButtonOptions: { format: "svg", filename: node.id },
+    displayModeBar: false,
   };
   return Plotly.react(node, traces, layout, config);
 }

@@ -91,7 +91,7 @@ fn a_file_becomes_a_model_that_is_driven_and_taken_home() {
         "histogram",
     ];
     for band in bands {
-        let request = json!({"request": "curves", "file": file, "fits": [id], "band": band,
+        let request = json!({"request": "curves", "file": file, "fits": [id], "picture": band,
             "window": [10.0, 30.0], "pixels": [300, 200]});
         let curves = value(&mut session, request);
         let lines = curves["lines"].as_array().unwrap();
@@ -325,7 +325,7 @@ fn request() -> impl Strategy<Value = Value> {
         id().prop_map(|fit| json!({"request": "forget", "fit": fit})),
         4 => (id(), id(), band, number(), number(), any::<[u32; 2]>()).prop_map(
             |(f, fit, band, a, b, pixels)| json!({"request": "curves", "file": f, "fits": [fit],
-                "band": band, "window": [a, b], "pixels": pixels})),
+                "picture": band, "window": [a, b], "pixels": pixels})),
         (id(), kind, id(), number()).prop_map(|(fit, kind, file, at)| json!({"request": "plane",
             "fit": fit, "kind": kind, "at": [file, at]})),
         2 => id().prop_map(|fit| json!({"request": "drive", "fit": fit})),

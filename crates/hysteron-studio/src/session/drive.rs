@@ -11,6 +11,10 @@ use std::sync::Arc;
 /// Samples of the way that are kept and shown.
 const TRAIL: usize = 2000;
 
+/// A hand jumps; a model without time takes the way in so many steps, which leads to the same state
+/// and shows the branch.
+const STEPS: u32 = 48;
+
 /// A model, its state, and the way it came.
 #[derive(Debug)]
 pub(super) struct Drive {
@@ -155,10 +159,23 @@ impl Drive {
 
     fn push(&mut self, input: f64) -> Result<(), Fault> {
         let mut state = self.state.clone();
+        let from = self.trail.last().map_or(input, |last| last[0]);
+        let far = (input - from).abs() > 0.005 * (self.inputs.1 - self.inputs.0);
+        let mut way = Vec::new();
+        if far && !self.model.is_timed() {
+            for step in 1..STEPS {
+                let between = from + (input - from) * (f64::from(step) / f64::from(STEPS));
+                let output = self.model.step(&mut state, self.sample(between))?.output;
+                way.push([between, output]);
+            }
+        }
         let output = self.model.step(&mut state, self.sample(input))?.output;
+        way.push([input, output]);
         (self.state, self.input, self.output) = (state, input, output);
         (self.wanted, self.other, self.status) = (None, None, "ok");
-        self.remember();
+        self.trail.extend(way);
+        let beyond = self.trail.len().saturating_sub(TRAIL);
+        self.trail.drain(..beyond);
         Ok(())
     }
 
@@ -206,13 +223,6 @@ impl Drive {
         };
         let edges = (edge(Direction::Falling)?, edge(Direction::Rising)?);
         Some((edges.0.min(edges.1), edges.0.max(edges.1)))
-    }
-
-    fn remember(&mut self) {
-        if self.trail.len() >= TRAIL {
-            self.trail.drain(..TRAIL / 4);
-        }
-        self.trail.push([self.input, self.output]);
     }
 
     fn view(&self, id: Id) -> DriveView {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// What is drawn of a file and of fits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Band {
+pub enum Picture {
     /// The input over time.
     Input,
     /// The output over time.
@@ -35,7 +35,7 @@ pub struct View {
     #[serde(default)]
     pub fits: Vec<Id>,
     /// What is drawn.
-    pub band: Band,
+    pub picture: Picture,
     /// The part of the time that is shown, in seconds, or in samples from 1; `None` for all.
     #[serde(default)]
     pub window: Option<(f64, f64)>,
@@ -47,7 +47,7 @@ pub struct View {
 #[derive(Debug, Clone, Serialize)]
 pub struct Curves {
     /// What is drawn.
-    pub band: Band,
+    pub picture: Picture,
     /// What the horizontal axis shows, with its unit.
     pub x: String,
     /// What the vertical axis shows.
@@ -158,34 +158,34 @@ impl Session {
         let line = |fit, (x, y)| Line { fit, x, y };
         let mut lines = Vec::new();
         let residual = |course: &Arc<Vec<f64>>, n: usize| recording.output[n] - course[n];
-        match view.band {
-            Band::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
-            Band::Output => lines.push(line(None, over_time(&measured))),
-            Band::Loop => lines.push(line(None, over_input(&measured))),
-            Band::Residuals | Band::ResidualsOverInput | Band::Histogram => {}
+        match view.picture {
+            Picture::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
+            Picture::Output => lines.push(line(None, over_time(&measured))),
+            Picture::Loop => lines.push(line(None, over_input(&measured))),
+            Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => {}
         }
         for (fit, course) in &courses {
-            let points = match view.band {
-                Band::Input => continue,
-                Band::Output => over_time(&|n| course[n]),
-                Band::Loop => over_input(&|n| course[n]),
-                Band::Residuals => over_time(&|n| residual(course, n)),
-                Band::ResidualsOverInput => over_input(&|n| residual(course, n)),
-                Band::Histogram => histogram(rows.clone().map(|n| residual(course, n))),
+            let points = match view.picture {
+                Picture::Input => continue,
+                Picture::Output => over_time(&|n| course[n]),
+                Picture::Loop => over_input(&|n| course[n]),
+                Picture::Residuals => over_time(&|n| residual(course, n)),
+                Picture::ResidualsOverInput => over_input(&|n| residual(course, n)),
+                Picture::Histogram => histogram(rows.clone().map(|n| residual(course, n))),
             };
             lines.push(line(Some(*fit), points));
         }
         let difference = format!("measured − model, {output}");
-        let (x, y) = match view.band {
-            Band::Input => (time, input),
-            Band::Output => (time, output),
-            Band::Loop => (input, output),
-            Band::Residuals => (time, difference),
-            Band::ResidualsOverInput => (input, difference),
-            Band::Histogram => (difference, "share of samples [%]".into()),
+        let (x, y) = match view.picture {
+            Picture::Input => (time, input),
+            Picture::Output => (time, output),
+            Picture::Loop => (input, output),
+            Picture::Residuals => (time, difference),
+            Picture::ResidualsOverInput => (input, difference),
+            Picture::Histogram => (difference, "share of samples [%]".into()),
         };
         Ok(Curves {
-            band: view.band,
+            picture: view.picture,
             x,
             y,
             lines,

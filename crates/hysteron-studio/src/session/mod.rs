@@ -17,7 +17,7 @@ mod take_home;
 pub use drive::{DriveView, Pull};
 pub use fault::Fault;
 pub use fitting::{Finished, FitView, Held, Job, JobView};
-pub use look::{Band, Curves, Line, PlaneKind, PlaneView, View};
+pub use look::{Curves, Line, Picture, PlaneKind, PlaneView, View};
 pub use opened::{ColumnView, FileView, Part};
 pub use request::{Id, Overview, Purpose, Request, Response};
 pub use take_home::{Download, Take};
