@@ -11,6 +11,7 @@
 use super::{PrepareOptions, Step, prepare};
 use crate::error::Result;
 use crate::identify::{Fit, FitOptions};
+use crate::model::Surroundings;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::NOISE;
@@ -85,7 +86,8 @@ pub fn rate_dependence(recording: &Recording) -> Result<Option<RateDependence>> 
         return Ok(None);
     }
     let model = Fit::from(FitOptions::default()).run(&recording)?;
-    let modelled = model.simulate(&recording.input)?;
+    let around = Surroundings::of(&model, &recording);
+    let modelled = model.simulate_in(&recording.input, around)?;
     let pairs = recording.output.iter().zip(&modelled);
     let residual: Vec<f64> = pairs.map(|(y, m)| y - m).collect();
     let path: Vec<f64> = recording
@@ -194,5 +196,13 @@ mod tests {
         assert!(found.is_material(), "{found:?}");
         lagging.time = None;
         assert_eq!(rate_dependence(&lagging).unwrap(), None);
+    }
+
+    #[test]
+    fn a_recording_with_a_load_is_rated_too() {
+        let mut recording = two_rates(0.25);
+        let load = (0..recording.len()).map(|n| f64::from(u8::from(n % 200 < 100)));
+        recording.load = Some(load.collect());
+        assert!(rate_dependence(&recording).unwrap().is_some());
     }
 }
