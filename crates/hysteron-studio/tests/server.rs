@@ -180,3 +180,56 @@ fn an_upload_beyond_the_memory_is_refused() {
     );
     studio.end();
 }
+
+#[test]
+fn many_fits_wait_for_one_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.csv");
+    let row = |n: i32| {
+        let t = 50.0 - 30.0 * (f64::from(n) * 0.05).cos();
+        format!("{t},{}\n", t + f64::from(n % 7))
+    };
+    let rows: String = (0..600).map(row).collect();
+    std::fs::write(
+        &file,
+        format!("temperature [degC],displacement [mm]\n{rows}"),
+    )
+    .unwrap();
+    let studio = Studio::start(1 << 28, &[&file]);
+    let post = "POST /TOKEN/api/session HTTP/1.1\nContent-Type: application/json";
+    let own = "Host: 127.0.0.1:PORT\nOrigin: http://127.0.0.1:PORT";
+    let head = format!("{post}\n{own}");
+    let session = || -> serde_json::Value {
+        let (status, _, text) = studio.call(&head, ASK.as_bytes());
+        assert_eq!(status, 200);
+        serde_json::from_str(&text).unwrap()
+    };
+    for _ in 0..3 {
+        let fit = b"{\"request\":\"fit\"}";
+        let calls: Vec<_> = (0..50).map(|_| studio.call(&head, fit)).collect();
+        let refused = calls.iter().filter(|(status, ..)| *status != 200);
+        for (status, _, text) in refused.clone() {
+            assert!(
+                *status == 422 && text.contains("wait for one"),
+                "{status} {text}"
+            );
+        }
+        assert!(refused.count() >= 30, "50 fits at once");
+        let running = session()["jobs"].as_array().unwrap().clone();
+        assert!(running.len() <= 8);
+        for job in running {
+            let cancel = format!("{{\"request\":\"cancel\",\"job\":{}}}", job["id"]);
+            let (status, _, text) = studio.call(&head, cancel.as_bytes());
+            // One may have ended by itself.
+            assert!(matches!(status, 200 | 404), "{status} {text}");
+        }
+        let empty = |_: &u32| session()["jobs"].as_array().unwrap().is_empty();
+        let wait = std::time::Duration::from_millis(50);
+        assert!(
+            (0..1200)
+                .inspect(|_| std::thread::sleep(wait))
+                .any(|n| empty(&n))
+        );
+    }
+    studio.end();
+}

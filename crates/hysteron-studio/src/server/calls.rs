@@ -43,7 +43,9 @@ pub(super) async fn session(
         if let Some(job) = answer.job.take() {
             let shared = shared.clone();
             std::thread::spawn(move || {
+                let turn = shared.turn.lock().unwrap_or_else(PoisonError::into_inner);
                 let finished = job.run();
+                drop(turn);
                 let found = shared.session().finish(finished);
                 *shared.failed.lock().unwrap_or_else(PoisonError::into_inner) = found.err();
                 shared.changed();

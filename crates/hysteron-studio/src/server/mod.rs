@@ -33,6 +33,9 @@ struct Shared {
     named: Mutex<Vec<PathBuf>>,
     /// What ended without a fit, for the page.
     failed: Mutex<Option<Fault>>,
+    /// Held by the fit that runs. The others wait: each takes all cores, and memory that grows with
+    /// the fourth power of its levels.
+    turn: Mutex<()>,
     /// Counts what changed, for the events.
     changes: watch::Sender<u64>,
 }
@@ -80,6 +83,7 @@ impl Server {
             session: Mutex::new(Session::new(budget)),
             named: Mutex::new(Vec::new()),
             failed: Mutex::new(None),
+            turn: Mutex::new(()),
             changes: watch::Sender::new(0),
         });
         Ok(Self {

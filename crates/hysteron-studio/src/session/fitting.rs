@@ -13,6 +13,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// The most fits that run or wait at once.
+const WAITING: usize = 8;
+
 /// What tests a fit.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -164,6 +167,13 @@ impl Session {
                 "remove some of them",
             ));
         }
+        // Each holds a copy of its recordings while it waits.
+        if self.running.len() >= WAITING {
+            return Err(Fault::missing(
+                &format!("{WAITING} fits are running or waiting"),
+                "wait for one of them, or cancel it",
+            ));
+        }
         build(&options)?;
         let of = |purpose: Purpose| {
             self.files
@@ -263,6 +273,8 @@ impl Job {
     }
 
     fn fit(self) -> Result<Fitted, Fault> {
+        // One that was cancelled while it waited does nothing.
+        self.watch.tell("beginning", f64::NAN)?;
         let told = |stage, share| self.watch.tell(stage, share);
         let fit = build(&self.options)?.progress(Progress::new(&told));
         let (model, held_out) = match &self.hold_out {

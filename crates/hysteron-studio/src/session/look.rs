@@ -175,7 +175,11 @@ impl Session {
             };
             lines.push(line(Some(*fit), points));
         }
-        let difference = format!("measured − model, {output}");
+        // Short, because it stands beside a low picture.
+        let difference = match &recording.output_quantity.unit {
+            Some(unit) => format!("residual [{unit}]"),
+            None => "residual".to_owned(),
+        };
         let (x, y) = match view.picture {
             Picture::Input => (time, input),
             Picture::Output => (time, output),
