@@ -176,7 +176,7 @@ fn a_file_becomes_a_model_that_is_driven_and_taken_home() {
 fn files_and_rows_for_validation_test_a_fit() {
     let mut session = Session::new(1 << 28);
     let first = session.open("a.csv", table().into()).unwrap();
-    let span = json!({"request": "mark_span", "file": first, "from": 40.0, "to": 59.9});
+    let span = json!({"request": "mark_span", "file": first, "from": 40.0, "to": 60.0});
     ask(&mut session, span).unwrap();
     assert_eq!(overview(&mut session).files[0].marked, Some((401, 600)));
     let options = json!({"levels": "8", "bootstrap": "0"});

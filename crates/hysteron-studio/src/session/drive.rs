@@ -214,8 +214,14 @@ impl Drive {
             return None;
         }
         let inverse = self.model.inverse().ok()?;
+        // The inverse sums in another order, so an equal target could lie behind by rounding.
+        let hair = 1e-12 * (self.outputs.1 - self.outputs.0).abs();
         let edge = |heading| {
-            let target = Target::new(self.output).heading(Some(heading));
+            let past = match heading {
+                Direction::Rising => hair,
+                Direction::Falling => -hair,
+            };
+            let target = Target::new(self.output + past).heading(Some(heading));
             let solution = inverse
                 .step(&mut self.state.clone(), self.wanted(target))
                 .ok()?;
