@@ -284,7 +284,7 @@ class Controller:
         interval_s: float,
         commands: _Range,
         *,
-        model: Model | Adaptive | None = None,
+        model: Model | Adaptive | AdaptiveLoad | None = None,
         pid: Pid | None = None,
         policy: Literal["hold", "anticipate"] = "hold",
         tolerance: float = 0.0,
@@ -298,13 +298,14 @@ class Controller:
     @property
     def interval_s(self) -> float: ...
     @property
-    def adaptive(self) -> Adaptive | _MaybeNone: ...
+    def adaptive(self) -> Adaptive | AdaptiveLoad | _MaybeNone: ...
     def run(
         self,
         device: object,
         reference: ArrayLike,
         *,
         events: Sequence[Event] | None = None,
+        ahead: int = 0,
     ) -> Trace: ...
     def step(
         self,

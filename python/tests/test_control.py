@@ -1,5 +1,6 @@
 """Controllers, simulated plants and tuning."""
 
+import json
 import pickle
 
 import numpy as np
@@ -63,6 +64,53 @@ def test_all_schemes_track(identified):
     assert errors["adaptive"] < errors["inverse-pid"] < errors["inverse"] < errors["pid"] < 10.0
     assert schemes["adaptive"].adaptive.model() != identified
     assert schemes["inverse-pid"].adaptive is None
+
+
+def test_a_shift_is_followed_in_the_loop(identified):
+    """The model believes a plane that lies 8 V lower than the plant's."""
+    low, high = identified.range
+    shifted = pyhysteron.Model(identified.weights, (low - 8, high - 8), offset=identified.offset)
+    fixed = controller(shifted, pid=None)
+    following = controller(pyhysteron.AdaptiveLoad(shifted), pid=None)
+    still = error(fixed.run(pyhysteron.PreisachPlant(), REFERENCE), 800)
+    assert error(following.run(pyhysteron.PreisachPlant(), REFERENCE), 800) < 0.5 * still
+    assert isinstance(following.adaptive, pyhysteron.AdaptiveLoad)
+    assert abs(following.adaptive.shift - 8) < 4
+    with pytest.raises(TypeError, match="AdaptiveLoad is needed"):
+        controller("model.json")
+
+
+def test_a_run_tells_what_is_ahead():
+    """A wire heats before the output is due, only if it is told; with `run` as in a loop of `step`."""
+    plain = json.loads(pyhysteron.Model(np.full(36, 0.1), (25, 75), input="drive").to_json())
+    body = {"kind": "first-order", "ambient": 20.0, "gain": 80.0, "tau_heating": 1.0, "tau_cooling": 1.0}
+    model = plain | {"version": 2, "thermal": body, "drive": {"min": 0.0, "max": 1.0}}
+    model = pyhysteron.Model.from_json(json.dumps(model))
+
+    class Wire:
+        def __init__(self):
+            self.state, self.output, self.drives = model.start(), 0.0, []
+
+        def read(self):
+            return self.output
+
+        def write(self, drive):
+            self.output = self.state.step(drive, dt=0.1)
+            self.drives.append(drive)
+
+    target = np.repeat([0.5, 3.0], 30)
+    drives = {}
+    for ahead in (0, 20):
+        wire, loop = Wire(), Controller(0.1, (0, 1), model=model)
+        loop.run(wire, target, ahead=ahead)
+        drives[ahead] = np.array(wire.drives)
+        wire, loop = Wire(), Controller(0.1, (0, 1), model=model)
+        for n, output in enumerate(target):
+            wire.write(loop.step(output, wire.read(), ahead=target[n + 1 : n + 1 + ahead]).drive)
+        assert np.array_equal(drives[ahead], wire.drives)
+    assert np.max(drives[20][:30]) > np.max(drives[0][5:30])
+    with pytest.raises((OverflowError, TypeError)):
+        loop.run(Wire(), target, ahead=-1)
 
 
 def test_run_is_the_loop_written_out(identified):
@@ -227,7 +275,7 @@ def test_plants_are_labelled_and_repeat_themselves():
         (lambda: Controller(0.1, (0, 1), drives=(0, np.inf)), pyhysteron.ControlError, "`drives`"),
         (lambda: Controller(0.1, (0, 1), stuck_s=0), pyhysteron.ControlError, "`stuck_s`"),
         (lambda: Controller(0.1, (0, 1), policy="sleep"), ValueError, "`policy` is 'sleep'"),
-        (lambda: Controller(0.1, (0, 1), model=3), TypeError, "`model` is 3: a Model or an Adaptive"),
+        (lambda: Controller(0.1, (0, 1), model=3), TypeError, "`model` is 3: a Model, an Adaptive or an AdaptiveLoad"),
         (lambda: Controller(0.1, (0, 1), model=pyhysteron.Model([1, -1, 1], (0, 1))), pyhysteron.CoreError, ""),
         (lambda: controller().step(np.nan, 0.0), pyhysteron.CoreError, "`target`"),
         (lambda: controller().step(1.0, 0.0, heading="up"), ValueError, "`heading` is 'up'"),

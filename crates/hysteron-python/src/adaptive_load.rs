@@ -77,6 +77,13 @@ impl From<hysteron::AdaptiveLoad> for AdaptiveLoad {
     }
 }
 
+impl AdaptiveLoad {
+    /// The library's, as it is now.
+    pub(crate) fn now(&self, py: Python<'_>) -> hysteron::AdaptiveLoad {
+        self.inner.with(py, |adaptive| adaptive.clone())
+    }
+}
+
 #[pymethods]
 impl AdaptiveLoad {
     #[new]

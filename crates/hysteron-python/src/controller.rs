@@ -2,6 +2,7 @@
 
 use crate::action::Action;
 use crate::adaptive::Adaptive;
+use crate::adaptive_load::AdaptiveLoad;
 use crate::array::samples;
 use crate::choices::POLICIES;
 use crate::choices::{choice, direction, none_left};
@@ -14,7 +15,8 @@ use crate::progress::with_progress;
 use crate::shared::Shared;
 use crate::trace::Trace;
 use hysteron::control::{self, Compensator, Course, Gains, InnerLoop, Reading, Reference, Scheme};
-use hysteron_sim::track::course;
+use hysteron_sim::track::course as events_in_order;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -32,8 +34,8 @@ use pyo3::types::PyDict;
 ///     Time between samples, s.
 /// commands : tuple of float
 ///     Lowest and highest input that may be commanded.
-/// model : Model or Adaptive, optional
-///     Feedforward by its inverse. An `Adaptive` is copied, and the copy learns here.
+/// model : Model, Adaptive or AdaptiveLoad, optional
+///     Feedforward by its inverse. One that learns is copied, and the copy learns here.
 /// pid : Pid, optional
 ///     Feedback of the output, added to the feedforward: a PID with these gains, at rest.
 /// policy : {'hold', 'anticipate'}
@@ -237,12 +239,20 @@ impl Controller {
 
     /// What the model in the loop has learned: a copy as it is now; None where none learns.
     #[getter]
-    fn adaptive(&self, py: Python<'_>) -> Option<Adaptive> {
-        let adapting = |controller: &mut control::Controller| {
-            let adaptive = controller.compensator()?.adapting()?;
-            Some(adaptive.clone())
-        };
-        self.inner.with(py, adapting).map(Adaptive::from)
+    fn adaptive<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let compensator = |controller: &mut control::Controller| controller.compensator().cloned();
+        let compensator = self.inner.with(py, compensator);
+        let learning = compensator.as_ref().and_then(Compensator::adapting);
+        if let Some(adaptive) = learning {
+            return Ok(Some(
+                Adaptive::from(adaptive.clone()).into_bound_py_any(py)?,
+            ));
+        }
+        let following = compensator.as_ref().and_then(Compensator::following);
+        let following = following.map(|found| AdaptiveLoad::from(found.clone()));
+        following
+            .map(|found| found.into_bound_py_any(py))
+            .transpose()
     }
 
     /// Follow a reference on a device, one sample for each of its values.
@@ -261,6 +271,8 @@ impl Controller {
     ///     In the output's unit. Where it goes next is taken from it, for 'anticipate'.
     /// events : sequence of dict
     ///     What happens to a simulated plant: 'at_s', and what `SimulatedPlant.disturb` knows.
+    /// ahead : int
+    ///     How many samples of the reference the controller is told ahead; see `step`.
     ///
     /// Returns
     /// -------
@@ -288,28 +300,30 @@ impl Controller {
     /// >>> trace = pyhysteron.control.Controller(0.01, (0, 10), pid=pid).run(Stage(), np.full(500, 3.0))
     /// >>> bool(abs(trace.output[-1] - 3.0) < 1e-3)
     /// True
-    #[pyo3(signature = (device, reference, *, events=None))]
+    #[pyo3(signature = (device, reference, *, events=None, ahead=0))]
     fn run<'py>(
         &self,
         py: Python<'py>,
         device: &Bound<'py, PyAny>,
         reference: &Bound<'py, PyAny>,
         events: Option<&Bound<'py, PyAny>>,
+        ahead: usize,
     ) -> PyResult<Trace> {
         let reference = samples(reference, "reference")?;
         let reference = reference.as_slice()?;
         finite("reference", reference)?;
         let events = events.map_or(Ok(Vec::new()), events_of)?;
         let headings = hysteron::headings(reference, self.tolerance);
+        let course = |events| Course {
+            reference,
+            headings: &headings,
+            ahead,
+            events,
+        };
         if let Ok(plant) = device.cast::<SimulatedPlant>() {
             let plant = plant.get();
-            let events = course(&events, self.interval_s(py));
-            let course = Course {
-                reference,
-                headings: &headings,
-                ahead: 0,
-                events: &events,
-            };
+            let events = events_in_order(&events, self.interval_s(py));
+            let course = course(&events);
             let trace = with_progress(py, None, |progress| {
                 plant.inner.with_detached(|plant| {
                     let run = |controller: &mut _| {
@@ -325,7 +339,7 @@ impl Controller {
                 "`events` happen to simulated plants only",
             ));
         }
-        let trace = follow(py, device, &self.inner, reference, &headings)?;
+        let trace = follow(py, device, &self.inner, &course(&[]))?;
         Ok(trace.into())
     }
 }
@@ -347,9 +361,12 @@ fn compensator(model: &Bound<'_, PyAny>) -> PyResult<Compensator> {
     if let Ok(adaptive) = model.cast::<Adaptive>() {
         return Ok(Compensator::adaptive(adaptive.get().now(model.py())));
     }
+    if let Ok(following) = model.cast::<AdaptiveLoad>() {
+        return Ok(Compensator::load(following.get().now(model.py())));
+    }
     let model = model.cast::<Model>().map_err(|_| {
         PyTypeError::new_err(format!(
-            "`model` is {model}: a Model or an Adaptive is needed"
+            "`model` is {model}: a Model, an Adaptive or an AdaptiveLoad is needed"
         ))
     })?;
     Compensator::fixed(&model.get().inner).raise()

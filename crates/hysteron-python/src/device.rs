@@ -4,8 +4,7 @@ use crate::choices::another_kind;
 use crate::convert::options;
 use crate::error::Raise;
 use crate::shared::Shared;
-use hysteron::Direction;
-use hysteron::control::{Controller, Reading, Reference, Trace};
+use hysteron::control::{Controller, Course, Reading, Trace};
 use hysteron_sim::track::Event;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -16,24 +15,21 @@ pub(crate) fn follow(
     py: Python<'_>,
     device: &Bound<'_, PyAny>,
     controller: &Shared<Controller>,
-    reference: &[f64],
-    headings: &[Option<Direction>],
+    course: &Course<'_>,
 ) -> PyResult<Trace> {
     if !(device.hasattr("read")? && device.hasattr("write")?) {
         let needed = "an object with read() and write(drive)";
         return Err(another_kind("device", needed, device));
     }
     let dt_s = controller.with(py, |controller| controller.interval_s());
-    let (count, advance) = (reference.len(), device.getattr_opt("advance")?);
+    let (count, advance) = (course.reference.len(), device.getattr_opt("advance")?);
     let mut trace = Trace::default();
-    for (&output, &heading) in reference.iter().zip(headings) {
+    for (n, &output) in course.reference.iter().enumerate() {
         py.check_signals()?;
-        let (target, reading) = (
-            Reference { output, heading },
-            reading(&device.call_method0("read")?)?,
-        );
+        let (target, next) = course.target(n);
+        let reading = reading(&device.call_method0("read")?)?;
         let step = |controller: &mut Controller| {
-            let action = controller.step(target, reading)?;
+            let action = controller.step_ahead(target, next, reading)?;
             trace.record(count, output, (reading, reading), (controller, &action));
             hysteron::Result::Ok(action.drive)
         };

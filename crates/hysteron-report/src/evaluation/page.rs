@@ -76,6 +76,7 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
 fn facts(view: &View<'_>) -> Markup {
     let source = view.source;
     let weights = source.weights().len();
+    let (least, most) = source.steps();
     html! {
         div.wide { table.facts {
             tr {
@@ -86,7 +87,9 @@ fn facts(view: &View<'_>) -> Markup {
                 th scope="row" { "Plane" }
                 td {
                     (significant(source.min(), 3)) " to " (view.input.value(source.max())) ", "
-                    (count(source.levels())) " levels " (view.input.value(source.step())) " apart"
+                    (count(source.levels())) " levels "
+                    @if least < most { (significant(least, 3)) " to " }
+                    (view.input.value(most)) " apart"
                 }
             }
             tr {

@@ -43,9 +43,18 @@ impl<'a> Source<'a> {
         self.model.plane().levels()
     }
 
-    /// `ΔT`.
-    pub(crate) fn step(self) -> f64 {
-        self.model.plane().step()
+    /// The smallest and the largest distance between neighbouring levels; both are `ΔT` where the
+    /// distances are equal.
+    pub(crate) fn steps(self) -> (f64, f64) {
+        let corners = self.model.spacing();
+        let step = self.model.plane().step();
+        if corners.is_empty() {
+            return (step, step);
+        }
+        let steps = corners.windows(2).map(|pair| pair[1] - pair[0]);
+        steps.fold((f64::INFINITY, 0.0), |(low, high), step| {
+            (low.min(step), high.max(step))
+        })
     }
 
     /// All weights, row by row: `j = 1…K`, within a row `i = 1…j`.

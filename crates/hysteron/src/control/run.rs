@@ -21,6 +21,22 @@ pub struct Course<'a> {
     pub events: &'a [(usize, Disturbance)],
 }
 
+impl Course<'_> {
+    /// The target of sample `n`, and the references after it that the controller is told.
+    ///
+    /// # Panics
+    /// If `n` is not a sample of the reference.
+    #[must_use]
+    pub fn target(&self, n: usize) -> (Reference, &[f64]) {
+        let target = Reference {
+            output: self.reference[n],
+            heading: self.headings.get(n).copied().flatten(),
+        };
+        let next = &self.reference[n + 1..];
+        (target, &next[..self.ahead.min(next.len())])
+    }
+}
+
 /// Runs `controller` on `plant`. The trace holds the plant's true output and input.
 ///
 /// # Errors
@@ -44,10 +60,8 @@ pub fn run(
         }
         let truth = plant.truth();
         let reading = plant.read();
-        let heading = course.headings.get(n).copied().flatten();
-        let next = course.reference[n + 1..].iter().take(course.ahead);
-        let next: Vec<f64> = next.copied().collect();
-        let action = controller.step_ahead(Reference { output, heading }, &next, reading)?;
+        let (target, next) = course.target(n);
+        let action = controller.step_ahead(target, next, reading)?;
         plant.write(action.drive);
         plant.advance(controller.interval_s());
         trace.record(count, output, (reading, truth), (controller, &action));
