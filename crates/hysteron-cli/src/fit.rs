@@ -5,7 +5,7 @@ use crate::{args, hold_out, prepare, progress, recording, text};
 use hysteron::{
     Advice, Choice, Columns, Criterion, FirstOrder, Fit, FitOptions, FitSummary, HeldOut, HoldOut,
     LoadLaw, Model, Preparation, Progress, RateDependence, Recording, Sign, Smooth, Solver,
-    Spacing, Step, Validation,
+    Spacing, Step, Validation, prior_of_fleet,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -152,12 +152,16 @@ pub(crate) fn fit_of(args: &args::FitHow) -> Result<Fit<'static>> {
         },
         ..FitOptions::default()
     };
-    Ok(Fit::from(options)
+    let fit = Fit::from(options)
         .levels(levels)
         .smooth(args.smooth)
         .start(args.start)
         .bootstrap(args.bootstrap.map_or(Choice::Auto, Choice::Fixed))
-        .thermal(args.thermal.is_some()))
+        .thermal(args.thermal.is_some());
+    match &args.prior {
+        Some(models) => Ok(fit.prior(prior_of_fleet(models)?)),
+        None => Ok(fit),
+    }
 }
 
 type Prepared = (Recording, Option<Preparation>, Option<RateDependence>);
@@ -217,6 +221,7 @@ fn to_text(args: &args::Fit, model: &Model, fit: &FitSummary) -> String {
     lines.extend(load_line(model));
     lines.extend(after_line(model, args));
     lines.extend(start_line(fit));
+    lines.extend(prior_line(fit));
     lines.extend(text::confidence(fit, model));
     lines.join("\n")
 }
@@ -336,6 +341,13 @@ fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
 }
 
 /// How well the model simulates from the start that was found.
+fn prior_line(fit: &FitSummary) -> Option<String> {
+    let models = fit.other.get("prior")?.get("models")?;
+    Some(format!(
+        "what the recording does not say is taken from {models} other actuators"
+    ))
+}
+
 fn start_line(fit: &FitSummary) -> Option<String> {
     let found = fit.other.get("start_found")?;
     let percent = found.get("nrmse_percent")?.as_f64()?;

@@ -677,3 +677,84 @@ fn units_and_held_out_parts_are_those_asked_for() {
         assert_eq!(row.shape.stroke < 0.0, falls);
     }
 }
+
+/// A fleet of plays that differ in stroke and offset: a short recording and the prior give the
+/// model that a whole recording gives.
+#[test]
+fn a_prior_says_what_a_short_recording_does_not() {
+    let bench = tempfile::tempdir().unwrap();
+    let folder = bench.path();
+    let mut random = SplitMix(7);
+    let mut record = |samples: usize| {
+        let (stroke, offset) = (1.0 + random.unit(), random.unit());
+        let mut held = 0.0_f64;
+        let rows = (0..samples).map(|n| {
+            let x = 50.0 - 50.0 * (n as f64 * 0.05).cos() * (1.0 - n as f64 / 1000.0);
+            held = held.clamp(x - 20.0, x);
+            (x, offset + stroke * held + 0.01 * random.unit())
+        });
+        rows.collect::<Vec<_>>()
+    };
+    fs::create_dir(folder.join("each")).unwrap();
+    for n in 0..30 {
+        fs::write(folder.join(format!("each/{n}.csv")), csv(&record(400))).unwrap();
+    }
+    let whole = record(400);
+    fs::write(folder.join("whole.csv"), csv(&whole)).unwrap();
+    fs::write(folder.join("short.csv"), csv(&whole[..40])).unwrap();
+    let range = "--range 0,100 --start off";
+    ran(
+        folder,
+        &format!("fleet fit each {FAST} {range} -o models.parquet"),
+    );
+    let columns = "--input x --output y --start off";
+    let said = ran(
+        folder,
+        &format!("fit short.csv --prior models.parquet {columns} -o short.json"),
+    );
+    // Strange ones do not count.
+    assert!(said.contains(" other actuators"), "{said}");
+    ran(
+        folder,
+        &format!("fit short.csv {FAST} {range} -o alone.json"),
+    );
+    ran(
+        folder,
+        &format!("fit whole.csv {FAST} {range} -o whole.json"),
+    );
+    let error = |model: &str| {
+        let line = format!("evaluate {model} whole.csv {columns}");
+        json(folder, &line)["forward"]["rmse"].as_f64().unwrap()
+    };
+    let (short, alone, whole) = (
+        error("short.json"),
+        error("alone.json"),
+        error("whole.json"),
+    );
+    // Between the model that the whole recording gives, and a third of what the short one lacks.
+    assert!(
+        short < whole + 0.3 * (alone - whole),
+        "{short}, {alone} alone, {whole} of all"
+    );
+    // A fleet's fit takes the same prior, and each model is that of a fit alone.
+    fs::create_dir(folder.join("new")).unwrap();
+    fs::copy(folder.join("short.csv"), folder.join("new/short.csv")).unwrap();
+    let fleet = "fleet fit new --prior models.parquet";
+    ran(folder, &format!("{fleet} {columns} -o new.parquet"));
+    let one = Model::from_json(&fs::read_to_string(folder.join("short.json")).unwrap()).unwrap();
+    assert_eq!(
+        rows(&folder.join("new.parquet"))[0].model.weights(),
+        one.weights()
+    );
+    for (line, reason) in [
+        ("--prior nothing.parquet", "nothing.parquet"),
+        ("--prior whole.csv", "whole.csv"),
+        ("--prior new.parquet", "1 models"),
+    ] {
+        let line = format!("fit short.csv {columns} {line} -o other.json");
+        let said = refused(folder, &line);
+        assert!(said.contains(reason), "{line}: {said}");
+    }
+    let line = format!("fit short.csv {columns} --levels 5 --prior models.parquet -o other.json");
+    assert_eq!(run(folder, &line).status.code(), Some(2), "{line}");
+}

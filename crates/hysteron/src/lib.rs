@@ -61,7 +61,7 @@ pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate
 #[cfg(feature = "data")]
 pub use fleet::{
     FleetFailure, FleetFitted, FleetOptions, FleetRow, Norm, Shape, Strangeness, fit_fleet,
-    join_fleets, read_fleet,
+    join_fleets, prior_of_fleet, read_fleet,
 };
 pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
@@ -72,8 +72,8 @@ pub use hysteron_core::{
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, FIT_OPTIONS, Fit, FitOption, FitOptions,
-    LeftOut, LoadLaw, Spacing, advice, cross_validate, excitation, left_out, plane_of, usual_start,
-    way_against_input,
+    LeftOut, LoadLaw, Spacing, WeightPrior, advice, cross_validate, excitation, left_out, plane_of,
+    usual_start, way_against_input,
 };
 pub use inspect::{
     ConfidenceSummary, LoadSummary, ModelSummary, RecordingSummary, Series, Uncertain,

@@ -97,6 +97,13 @@ pub(crate) struct FitHow {
     /// levels on 60, from 45 on 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
     pub(crate) bootstrap: Option<usize>,
+    /// A table of models of other actuators of the same kind (`fleet fit`): their mean and spread
+    /// say what a short recording does not. Plane, levels, spacing, operator and sign are theirs
+    #[arg(long, value_name = "MODELS", conflicts_with_all = [
+        "levels", "range", "smooth", "ridge", "spacing", "operator", "sign", "offset", "thermal",
+        "load", "creep", "lag", "bootstrap",
+    ])]
+    pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
     /// `branches:20%` (a share up to 33 %, spread over the recording), `rows:A-B` (counted from 1,
     /// after the preparation), or another recording. A FILE may be given several times

@@ -6,12 +6,14 @@ use crate::identify::choose::start::usual_start;
 use crate::identify::doubt::sessions::widen;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
+use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked};
 use crate::model::{Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use hysteron_core::Operator;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Identifies a model from recordings. Set the options that differ from the defaults, then call
 /// [`run`](Fit::run).
@@ -45,6 +47,7 @@ pub struct Fit<'a> {
     auto_bootstrap: bool,
     body: bool,
     repeats: Vec<Recording>,
+    prior: Option<Arc<WeightPrior>>,
     progress: Progress<'a>,
 }
 
@@ -80,6 +83,7 @@ impl From<FitOptions> for Fit<'_> {
             auto_bootstrap: false,
             body: false,
             repeats: Vec::new(),
+            prior: None,
             progress: Progress::NONE,
         }
     }
@@ -252,6 +256,14 @@ impl<'a> Fit<'a> {
         self
     }
 
+    /// What is known from other actuators of the same kind. Plane, spacing, operator and sign are
+    /// then those of the prior, and there is neither smoothness nor a bootstrap.
+    #[must_use]
+    pub fn prior(mut self, prior: impl Into<Arc<WeightPrior>>) -> Self {
+        self.prior = Some(prior.into());
+        self
+    }
+
     /// A callback for the progress, which may cancel the work.
     #[must_use]
     pub fn progress(mut self, progress: Progress<'a>) -> Self {
@@ -271,7 +283,9 @@ impl<'a> Fit<'a> {
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
         let mut options = self.options.clone();
-        if self.auto_start {
+        if let (true, Some(prior)) = (self.auto_start, &self.prior) {
+            options.start = prior.start();
+        } else if self.auto_start {
             // A body and a load change what the operators see of the first sample. Of these
             // recordings most begin at rest.
             let plain = !self.body && recordings.iter().all(|recording| recording.load.is_none());
@@ -284,16 +298,21 @@ impl<'a> Fit<'a> {
             true => outliers::mended(recordings, &options, self.progress)?,
             false => (Cow::Borrowed(recordings), Vec::new()),
         };
-        if self.auto_start && options.start == Start::Unknown {
+        if self.auto_start && self.prior.is_none() && options.start == Start::Unknown {
             options.start = usual_start(&seen, &options)?;
         }
-        let asked = Asked {
-            body: self.body,
-            open: self.open,
-            auto_bootstrap: self.auto_bootstrap,
-            outliers: &outliers,
+        let mut model = match &self.prior {
+            Some(prior) => prior.fit(&seen, &options, self.progress)?,
+            None => {
+                let asked = Asked {
+                    body: self.body,
+                    open: self.open,
+                    auto_bootstrap: self.auto_bootstrap,
+                    outliers: &outliers,
+                };
+                stages::fit(&seen, &options, asked, self.progress)?
+            }
         };
-        let mut model = stages::fit(&seen, &options, asked, self.progress)?;
         if let Some(fit) = &mut model.fit {
             fit.outliers = outliers;
         }

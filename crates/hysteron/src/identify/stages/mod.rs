@@ -109,7 +109,7 @@ pub(crate) fn fit(
 
 /// Keeps the state that explains the beginning of the recording, and says how well the model then
 /// simulates the recording.
-fn with_found_start(
+pub(super) fn with_found_start(
     model: Model,
     recording: &Recording,
     notes: &mut std::collections::BTreeMap<String, serde_json::Value>,

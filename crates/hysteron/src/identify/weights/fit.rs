@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::identify::doubt::confidence;
 use crate::identify::options::FitOptions;
-use crate::identify::weights::problem::Problem;
+use crate::identify::weights::problem::{Fitted, Problem};
 use crate::model::{FitSummary, LoadDependence, LoadPart, Model, Outlier, SeenFile};
 use crate::progress::Progress;
 use crate::recording::{Origin, Recording};
@@ -40,6 +40,21 @@ pub(crate) fn fit_weights_without(
         }
         fitted = problem.solve(None, progress)?;
     }
+    let mut model = described(&problem, &fitted, recordings)?;
+    let confidence = confidence::of(&problem, &fitted, progress)?;
+    if let Some(fit) = &mut model.fit {
+        fit.confidence = confidence;
+    }
+    Ok(model)
+}
+
+/// The model that was fitted, with the errors of the fit.
+pub(crate) fn described(
+    problem: &Problem,
+    fitted: &Fitted,
+    recordings: &[Recording],
+) -> Result<Model> {
+    let options = &problem.options;
     let plane = *problem.regressor.plane();
     let sign = fitted.sign;
     let parts = problem.load_parts(&fitted.solution.x, &fitted.solution.free, sign);
@@ -53,7 +68,6 @@ pub(crate) fn fit_weights_without(
         let load = LoadDependence::new(quantity, range, parts, model.operators());
         model.load = Some(load.map_err(|(_, error)| error)?);
     }
-    let confidence = confidence::of(&problem, &fitted, progress)?;
 
     let residual = &fitted.solution.residual;
     let measured = &problem.experiment.output;
@@ -85,7 +99,7 @@ pub(crate) fn fit_weights_without(
         other_files: others.into_iter().map(|seen| seen.file).collect(),
         repeats: Vec::new(),
         validation: None,
-        confidence,
+        confidence: None,
         other: std::collections::BTreeMap::new(),
     });
     Ok(model)
