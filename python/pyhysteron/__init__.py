@@ -9,14 +9,14 @@ that changes.
 
 Submodules: `pyhysteron.control` and `track` for control loops, `pyhysteron.plot` for figures,
 `pyhysteron.sklearn` for a regressor, `pyhysteron.blocks` for blocks of python-control,
-`pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
+`pyhysteron.fleet` for many actuators at once, `pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
 extra package are imported when they are first used.
 """
 
 import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from . import control, errors as errors, results as results
+from . import control, errors as errors, fleet as fleet, results as results
 from ._convert import did_you_mean as _did_you_mean
 from ._hysteron import (
     __version__ as __version__,

@@ -20,6 +20,7 @@ from .results import (
     FmuExport,
     Forward,
     LearningTable,
+    FleetFitted,
     LeftOut,
     LoadCurves,
     Median,
@@ -54,16 +55,21 @@ __all__ = [
     "SpringPlant",
     "State",
     "Trace",
+    "WeightPrior",
     "adapt",
     "branches",
     "compare",
     "design",
     "excitation",
     "fit",
+    "fit_fleet",
     "headings",
+    "join_fleets",
     "left_out",
     "prepare",
+    "prior_of_fleet",
     "read",
+    "read_fleet",
     "remembered",
     "scenarios",
     "track",
@@ -761,6 +767,10 @@ class Trace:
     def to_dict(self) -> TraceTable: ...
     def __len__(self) -> int: ...
 
+@final
+class WeightPrior:
+    def __new__(cls, models: Sequence[Model]) -> WeightPrior: ...
+
 def adapt(
     model: Model,
     recording: Recording | ArrayLike,
@@ -839,11 +849,45 @@ def fit(
     repeats: Recording | Sequence[Recording] | None = None,
     hold_out: str | Recording | Sequence[Recording] | None = None,
     thermal: Literal["first-order", True, False] | None = None,
+    prior: WeightPrior | None = None,
     time: _Times | None = None,
     load: ArrayLike | None = None,
     progress: _Progress = None,
 ) -> Model: ...
+def fit_fleet(
+    data: Sequence[_Path],
+    target: _Path,
+    *,
+    input: str,
+    output: str,
+    by: str | None = None,
+    levels: int | Literal['auto'] = "auto",
+    range: _Range | None = None,
+    operator: _Operator = "mkp",
+    solver: Literal["nnls", "ols"] = "nnls",
+    smooth: float | tuple[float, float] | Literal['auto'] = "auto",
+    ridge: float = 1e-06,
+    robust: bool = True,
+    start: Literal["auto", "off", "on", "unknown"] = "auto",
+    sign: Literal[1, -1] | None = None,
+    offset: float | None = None,
+    load_law: Literal["shift", "weights"] = "shift",
+    load_degree: int | Literal['auto'] = "auto",
+    spacing: Literal["auto", "uniform"] = "auto",
+    creep: int | Literal['auto', 'off'] = "off",
+    lag: float | Literal['auto', 'off'] = "off",
+    bootstrap: int | None = None,
+    hold_out: str | None = None,
+    thermal: Literal["first-order", True, False] | None = None,
+    prior: WeightPrior | None = None,
+    time: str | None = None,
+    load: str | None = None,
+    repair: bool = False,
+    force: bool = False,
+    progress: _Progress = None,
+) -> FleetFitted: ...
 def headings(series: ArrayLike, tolerance: float = 0.0) -> list[_Heading]: ...
+def join_fleets(parts: Sequence[_Path], target: _Path, *, force: bool = False) -> int: ...
 def left_out(
     recording: _Recordings,
     output: ArrayLike | None = None,
@@ -875,6 +919,7 @@ def prepare(
     load: ArrayLike | None = None,
     progress: _Progress = None,
 ) -> tuple[Recording, Preparation]: ...
+def prior_of_fleet(models: _Path) -> WeightPrior: ...
 def read(
     path: _Path,
     *,
@@ -888,6 +933,7 @@ def read(
     repair: bool = False,
     max_memory: int | None = None,
 ) -> Recording: ...
+def read_fleet(models: _Path, *, actuators: Sequence[str] | None = None) -> dict[str, Model]: ...
 def remembered(input: ArrayLike) -> NDArray[int64]: ...
 def scenarios() -> dict[str, str]: ...
 def track(

@@ -37,6 +37,7 @@ __all__ = [
     "Evaluation",
     "Event",
     "FitSummary",
+    "FleetFitted",
     "FmuExport",
     "Forward",
     "HeldOut",
@@ -774,6 +775,31 @@ class Forward(_Result):
     seen_for_band: bool
     residual: _Array
     output_model: _Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FleetFitted(_Result):
+    """What became of a fleet: `pyhysteron.fleet.fit_fleet`.
+
+    Attributes
+    ----------
+    fitted : int
+        Number of actuators in the table.
+    resumed : int
+        How many of them had been fitted by an earlier call that was ended.
+    with_warnings : int
+        How many of them have warnings, which are in the table.
+    failed : dict of str
+        Those that are not in the table, and why.
+    notes : tuple of str
+        What was assumed about the files.
+    """
+
+    fitted: int
+    resumed: int
+    with_warnings: int
+    failed: dict[str, str]
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -3,6 +3,7 @@
 use crate::choices::{another_kind, choice, named, no_argument, operator, start_of};
 use crate::convert::{result, warn};
 use crate::error::{Raise, spelt};
+use crate::fleet::WeightPrior;
 use crate::inputs::{recordings_alone, recordings_of};
 use crate::integer::Integer;
 use crate::model::{Model, sign_of};
@@ -82,6 +83,9 @@ use pyo3::types::{PyDict, PyString};
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a
 ///     current or a voltage. Each sample of it was held since the sample before. Needs `time`.
+/// prior : WeightPrior, optional
+///     What other actuators of the same kind tell; see `pyhysteron.fleet`. Plane, spacing, operator
+///     and sign are then theirs, and there is neither smoothness nor a bootstrap.
 /// time, load : array_like, shape (n,), optional
 ///     For an input and an output given as arrays. `time` as in `Recording`.
 /// progress : callable, bool or None
@@ -114,9 +118,9 @@ use pyo3::types::{PyDict, PyString};
 /// ('straight line', True)
 #[pyfunction]
 #[pyo3(signature = (
-    recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, time=None, load=None,
-    progress=None, **options,
-), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, time=None, load=None, progress=None)")]
+    recording, output=None, *, bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None,
+    load=None, progress=None, **options,
+), text_signature = "(recording, output=None, *, levels='auto', range=None, operator='mkp', solver='nnls', smooth='auto', ridge=1e-6, robust=True, start='auto', sign=None, offset=None, load_law='shift', load_degree='auto', spacing='auto', creep='off', lag='off', bootstrap=None, repeats=None, hold_out=None, thermal=None, prior=None, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -126,6 +130,7 @@ pub(crate) fn fit(
     repeats: Option<&Bound<'_, PyAny>>,
     hold_out: Option<&Bound<'_, PyAny>>,
     thermal: Option<&Bound<'_, PyAny>>,
+    prior: Option<PyRef<'_, WeightPrior>>,
     time: Option<&Bound<'_, PyAny>>,
     load: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -136,31 +141,15 @@ pub(crate) fn fit(
         "repeats",
         "hold_out",
         "thermal",
+        "prior",
         "time",
         "load",
         "progress",
     ];
-    let defaults = FitOptions {
-        robust: true,
-        spacing: Spacing::Auto,
-        ..FitOptions::default()
-    };
-    let names = [&names[..], &STAGES[..]].concat();
-    let (options, auto) = fit_options("fit", &names, defaults, options)?;
-    let mut fit = Fit::from(options);
-    if auto.levels {
-        fit = fit.levels(Auto);
+    let mut fit = fit_with("fit", &names, bootstrap, options)?;
+    if let Some(prior) = prior {
+        fit = fit.prior(prior.inner.clone());
     }
-    if auto.smooth {
-        fit = fit.smooth(Auto);
-    }
-    if auto.start {
-        fit = fit.start(Auto);
-    }
-    fit = match bootstrap {
-        None => fit.bootstrap(Auto),
-        Some(count) => fit.bootstrap(count.of::<usize>("bootstrap")?),
-    };
     let thermal = thermal.map_or(Ok(false), thermal_of)?;
     let recordings = recordings_of(recording, output, time, load)?;
     let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
@@ -250,6 +239,36 @@ pub(crate) fn left_out<'py>(
     let chosen = chosen.map(|(levels, smooth)| (*levels, (smooth.along, smooth.across)));
     dict.set_item("chosen", chosen.collect::<Vec<_>>())?;
     result(py, "LeftOut", dict)
+}
+
+/// A fit with all options but those that are arguments of their own.
+pub(crate) fn fit_with(
+    call: &str,
+    names: &[&str],
+    bootstrap: Option<Integer>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Fit<'static>> {
+    let defaults = FitOptions {
+        robust: true,
+        spacing: Spacing::Auto,
+        ..FitOptions::default()
+    };
+    let names = [names, &STAGES[..]].concat();
+    let (options, auto) = fit_options(call, &names, defaults, options)?;
+    let mut fit = Fit::from(options);
+    if auto.levels {
+        fit = fit.levels(Auto);
+    }
+    if auto.smooth {
+        fit = fit.smooth(Auto);
+    }
+    if auto.start {
+        fit = fit.start(Auto);
+    }
+    Ok(match bootstrap {
+        None => fit.bootstrap(Auto),
+        Some(count) => fit.bootstrap(count.of::<usize>("bootstrap")?),
+    })
 }
 
 /// What is `'auto'`.
@@ -386,7 +405,7 @@ fn stage<'py, T: Copy>(
 }
 
 /// What takes no part in a fit: a part of the recordings in words, or other recordings.
-fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
+pub(crate) fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
     match value.cast::<PyString>() {
         Ok(text) => text.to_string().parse().raise(),
         Err(_) => recordings_alone("hold_out", value).map(HoldOut::Recordings),
@@ -394,7 +413,7 @@ fn hold_out_of(value: &Bound<'_, PyAny>) -> PyResult<HoldOut> {
 }
 
 /// Whether a thermal body is to be identified.
-fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+pub(crate) fn thermal_of(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     match value.extract::<bool>() {
         Ok(body) => Ok(body),
         Err(_) => {

@@ -16,6 +16,7 @@ mod error;
 mod evaluate;
 mod export;
 mod fit;
+mod fleet;
 mod inputs;
 mod integer;
 mod inverse;
@@ -67,6 +68,8 @@ mod _hysteron {
     use crate::evaluate::excitation;
     #[pymodule_export]
     use crate::fit::{fit, left_out};
+    #[pymodule_export]
+    use crate::fleet::{WeightPrior, fit_fleet, join_fleets, prior_of_fleet, read_fleet};
     #[pymodule_export]
     use crate::inverse::Inverse;
     #[pymodule_export]

@@ -138,6 +138,12 @@ impl WeightPrior {
         })
     }
 
+    /// Number of models.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// How the recordings of the models began: off or on if all did, and otherwise unknown.
     #[must_use]
     pub fn start(&self) -> Start {
