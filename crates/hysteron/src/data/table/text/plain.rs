@@ -107,17 +107,20 @@ fn short_decimal(cell: &[u8]) -> Option<f64> {
     if !(1..=16).contains(&digits.len()) {
         return None;
     }
-    let (mut whole, mut point) = (0_u64, None);
-    for (n, byte) in digits.iter().enumerate() {
-        match byte {
-            b'0'..=b'9' => whole = 10 * whole + u64::from(byte - b'0'),
-            b'.' if point.is_none() => point = Some(n),
-            _ => return None,
+    let (mut whole, mut point, mut decimals) = (0_u64, false, 0);
+    for byte in digits {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            whole = 10 * whole + u64::from(digit);
+            decimals += usize::from(point);
+        } else if *byte == b'.' && !point {
+            point = true;
+        } else {
+            return None;
         }
     }
-    let decimals = point.map_or(0, |point| digits.len() - 1 - point);
-    let count = digits.len() - usize::from(point.is_some());
-    if count == 0 || count > 15 {
+    let count = digits.len() - usize::from(point);
+    if !(1..=15).contains(&count) {
         return None;
     }
     let value = whole as f64 / POWERS[decimals];
