@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 ROWS = 1_000_000
-ROUNDS = 7
+ROUNDS = 5
 HEAD = """# CPU of tables
 
 This page is printed by

@@ -216,3 +216,53 @@ fn blocks_give_the_bytes_and_faults_of_single_rows() {
     }
     assert!(whole > 100 && faults > 100, "{whole} {faults}");
 }
+
+/// Rows wait for the reversal after them, over the end of their block.
+#[test]
+fn rows_that_wait_stay_with_their_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let [source, out] = ["in.csv", "out.csv"].map(|name| folder.path().join(name));
+    let model = model();
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let target = |n: u32| 0.9 + 0.5 * (f64::from(n) * 1e-3).sin();
+    let mut text = "n,x\n".to_owned();
+    let mut targets = Vec::new();
+    for n in 0..40_000 {
+        targets.push(target(n) + 1e-3 * f64::from(below(&mut rng, 2)));
+        text += &format!("\"row {n}\",{}\n", targets[targets.len() - 1]);
+    }
+    fs::write(&source, text).unwrap();
+    for (policy, look_ahead) in [(Policy::Hold, 0), (Policy::Anticipate, 20_000)] {
+        let mut table = TableReader::open(&source).unwrap();
+        let writer = TableWriter::create(Some((&out).into())).unwrap();
+        let how = Invert {
+            target: "x",
+            around: Around::default(),
+            policy,
+            tolerance: 0.01,
+            look_ahead,
+            drive_range: None,
+            horizon: 0.0,
+            preview: None,
+        };
+        let state = model.start();
+        invert_table(&model, state, &mut table, how, Some(writer), |_| {}).unwrap();
+        let mut rows = csv::Reader::from_path(&out).unwrap();
+        let mut state = model.start();
+        let mut count = 0;
+        for (n, row) in rows.records().enumerate() {
+            let row = row.unwrap();
+            assert_eq!(row[0], format!("row {n}"));
+            assert_eq!(row[1], targets[n].to_string());
+            // The input that stands beside a target reaches it: noise below the tolerance is not
+            // followed.
+            let reached = model
+                .step(&mut state, row[2].parse::<f64>().unwrap())
+                .unwrap();
+            assert!((reached.output - targets[n]).abs() <= 0.01, "row {n}");
+            count += 1;
+        }
+        assert_eq!(count, targets.len());
+        fs::remove_file(&out).unwrap();
+    }
+}

@@ -97,7 +97,7 @@ impl Spool {
                 .build()
         });
         let schema = Arc::new(schema.map_err(io_error)?);
-        let writer = SerializedFileWriter::new(out, schema, properties()).map_err(io_error)?;
+        let writer = SerializedFileWriter::new(out, schema, properties(&[])).map_err(io_error)?;
         write(writer, &self.kinds, file)
     }
 }
