@@ -3,8 +3,8 @@
 
     python docs/table-speed.py target/release/hysteron
 
-Prints Markdown. `mawk` and PyArrow are needed. All programs of a table run in turn, several times, and
-the least CPU (user and system) of each counts: other load only adds to it.
+Prints Markdown. `mawk` and PyArrow are needed. All programs run in turn, several times, and the least
+CPU (user and system) of each counts: other load only adds to it.
 """
 import json
 import math
@@ -24,15 +24,15 @@ This page is printed by
     cargo build --release
     python docs/table-speed.py target/release/hysteron > docs/table-speed.md
 
-A table of {rows:,} rows: time, temperature, displacement and a column of words; the CSV has {csv:.0f} MB. The
-model has {levels} levels. Figures are CPU seconds of the whole process, user and system, the least of {rounds}
-runs in turn. The *limit* is `dd`, which copies the result and flushes
-it to the disk, as the command does.
+A table of {rows:,} rows: time, temperature, displacement and a column of words; the CSV has
+{csv:.0f} MB. The model has {levels} levels. Figures are CPU seconds of the whole process, user and
+system, the least of {rounds} runs in turn. The *limit* is `dd`, which copies the result and flushes it
+to the disk, as the command does.
 
-- CSV: the peer is `mawk`, which copies the table with a column added: `{{print $0, $2*2}}`. It writes
-  6 digits and does not flush.
-- Parquet: the peer is PyArrow, which reads the file and writes it again, without a column added. The
-  time of starting Python and importing PyArrow is taken off.
+- CSV: the peer is `mawk`, which copies the table with a column added: `{{print $0, $2*2}}`. It
+  writes 6 digits and does not flush.
+- Parquet: the peer is PyArrow, which reads the file and writes it again, without a column added.
+  The time of starting Python and importing PyArrow is taken off.
 """
 
 
@@ -82,11 +82,16 @@ def main(program):
         ours = {}
         for kind in ["csv", "parquet"]:
             source, result = at("in." + kind), at("out." + kind)
-            for command, column in [("simulate", "--input=temperature"), ("invert", "--target=displacement")]:
+            for command, column in [
+                ("simulate", "--input=temperature"),
+                ("invert", "--target=displacement"),
+            ]:
                 ours[command, kind] = [
                     program, command, at("model.json"), source, column, "-o", result, "--force",
                 ]
+        add_column = ["mawk", "-F,", "-v", "OFS=,", "{print $0, $2*2}", at("in.csv")]
         least = {}
+
         def keep(name, seconds):
             least[name] = min(seconds, least.get(name, math.inf))
         for _ in range(ROUNDS):
@@ -94,10 +99,12 @@ def main(program):
                 keep((command, kind), cpu(words))
                 dd = ["dd", f"if={at('out.' + kind)}", f"of={at('copy')}", "bs=64k", "conv=fsync"]
                 keep((command, kind, "limit"), cpu(dd))
-            keep("csv", cpu(["mawk", "-F,", "-v", "OFS=,", "{print $0, $2*2}", at("in.csv")], at("peer.csv")))
+            keep("csv", cpu(add_column, at("peer.csv")))
             keep("start", cpu([sys.executable, "-c", start]))
-            keep("parquet", cpu([sys.executable, "-c", copy, at("in.parquet"), at("peer.parquet")]))
-        print(HEAD.format(rows=ROWS, levels=levels, rounds=ROUNDS, csv=os.path.getsize(at("in.csv")) / 1e6))
+            files = [at("in.parquet"), at("peer.parquet")]
+            keep("parquet", cpu([sys.executable, "-c", copy, *files]))
+        size = os.path.getsize(at("in.csv")) / 1e6
+        print(HEAD.format(rows=ROWS, levels=levels, rounds=ROUNDS, csv=size))
         print("| command | ours, s | peer, s | limit, s | ours / peer | ours / limit |")
         print("| --- | ---: | ---: | ---: | ---: | ---: |")
         for command, kind in ours:
