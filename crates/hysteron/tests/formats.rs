@@ -214,7 +214,7 @@ fn rows_are_written_with_commas_and_points() {
         let mut writer = TableWriter::plain(Some((&out).into())).unwrap();
         writer.row(table.header()).unwrap();
         while table.advance().unwrap() {
-            writer.extend_row(table.row(), &[]).unwrap();
+            writer.row(table.row().cells()).unwrap();
         }
         writer.finish().unwrap();
         assert_eq!(

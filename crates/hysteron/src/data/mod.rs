@@ -2,11 +2,13 @@
 //! uses the file system (feature `data`).
 //!
 //! `table` reads CSV, Parquet and MATLAB files. `recording` turns their columns into recordings.
-//! `output` writes files so that they appear complete or not at all. `run` simulates and inverts
-//! tables row by row. `model`, `design`, `adapted` and `trace` read and write what their names say.
-//! `columns` summarises a table, `guess` guesses the roles of its columns, and `printable` makes text safe to show.
+//! `output` writes files so that they appear complete or not at all. `cells` writes cells as CSV.
+//! `run` simulates and inverts tables, a block of rows at a time. `model`, `design`, `adapted` and
+//! `trace` read and write what their names say. `columns` summarises a table, `guess` guesses the
+//! roles of its columns, and `printable` makes text safe to show.
 
 mod adapted;
+mod cells;
 mod columns;
 mod design;
 mod guess;

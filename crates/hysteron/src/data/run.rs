@@ -1,7 +1,7 @@
-//! Simulates and inverts tables row by row, so that memory does not grow with the file.
+//! Simulates and inverts tables block by block, so that memory does not grow with the file.
 
 use crate::data::output::{Added, Cell, TableWriter};
-use crate::data::table::{Column, Row, TableReader};
+use crate::data::table::{Block, Column, TableReader};
 use crate::error::{Error, Result};
 use crate::model::{Band, Inverse, Model, Policy, Preview, Sample, State, Wanted};
 use crate::model::{needs_time, no_load};
@@ -70,34 +70,51 @@ pub fn simulate_table(
         Some(band) => Some((band, band.states(&state)?)),
         None => None,
     };
-    while table.advance()? {
-        let sample = samples.read(table)?;
-        let step = model.step(&mut state, sample);
-        let step = step.map_err(|error| samples.fault(table, &error))?;
-        match step.clipped {
-            None => {}
-            Some(hysteron_core::Clipped::Low) => sink.counts.low += 1,
-            Some(hysteron_core::Clipped::High) => sink.counts.high += 1,
-        }
-        let output = step.output;
-        match &mut band {
-            None => sink.write(table.row(), &[Cell::Number(output)])?,
-            Some((band, states)) => {
-                let half = band.step(states, state.input())?;
-                let cells = [output, output - half, output + half].map(Cell::Number);
-                sink.write(table.row(), &cells)?;
+    let mut outputs = Vec::new();
+    while sink.read(table, &samples.columns)? {
+        if model.is_plain() && band.is_none() {
+            let input = &sink.block.numbers()[samples.value];
+            outputs.resize(input.len(), 0.0);
+            let clipped = model.run(&mut state, input, &mut outputs)?;
+            sink.counts.low += clipped.low as u64;
+            sink.counts.high += clipped.high as u64;
+            for output in &outputs {
+                sink.write(&[Cell::Number(*output)])?;
+            }
+        } else {
+            for row in 0..sink.block.len() {
+                let sample = samples.next(&sink.block, row);
+                let step = model.step(&mut state, sample);
+                let step = step.map_err(|error| samples.fault(table, &sink.block, row, &error))?;
+                match step.clipped {
+                    None => {}
+                    Some(hysteron_core::Clipped::Low) => sink.counts.low += 1,
+                    Some(hysteron_core::Clipped::High) => sink.counts.high += 1,
+                }
+                let output = step.output;
+                match &mut band {
+                    None => sink.write(&[Cell::Number(output)])?,
+                    Some((band, states)) => {
+                        let half = band.step(states, state.input())?;
+                        sink.write(&[output, output - half, output + half].map(Cell::Number))?;
+                    }
+                }
             }
         }
+        sink.hand_on()?;
         progress(table.bytes_read());
     }
     sink.finish()
 }
 
-/// Reads a sample from each row.
+/// Makes a sample of each row.
 struct Samples {
-    value: Column,
-    time: Option<Column>,
-    load: Option<Column>,
+    /// The columns to read, in the order in which a row's faults are told: time, value, load.
+    columns: Vec<Column>,
+    /// Which of them is the value.
+    value: usize,
+    timed: bool,
+    loaded: bool,
     before: Option<f64>,
 }
 
@@ -118,32 +135,35 @@ impl Samples {
             (None, Some(_)) => return Err(no_load()),
             (_, name) => name.map(|name| table.column(name)).transpose()?,
         };
-        let before = None;
         Ok(Self {
-            value,
-            time,
-            load,
-            before,
+            columns: time.into_iter().chain([value]).chain(load).collect(),
+            value: usize::from(time.is_some()),
+            timed: time.is_some(),
+            loaded: load.is_some(),
+            before: None,
         })
     }
 
-    fn read(&mut self, table: &mut TableReader) -> Result<Sample> {
-        let now = self.time.map(|at| table.number(at)).transpose()?;
-        Ok(Sample {
-            input: table.number(self.value)?,
+    /// The sample of a row, which follows the one before.
+    fn next(&mut self, block: &Block, row: usize) -> Sample {
+        let at = |column: usize| block.numbers()[column][row];
+        let now = self.timed.then(|| at(0));
+        Sample {
+            input: at(self.value),
             dt: now.map(|now| now - self.before.replace(now).unwrap_or(now)),
-            load: self.load.map(|at| table.number(at)).transpose()?,
-        })
+            load: self.loaded.then(|| at(self.value + 1)),
+        }
     }
 
     /// The error with the row and the column that it comes from.
-    fn fault(&self, table: &TableReader, error: &Error) -> Error {
+    fn fault(&self, table: &TableReader, block: &Block, row: usize, error: &Error) -> Error {
         let at = match error.parts().0 {
-            Error::Thermal(_) => self.time,
-            Error::Fit(_) => self.load,
+            Error::Thermal(_) => self.timed.then_some(0),
+            Error::Fit(_) => self.loaded.then_some(self.value + 1),
             _ => Some(self.value),
         };
-        table.fault(at, error.to_string())
+        let column = at.map(|at| self.columns[at]);
+        table.fault_in((block, row), column, error.to_string())
     }
 }
 
@@ -215,40 +235,44 @@ pub fn invert_table(
         state,
         preview,
         heated,
-        waiting: VecDeque::new(),
         sink: Sink::start(table, out, &added)?,
     };
     let mut headings = match what.policy {
         Policy::Hold => None,
         Policy::Anticipate => Some(Headings::new(what.tolerance, what.look_ahead)),
     };
-    let mut unheaded: VecDeque<(Row, Sample)> = VecDeque::new();
-    let mut release = |waiting: &mut VecDeque<(Row, Sample)>, heading, count: usize| {
-        for (row, sample) in waiting.drain(..count) {
-            inverting.row(row, Wanted::of(sample, heading, what.tolerance))?;
-        }
-        Ok::<(), Error>(())
-    };
-    while table.advance()? {
-        let sample = samples.read(table)?;
-        // A time or a load that cannot be is told with its row.
-        model
-            .accepts(sample)
-            .map_err(|error| samples.fault(table, &error))?;
-        unheaded.push_back((table.row().clone(), sample));
-        match &mut headings {
-            None => release(&mut unheaded, None, 1)?,
-            Some(headings) => {
-                for (heading, count) in headings.push(sample.input) {
-                    release(&mut unheaded, heading, count)?;
+    let mut unheaded: VecDeque<Sample> = VecDeque::new();
+    let release =
+        |inverting: &mut Inverting<'_>, waiting: &mut VecDeque<Sample>, heading, count: usize| {
+            for sample in waiting.drain(..count) {
+                inverting.row(Wanted::of(sample, heading, what.tolerance))?;
+            }
+            Ok::<(), Error>(())
+        };
+    while inverting.sink.read(table, &samples.columns)? {
+        for row in 0..inverting.sink.block.len() {
+            let block = &inverting.sink.block;
+            let sample = samples.next(block, row);
+            // A time or a load that cannot be is told with its row.
+            model
+                .accepts(sample)
+                .map_err(|error| samples.fault(table, block, row, &error))?;
+            match &mut headings {
+                None => inverting.row(Wanted::of(sample, None, what.tolerance))?,
+                Some(headings) => {
+                    unheaded.push_back(sample);
+                    for (heading, count) in headings.push(sample.input) {
+                        release(&mut inverting, &mut unheaded, heading, count)?;
+                    }
                 }
             }
         }
+        inverting.sink.hand_on()?;
         progress(table.bytes_read());
     }
     if let Some(headings) = headings {
         let (heading, count) = headings.finish();
-        release(&mut unheaded, heading, count)?;
+        release(&mut inverting, &mut unheaded, heading, count)?;
     }
     inverting.finish()
 }
@@ -258,40 +282,29 @@ struct Inverting<'m> {
     state: State,
     preview: Option<Preview<'m>>,
     heated: bool,
-    /// Rows whose preview is not complete.
-    waiting: VecDeque<Row>,
     sink: Sink,
 }
 
 impl Inverting<'_> {
-    fn row(&mut self, row: Row, wanted: Wanted) -> Result<()> {
+    fn row(&mut self, wanted: Wanted) -> Result<()> {
         let Some(preview) = &mut self.preview else {
-            return self.write(&row, wanted, wanted.target.output);
+            return self.write(wanted, wanted.target.output);
         };
-        let ready = preview.push(wanted)?;
-        self.waiting.push_back(row);
-        for (wanted, asked) in ready {
-            self.write_next(wanted, asked)?;
+        for (wanted, asked) in preview.push(wanted)? {
+            self.write(wanted, asked)?;
         }
         Ok(())
     }
 
-    fn write_next(&mut self, wanted: Wanted, asked: f64) -> Result<()> {
-        match self.waiting.pop_front() {
-            Some(row) => self.write(&row, wanted, asked),
-            None => Ok(()),
-        }
-    }
-
     fn finish(mut self) -> Result<Counts> {
         while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
-            self.write_next(wanted, asked)?;
+            self.write(wanted, asked)?;
         }
         self.sink.finish()
     }
 
     /// `asked` is the output that the row asks for; a preview may want a little less of it.
-    fn write(&mut self, row: &Row, wanted: Wanted, asked: f64) -> Result<()> {
+    fn write(&mut self, wanted: Wanted, asked: f64) -> Result<()> {
         let hysteron_core::Solution { input, status } = match &self.preview {
             Some(preview) => preview.step(&self.inverse, &mut self.state, wanted, asked)?,
             None => self.inverse.step(&mut self.state, wanted)?,
@@ -303,18 +316,28 @@ impl Inverting<'_> {
             Status::Passed => self.sink.counts.passed += 1,
             Status::Limited => self.sink.counts.limited += 1,
         }
-        let temperature = Cell::Number(self.state.temperature());
-        let cells = [Cell::Number(input), temperature, Cell::Word(status.name())];
+        let (input, status) = (Cell::Number(input), Cell::Word(status.name()));
         match self.heated {
-            true => self.sink.write(row, &cells),
-            false => self.sink.write(row, &[cells[0], cells[2]]),
+            true => {
+                let temperature = Cell::Number(self.state.temperature());
+                self.sink.write(&[input, temperature, status])
+            }
+            false => self.sink.write(&[input, status]),
         }
     }
 }
 
+/// Takes the rows of a table, and pairs them with the cells that come for them in the same order.
 struct Sink {
     out: Option<TableWriter>,
     counts: Counts,
+    /// The rows read last.
+    block: Block,
+    /// The blocks before it whose cells have not all come yet, and a used one.
+    earlier: VecDeque<Block>,
+    spare: Option<Block>,
+    /// The next row to be written in the first of all blocks.
+    at: usize,
 }
 
 impl Sink {
@@ -328,15 +351,52 @@ impl Sink {
         Ok(Self {
             out: out.map(|out| out.begin(table, added)).transpose()?,
             counts: Counts::default(),
+            block: Block::default(),
+            earlier: VecDeque::new(),
+            spare: None,
+            at: 0,
         })
     }
 
-    fn write(&mut self, row: &Row, cells: &[Cell<'_>]) -> Result<()> {
+    /// Reads the next block of rows with the numbers of `columns`; false at the end.
+    fn read(&mut self, table: &mut TableReader, columns: &[Column]) -> Result<bool> {
+        let text = self.out.as_ref().is_some_and(|out| !out.copies());
+        if !text {
+            table.read_only(columns.iter().copied());
+        }
+        if self.at < self.block.len() || !self.earlier.is_empty() {
+            let next = self.spare.take().unwrap_or_default();
+            self.earlier
+                .push_back(std::mem::replace(&mut self.block, next));
+        } else {
+            self.at = 0;
+        }
+        table.fill(&mut self.block, columns, text)?;
+        Ok(self.block.len() > 0)
+    }
+
+    /// Writes the cells that follow the next row.
+    #[inline]
+    fn write(&mut self, cells: &[Cell<'_>]) -> Result<()> {
         self.counts.samples += 1;
+        while let Some(first) = self.earlier.front()
+            && self.at >= first.len()
+        {
+            self.spare = self.earlier.pop_front();
+            self.at = 0;
+        }
+        let block = self.earlier.front().unwrap_or(&self.block);
+        let row = self.at;
+        self.at += 1;
         match &mut self.out {
-            Some(out) => out.extend_row(row, cells),
+            Some(out) => out.extend_row(block.row(row), cells),
             None => Ok(()),
         }
+    }
+
+    /// Hands the rows so far on to whoever reads the result.
+    fn hand_on(&mut self) -> Result<()> {
+        self.out.as_mut().map_or(Ok(()), TableWriter::hand_on)
     }
 
     fn finish(self) -> Result<Counts> {

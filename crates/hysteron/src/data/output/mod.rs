@@ -20,11 +20,13 @@
 //!
 //! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
 //! write files and folders under temporary names (`unfinished`) and move them to their place
-//! (`moves`). `table` writes tables; `parquet`, `spool` and `splice` write them as Parquet.
+//! (`moves`). `table` writes tables; `csv` writes them as text; `parquet`, `spool` and `splice` as
+//! Parquet.
 //! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
 //! makes them.
 
 mod atomic;
+mod csv;
 mod destination;
 mod folder;
 mod manifest;

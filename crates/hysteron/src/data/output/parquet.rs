@@ -5,7 +5,7 @@ use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
 use parquet::file::writer::SerializedRowGroupWriter;
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use std::io;
 use std::io::Write;
 use std::sync::Arc;
@@ -13,11 +13,15 @@ use std::sync::Arc;
 /// Beginning of the writer's name in the metadata of our files.
 pub(super) const PROGRAM: &str = "hysteron ";
 
-/// The properties of our files.
-pub(super) fn properties() -> WriterPropertiesPtr {
+/// The properties of our files. The columns `computed` hold numbers that hardly repeat, so that no
+/// dictionary is tried.
+pub(super) fn properties(computed: &[&str]) -> WriterPropertiesPtr {
     let properties = WriterProperties::builder()
         .set_created_by(format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION")))
         .set_compression(Compression::SNAPPY);
+    let properties = computed.iter().fold(properties, |properties, name| {
+        properties.set_column_dictionary_enabled(ColumnPath::from(*name), false)
+    });
     Arc::new(properties.build())
 }
 
@@ -69,8 +73,12 @@ impl Cells {
 
     pub(super) fn push_text(&mut self, text: Option<&[u8]>) {
         self.defined.push(text.is_some().into());
-        self.texts
-            .extend(text.map(|text| ByteArray::from(text.to_vec())));
+        // Words such as a status come many times in a row.
+        let text = text.map(|text| match self.texts.last() {
+            Some(last) if last.data() == text => last.clone(),
+            _ => ByteArray::from(text.to_vec()),
+        });
+        self.texts.extend(text);
     }
 
     /// Writes the cells as the next column of a row group, and clears them.

@@ -88,7 +88,7 @@ impl RecordWriter {
         let fields = schema.iter().map(|(name, kind)| field(name, *kind));
         let fields = fields.collect::<Written<_>>()?;
         let about = Type::group_type_builder("table").with_fields(fields);
-        let writer = SerializedFileWriter::new(file, Arc::new(about.build()?), properties())?;
+        let writer = SerializedFileWriter::new(file, Arc::new(about.build()?), properties(&[]))?;
         Ok(Self {
             path,
             writer,

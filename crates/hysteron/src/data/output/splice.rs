@@ -84,7 +84,12 @@ impl Splice {
                 .build()
         });
         let schema = Arc::new(schema.map_err(io_error)?);
-        let mut writer = SerializedFileWriter::new(out, schema, properties()).map_err(io_error)?;
+        let computed = added
+            .iter()
+            .filter(|column| matches!(column, Added::Numbers(_)));
+        let computed: Vec<&str> = computed.map(Added::name).collect();
+        let properties = properties(&computed);
+        let mut writer = SerializedFileWriter::new(out, schema, properties).map_err(io_error)?;
         let kept = about.key_value_metadata().into_iter().flatten();
         for KeyValue { key, value } in kept.filter(|pair| pair.key != ARROW_SCHEMA) {
             writer.append_key_value_metadata(KeyValue::new(key.clone(), value.clone()));

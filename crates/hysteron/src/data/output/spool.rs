@@ -5,15 +5,19 @@
 //! rows.
 
 use super::AtomicFile;
+use super::csv::Csv;
 use super::parquet::{Cells, Kind, field, io_error, properties};
+use super::table::Cell;
 use super::unfinished::bare;
+use crate::data::cells::push_row;
+use crate::data::table::Splitter;
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::collections::HashSet;
 use std::fs::File;
 use std::hash::Hash;
-use std::io::{self, BufReader, BufWriter, Seek};
+use std::io::{self, BufReader, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,51 +26,66 @@ const GROUP: usize = 1 << 24;
 
 /// The stored rows. The first one is the header.
 pub(super) struct Spool {
-    rows: csv::Writer<BufWriter<File>>,
+    rows: Csv<File>,
     header: Option<Vec<String>>,
     kinds: Vec<Kind>,
+    row: Vec<u8>,
+    splitter: Splitter,
 }
 
 impl Spool {
     /// Creates the store in a folder that has enough space.
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
-        let file = BufWriter::new(tempfile::tempfile_in(folder).map_err(bare)?);
         Ok(Self {
-            rows: csv::Writer::from_writer(file),
+            rows: Csv::new(tempfile::tempfile_in(folder).map_err(bare)?),
             header: None,
             kinds: Vec::new(),
+            row: Vec::new(),
+            splitter: Splitter::default(),
         })
     }
 
     pub(super) fn row<C: AsRef<[u8]>>(
         &mut self,
-        cells: impl Iterator<Item = C>,
-    ) -> csv::Result<()> {
+        cells: impl IntoIterator<Item = C>,
+    ) -> io::Result<()> {
         if self.header.is_none() {
-            let names = cells.map(|name| String::from_utf8_lossy(name.as_ref()).into_owned());
+            let names = cells.into_iter();
+            let names = names.map(|name| String::from_utf8_lossy(name.as_ref()).into_owned());
             let names: Vec<String> = names.collect();
             self.kinds = vec![Kind::Numbers; names.len()];
             self.header = Some(names);
             return Ok(());
         }
+        let mut row = std::mem::take(&mut self.row);
+        row.clear();
+        push_row(&mut row, cells);
+        let written = self.extended(&row, &[]);
+        self.row = row;
+        written
+    }
+
+    /// A row that is CSV already, followed by more cells.
+    pub(super) fn extended(&mut self, row: &[u8], cells: &[Cell<'_>]) -> io::Result<()> {
         let mut kinds = self.kinds.iter_mut();
-        for cell in cells {
+        self.splitter.line(row, b',', |cell| {
             if let Some(kind) = kinds.next() {
-                *kind = kind.with(cell.as_ref());
+                *kind = kind.with(cell);
             }
-            self.rows.write_field(cell)?;
+        });
+        for (kind, cell) in kinds.zip(cells) {
+            if matches!(cell, Cell::Word(_)) {
+                *kind = Kind::Text;
+            }
         }
-        self.rows.write_record(None::<&[u8]>)
+        self.rows.extended(row, cells)
     }
 
     /// Writes all rows as Parquet.
     pub(super) fn finish(self, out: AtomicFile) -> io::Result<AtomicFile> {
-        let mut file = self
-            .rows
-            .into_inner()
-            .map_err(|error| error.into_error())?
-            .into_inner()
-            .map_err(|error| error.into_error())?;
+        let Some(mut file) = self.rows.finish()? else {
+            return Ok(out);
+        };
         file.rewind()?;
         let header = self.header.unwrap_or_default();
         distinct(header.iter())?;
@@ -78,7 +97,7 @@ impl Spool {
                 .build()
         });
         let schema = Arc::new(schema.map_err(io_error)?);
-        let writer = SerializedFileWriter::new(out, schema, properties()).map_err(io_error)?;
+        let writer = SerializedFileWriter::new(out, schema, properties(&[])).map_err(io_error)?;
         write(writer, &self.kinds, file)
     }
 }

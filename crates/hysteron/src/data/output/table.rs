@@ -1,13 +1,14 @@
 //! Writes tables row by row, as CSV or Parquet.
 
+use super::csv::Csv;
 use super::destination::folder_of;
 use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
 use super::{AtomicFile, Destination, Own};
-use crate::data::table::{Row, TableReader};
+use crate::data::table::TableReader;
 use crate::error::{Error, Result};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A column that is added to a table.
@@ -38,15 +39,6 @@ pub enum Cell<'a> {
     Word(&'a str),
 }
 
-impl Cell<'_> {
-    fn text(&self) -> String {
-        match self {
-            Self::Number(number) => number.to_string(),
-            Self::Word(word) => (*word).to_owned(),
-        }
-    }
-}
-
 /// The path in errors about standard output.
 pub const STANDARD_OUTPUT: &str = "standard output";
 
@@ -67,14 +59,14 @@ pub struct TableWriter {
 }
 
 enum Format {
-    Csv(csv::Writer<Sink>),
+    Csv(Csv<Sink>),
     Parquet(Spool, AtomicFile),
     Spliced(Box<Splice>),
 }
 
 enum Sink {
-    Stdout(BufWriter<io::Stdout>),
-    File(BufWriter<AtomicFile>),
+    Stdout(io::Stdout),
+    File(AtomicFile),
 }
 
 impl Write for Sink {
@@ -134,7 +126,7 @@ impl TableWriter {
         let Some(target) = target.filter(|target| target.path() != Path::new("-")) else {
             return Ok(Self {
                 path: STANDARD_OUTPUT.into(),
-                to: Format::Csv(csv(Sink::Stdout(BufWriter::new(io::stdout())))),
+                to: Format::Csv(Csv::new(Sink::Stdout(io::stdout()))),
             });
         };
         let path = target.path().to_owned();
@@ -145,7 +137,7 @@ impl TableWriter {
         let parquet = is_parquet(&path).map_err(failed)?;
         let file = AtomicFile::create(target, own)?;
         let to = match parquet {
-            false => Format::Csv(csv(Sink::File(BufWriter::new(file)))),
+            false => Format::Csv(Csv::new(Sink::File(file))),
             true => Format::Parquet(Spool::create_in(folder_of(&path)).map_err(failed)?, file),
         };
         Ok(Self { path, to })
@@ -181,17 +173,35 @@ impl TableWriter {
         Ok(self)
     }
 
-    /// Writes a row of the source, followed by more cells.
+    /// Whether the rows of the source are copied as they are stored, so that only added cells are
+    /// needed.
+    pub(crate) fn copies(&self) -> bool {
+        matches!(self.to, Format::Spliced(_))
+    }
+
+    /// Writes a row of the source, which is CSV without the end of the line, followed by more cells.
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn extend_row(&mut self, row: &Row, cells: &[Cell<'_>]) -> Result<()> {
-        if let Format::Spliced(splice) = &mut self.to {
-            let written = splice.row(cells);
-            return written.map_err(|source| self.failed(source));
+    #[inline]
+    pub(crate) fn extend_row(&mut self, row: &[u8], cells: &[Cell<'_>]) -> Result<()> {
+        let written = match &mut self.to {
+            Format::Csv(csv) => csv.extended(row, cells),
+            Format::Parquet(spool, _) => spool.extended(row, cells),
+            Format::Spliced(splice) => splice.row(cells),
+        };
+        written.map_err(|source| self.failed(source))
+    }
+
+    /// Hands the rows so far on to a reader who may be waiting.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub(crate) fn hand_on(&mut self) -> Result<()> {
+        match &mut self.to {
+            Format::Csv(csv) => csv.hand_on().map_err(|source| self.failed(source)),
+            Format::Parquet(..) | Format::Spliced(_) => Ok(()),
         }
-        let cells: Vec<String> = cells.iter().map(Cell::text).collect();
-        self.write(row.cells().chain(cells.iter().map(String::as_bytes)))
     }
 
     /// Writes a row of cells. The first row holds the names of the columns.
@@ -199,17 +209,13 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) -> Result<()> {
-        self.write(cells.into_iter())
-    }
-
-    fn write<C: AsRef<[u8]>>(&mut self, cells: impl Iterator<Item = C>) -> Result<()> {
         let written = match &mut self.to {
-            Format::Csv(csv) => csv.write_record(cells),
+            Format::Csv(csv) => csv.row(cells),
             Format::Parquet(spool, _) => spool.row(cells),
             // The stored columns already contain the source's header.
             Format::Spliced(_) => Ok(()),
         };
-        written.map_err(|error| self.failed(io_error(error)))
+        written.map_err(|source| self.failed(source))
     }
 
     fn failed(&self, source: io::Error) -> Error {
@@ -226,7 +232,10 @@ impl TableWriter {
     pub fn finish(self) -> Result<()> {
         let path = self.path;
         let ended = match self.to {
-            Format::Csv(csv) => end_csv(csv),
+            Format::Csv(csv) => csv.finish().map(|sink| match sink {
+                Some(Sink::File(file)) => Some(file),
+                Some(Sink::Stdout(_)) | None => None,
+            }),
             Format::Parquet(spool, file) => spool.finish(file).map(Some),
             Format::Spliced(splice) => splice.finish().map(Some),
         };
@@ -235,28 +244,5 @@ impl TableWriter {
             Ok(None) => Ok(()),
             Err(source) => Err(Error::File { path, source }),
         }
-    }
-}
-
-fn csv(to: Sink) -> csv::Writer<Sink> {
-    csv::WriterBuilder::new().flexible(true).from_writer(to)
-}
-
-/// The original error of the operating system, so that its kind can be tested.
-fn io_error(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(source) => source,
-        other => io::Error::other(format!("{other:?}")),
-    }
-}
-
-/// The file, if the table was written to one.
-fn end_csv(csv: csv::Writer<Sink>) -> io::Result<Option<AtomicFile>> {
-    match csv.into_inner().map_err(|error| error.into_error())? {
-        Sink::Stdout(mut out) => out.flush().map(|()| None),
-        Sink::File(out) => out
-            .into_inner()
-            .map(Some)
-            .map_err(|error| error.into_error()),
     }
 }

@@ -4,6 +4,7 @@ use super::budget::Budget;
 use super::hashing::{Hash, Hashing};
 use super::labels::Labels;
 use super::text::{self, Text};
+use super::wanted::Wanted;
 use super::{Source, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
@@ -49,13 +50,13 @@ impl Format {
 
 /// Opens a file of any format. Returns the names of its columns and its rows. Of a file that is
 /// `held` in memory, `path` is only the name. `labels`, if given, are read as another column, after
-/// those of numbers.
+/// those of numbers; of these, a Parquet file is read for the `wanted` ones.
 pub(super) fn open(
     path: &Path,
     held: Option<&Bytes>,
     repair: Option<Repair>,
     hash: Option<Hash>,
-    labels: Option<&Labels>,
+    (labels, wanted): (Option<&Labels>, &Wanted),
     budget: &mut Budget,
 ) -> Result<(Vec<String>, Source)> {
     let failed = |source| Error::File {
@@ -100,8 +101,8 @@ pub(super) fn open(
         }
         Format::Parquet => {
             let opened = match held {
-                Some(bytes) => parquet::open_bytes(bytes, *budget, labels),
-                None => parquet::open(path, *budget, labels),
+                Some(bytes) => parquet::open_bytes(bytes, *budget, (labels, wanted)),
+                None => parquet::open(path, *budget, (labels, wanted)),
             };
             let opened = opened.map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))

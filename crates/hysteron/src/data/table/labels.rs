@@ -20,8 +20,6 @@ struct Known {
     texts: RefCell<Vec<Vec<u8>>>,
     codes: RefCell<HashMap<Vec<u8>, usize>>,
     last: Cell<usize>,
-    /// The columns of numbers that are read; all of them while this is empty.
-    wanted: RefCell<Vec<usize>>,
 }
 
 /// A column of labels that was found.
@@ -35,7 +33,6 @@ impl Labels {
             texts: RefCell::default(),
             codes: RefCell::default(),
             last: Cell::new(0),
-            wanted: RefCell::default(),
         }))
     }
 
@@ -57,11 +54,6 @@ impl Labels {
         });
         known.last.set(code);
         code as f64
-    }
-
-    pub(super) fn is_wanted(&self, column: usize) -> bool {
-        let wanted = self.0.wanted.borrow();
-        wanted.is_empty() || wanted.contains(&column)
     }
 
     /// Index of the column of labels among all columns.
@@ -99,13 +91,6 @@ impl TableReader {
                 Ok(Label(self.header.len() - 1))
             }
             _ => Ok(Label(self.column(name)?.place())),
-        }
-    }
-
-    /// Reads none but these columns of numbers from now on.
-    pub(crate) fn read_only(&self, columns: impl Iterator<Item = super::Column>) {
-        if let Some(labels) = &self.labels {
-            *labels.0.wanted.borrow_mut() = columns.map(super::Column::place).collect();
         }
     }
 

@@ -2,9 +2,10 @@
 //!
 //! `format` detects the format; `text`, `parquet` and `mat` read it. `columns` and `names` find
 //! columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
-//! limit of `budget`. `remark` reports assumptions, `options` are the settings, `hashing` computes
+//! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are the settings, `hashing` computes
 //! the file's digest. `labels` is the column whose text tells which recording a row belongs to.
 
+mod block;
 mod budget;
 mod columns;
 mod format;
@@ -18,10 +19,12 @@ mod parquet;
 mod remark;
 mod text;
 mod time;
+mod wanted;
 
 pub use options::ReadOptions;
 pub use remark::Remark;
 
+pub(crate) use block::Block;
 pub(crate) use budget::Budget;
 pub(crate) use labels::Label;
 
@@ -33,8 +36,10 @@ use hashing::Hash;
 use numbers::Numbers;
 pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
+pub(in crate::data) use text::Splitter;
 use text::Text;
 use time::TimeUnit;
+use wanted::Wanted;
 
 /// Reads a table with named columns, one row at a time.
 ///
@@ -55,6 +60,10 @@ pub struct TableReader {
     time: Option<(usize, TimeUnit)>,
     /// The texts of a column of labels that is stored as numbers.
     labels: Option<labels::Labels>,
+    /// The columns of numbers that are read.
+    wanted: Wanted,
+    /// An error that comes after the last block.
+    late: Option<Error>,
 }
 
 enum Source {
@@ -154,12 +163,13 @@ impl TableReader {
         labels: Option<labels::Labels>,
     ) -> Result<Self> {
         let mut budget = Budget::new(max_memory);
+        let wanted = Wanted::default();
         let (header, source) = format::open(
             path,
             held.as_ref(),
             repair,
             hash.clone(),
-            labels.as_ref(),
+            (labels.as_ref(), &wanted),
             &mut budget,
         )?;
         Ok(Self {
@@ -172,6 +182,8 @@ impl TableReader {
             remarks: Vec::new(),
             time: None,
             labels,
+            wanted,
+            late: None,
         })
     }
 

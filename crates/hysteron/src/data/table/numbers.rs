@@ -1,6 +1,9 @@
 //! Columns of numbers in memory, one row group after another.
 
 use super::Row;
+use super::block::{Block, ROWS};
+use crate::data::cells::push_number;
+use crate::error::Place;
 
 /// Columns of numbers. A missing number is NaN.
 pub(super) type Group = Vec<Vec<f64>>;
@@ -121,6 +124,50 @@ impl Numbers {
         }
         self.at += 1;
         Ok(true)
+    }
+
+    /// Reads the next rows into `block`: the numbers of the columns `asked` for and, with `text`,
+    /// the whole rows.
+    pub(super) fn fill(
+        &mut self,
+        block: &mut Block,
+        asked: &[usize],
+        text: bool,
+    ) -> Result<(), String> {
+        if !self.advance()? {
+            return Ok(());
+        }
+        let rows = self.at - 1..self.length().min(self.at - 1 + ROWS);
+        self.at = rows.end;
+        let places = self.before + rows.start as u64 + 1..self.before + rows.end as u64 + 1;
+        for (slot, column) in asked.iter().enumerate() {
+            let column = self.group.get(*column).map_or(&[][..], Vec::as_slice);
+            for row in rows.clone() {
+                block.push_number(slot, column.get(row).copied().unwrap_or(f64::NAN));
+            }
+        }
+        if !text {
+            block.push_places(places);
+            return Ok(());
+        }
+        for (row, place) in rows.zip(places) {
+            block.push_row(Place::Row(place), |out| {
+                for (n, column) in self.group.iter().enumerate() {
+                    if n > 0 {
+                        out.push(b',');
+                    }
+                    if let Some(value) = column.get(row).filter(|value| !value.is_nan()) {
+                        push_number(out, *value);
+                    }
+                }
+            });
+        }
+        Ok(())
+    }
+
+    /// Makes the row before the last `rows` ones the current row again.
+    pub(super) fn go_back(&mut self, rows: usize) {
+        self.at = self.at.saturating_sub(rows);
     }
 
     /// The number in the current row; `None` beyond the end of a column that is shorter than

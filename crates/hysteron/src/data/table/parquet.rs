@@ -6,6 +6,7 @@ mod thrift;
 use super::budget::Budget;
 use super::labels::Labels;
 use super::numbers::{Group, Numbers};
+use super::wanted::Wanted;
 use bytes::Bytes;
 use claims::{Claims, ReadSeek, Refusal};
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
@@ -30,28 +31,32 @@ pub(super) struct Opened {
 
 /// The numeric columns of a file: their names and rows. Times are converted to seconds. A column of
 /// labels, if asked for, comes last, as codes.
-pub(super) fn open(path: &Path, budget: Budget, labels: Option<&Labels>) -> Result<Opened, String> {
+pub(super) fn open(
+    path: &Path,
+    budget: Budget,
+    columns: (Option<&Labels>, &Wanted),
+) -> Result<Opened, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let length = file.metadata().map_err(|error| error.to_string())?.len();
     let second = file.try_clone().map_err(|error| error.to_string())?;
-    open_as(file, Box::new(second), length, (budget, labels))
+    open_as(file, Box::new(second), length, (budget, columns))
 }
 
 /// As [`open`], for the bytes of a file.
 pub(super) fn open_bytes(
     bytes: &Bytes,
     budget: Budget,
-    labels: Option<&Labels>,
+    columns: (Option<&Labels>, &Wanted),
 ) -> Result<Opened, String> {
     let second = Box::new(Cursor::new(bytes.clone()));
-    open_as(bytes.clone(), second, bytes.len() as u64, (budget, labels))
+    open_as(bytes.clone(), second, bytes.len() as u64, (budget, columns))
 }
 
 fn open_as(
     file: impl ChunkReader + 'static,
     second: Box<dyn ReadSeek>,
     bytes: u64,
-    (budget, labels): (Budget, Option<&Labels>),
+    (budget, (labels, wanted)): (Budget, (Option<&Labels>, &Wanted)),
 ) -> Result<Opened, String> {
     let mut claims = Claims::new(second, bytes, budget);
     claims.check_footer().map_err(refused)?;
@@ -88,6 +93,7 @@ fn open_as(
             Some((column, labels.clone()))
         }
     };
+    let wanted = wanted.clone();
     let groups = (0..reader.num_row_groups()).map(move |n| {
         // Negative sizes make the library panic here too.
         let about = &reader.metadata().row_groups()[n];
@@ -96,12 +102,8 @@ fn open_as(
             .map_err(refused)?;
         caught(|| {
             let group = reader.get_row_group(n)?;
-            let wanted = |n: usize| match &labels {
-                Some((_, labels)) => labels.is_wanted(n),
-                None => true,
-            };
             let columns = numeric.iter().enumerate();
-            let columns = columns.map(|(n, (column, scale))| match wanted(n) {
+            let columns = columns.map(|(n, (column, scale))| match wanted.contains(n) {
                 true => read(group.as_ref(), *column, *scale),
                 false => Ok(Vec::new()),
             });

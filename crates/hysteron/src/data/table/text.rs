@@ -4,9 +4,12 @@ mod commas;
 mod dialect;
 mod encoding;
 mod header;
+mod marks;
+mod plain;
 mod split;
 
 pub(super) use dialect::head;
+pub(in crate::data) use split::Splitter;
 
 use super::budget::Budget;
 use super::{Remark, Row, shortened};
@@ -16,7 +19,6 @@ use crate::error::{Error, Place, Result};
 use crate::remedy::{Remedy, Setting};
 use commas::Commas;
 use dialect::Dialect;
-use split::Splitter;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 /// Splits a row, which continues on the next line if a quote is open at the end of a line.
 #[derive(Default)]
-pub(super) struct Splitter {
+pub(in crate::data) struct Splitter {
     cell: Vec<u8>,
     /// Whether the row continues within a quoted cell.
     open: bool,
@@ -12,7 +12,12 @@ impl Splitter {
     /// Passes the cells of the next line to `push`, without quotes around them. Returns false if
     /// the row continues in the next line because a quote is open. Then its last cell is not passed
     /// yet.
-    pub(super) fn line(&mut self, line: &[u8], delimiter: u8, mut push: impl FnMut(&[u8])) -> bool {
+    pub(in crate::data) fn line(
+        &mut self,
+        line: &[u8],
+        delimiter: u8,
+        mut push: impl FnMut(&[u8]),
+    ) -> bool {
         let end = line.iter().rposition(|byte| !matches!(byte, b'\r' | b'\n'));
         let (text, ending) = line.split_at(end.map_or(0, |end| end + 1));
         if !self.open && !text.contains(&b'"') {

@@ -1,0 +1,84 @@
+//! Writes rows of CSV to a stream, a block at a time.
+
+use super::table::Cell;
+use crate::data::cells::{push_cell, push_number, push_row};
+use std::io::{self, Write};
+
+/// Rows are handed on when they take this many bytes.
+const BLOCK: usize = 1 << 16;
+
+/// A stream of rows. Dropped before its end, it hands on the rows that it holds.
+pub(super) struct Csv<W: Write> {
+    /// `None` after the end.
+    to: Option<W>,
+    held: Vec<u8>,
+}
+
+impl<W: Write> Csv<W> {
+    pub(super) fn new(to: W) -> Self {
+        Self {
+            to: Some(to),
+            held: Vec::with_capacity(BLOCK + (BLOCK >> 2)),
+        }
+    }
+
+    pub(super) fn row<C: AsRef<[u8]>>(
+        &mut self,
+        cells: impl IntoIterator<Item = C>,
+    ) -> io::Result<()> {
+        push_row(&mut self.held, cells);
+        self.end_row()
+    }
+
+    /// A row that is CSV already, followed by more cells.
+    #[inline]
+    pub(super) fn extended(&mut self, row: &[u8], cells: &[Cell<'_>]) -> io::Result<()> {
+        self.held.extend_from_slice(row);
+        for cell in cells {
+            self.held.push(b',');
+            match cell {
+                Cell::Number(number) => push_number(&mut self.held, *number),
+                Cell::Word(word) => push_cell(&mut self.held, word.as_bytes()),
+            }
+        }
+        self.end_row()
+    }
+
+    #[inline]
+    fn end_row(&mut self) -> io::Result<()> {
+        self.held.push(b'\n');
+        match self.held.len() < BLOCK {
+            true => Ok(()),
+            false => self.hand_on(),
+        }
+    }
+
+    /// Hands on the rows that are held.
+    pub(super) fn hand_on(&mut self) -> io::Result<()> {
+        let Some(to) = &mut self.to else {
+            return Ok(());
+        };
+        let written = to.write_all(&self.held);
+        // What could not be written once is not written again.
+        self.held.clear();
+        written
+    }
+
+    pub(super) fn finish(mut self) -> io::Result<Option<W>> {
+        self.hand_on()?;
+        let mut to = self.to.take();
+        if let Some(to) = &mut to {
+            to.flush()?;
+        }
+        Ok(to)
+    }
+}
+
+impl<W: Write> Drop for Csv<W> {
+    fn drop(&mut self) {
+        let _ = self.hand_on();
+        if let Some(to) = &mut self.to {
+            let _ = to.flush();
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Rows of a table on their way into another one, many at a time.
+
+use super::{Column, Source, TableReader};
+use crate::data::cells;
+use crate::error::{Error, Place, Result};
+use std::ops::Range;
+
+/// Rows of a table: how they will be written, and the numbers of the columns asked for.
+#[derive(Default)]
+pub(crate) struct Block {
+    /// The rows as CSV with commas; nothing if [`TableReader::fill`] was not asked for it.
+    text: Vec<u8>,
+    /// Where each row is in `text`.
+    rows: Vec<Range<usize>>,
+    places: Vec<Place>,
+    /// A series for each column asked for.
+    numbers: Vec<Vec<f64>>,
+}
+
+/// A block is full with so many bytes of text, or so many rows.
+const BYTES: usize = 1 << 16;
+pub(super) const ROWS: usize = 1 << 13;
+
+impl Block {
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The numbers of the columns asked for, in their order.
+    pub(crate) fn numbers(&self) -> &[Vec<f64>] {
+        &self.numbers
+    }
+
+    /// A row as CSV without the end of its line; empty if no text was asked for.
+    pub(crate) fn row(&self, n: usize) -> &[u8] {
+        self.rows.get(n).map_or(&[], |row| &self.text[row.clone()])
+    }
+
+    pub(crate) fn place(&self, n: usize) -> Option<Place> {
+        self.places.get(n).copied()
+    }
+
+    fn clear(&mut self, columns: usize) {
+        self.text.clear();
+        self.rows.clear();
+        self.places.clear();
+        self.numbers.resize_with(columns, Vec::new);
+        self.numbers.iter_mut().for_each(Vec::clear);
+    }
+
+    pub(super) fn is_full(&self) -> bool {
+        self.text.len() >= BYTES || self.len() >= ROWS
+    }
+
+    /// Adds the number of a row in the column asked for as number `slot`.
+    pub(super) fn push_number(&mut self, slot: usize, number: f64) {
+        self.numbers[slot].push(number);
+    }
+
+    /// Takes back the numbers of a row that was not added.
+    pub(super) fn drop_numbers(&mut self) {
+        let rows = self.len();
+        for series in &mut self.numbers {
+            series.truncate(rows);
+        }
+    }
+
+    /// Adds a row, after its numbers. `write` appends its text.
+    pub(super) fn push_row(&mut self, place: Place, write: impl FnOnce(&mut Vec<u8>)) {
+        let start = self.text.len();
+        write(&mut self.text);
+        self.rows.push(start..self.text.len());
+        self.places.push(place);
+    }
+
+    /// Adds a row whose text is at `row`, or will be with [`Block::push_text`].
+    #[inline]
+    pub(super) fn push_row_at(&mut self, place: Place, row: Range<usize>) {
+        self.rows.push(row);
+        self.places.push(place);
+    }
+
+    pub(super) fn text_len(&self) -> usize {
+        self.text.len()
+    }
+
+    /// Adds the text of rows. Their cells are separated by `delimiter`.
+    pub(super) fn push_text(&mut self, text: &[u8], delimiter: u8) {
+        let start = self.text.len();
+        self.text.extend_from_slice(text);
+        if delimiter != b',' {
+            for byte in &mut self.text[start..] {
+                if *byte == delimiter {
+                    *byte = b',';
+                }
+            }
+        }
+    }
+
+    /// Adds rows without text, whose numbers were added before.
+    pub(super) fn push_places(&mut self, rows: Range<u64>) {
+        self.places.extend(rows.map(Place::Row));
+    }
+
+    /// Drops the rows from `len` on.
+    fn truncate(&mut self, len: usize) {
+        self.places.truncate(len);
+        self.rows.truncate(len);
+        self.drop_numbers();
+    }
+}
+
+impl TableReader {
+    /// Reads the next rows into `block`; none at the end of the table. With `text`, also as they
+    /// will be written. An error comes after the rows before it.
+    ///
+    /// From a pipe, rows are not kept back until a block is full.
+    ///
+    /// # Errors
+    /// As [`TableReader::advance`] and [`TableReader::number`].
+    pub(crate) fn fill(&mut self, block: &mut Block, asked: &[Column], text: bool) -> Result<()> {
+        block.clear(asked.len());
+        if let Some(error) = self.late.take() {
+            return Err(error);
+        }
+        let filled = match &self.source {
+            Source::Text(_) => self.fill_from_text(block, asked),
+            Source::Numbers(_) => self.fill_from_numbers(block, asked, text),
+        };
+        match filled {
+            Err(error) if block.len() > 0 => {
+                self.late = Some(error);
+                Ok(())
+            }
+            filled => filled,
+        }
+    }
+
+    /// Reads one row with all care, and those after it in a hurry.
+    fn fill_from_text(&mut self, block: &mut Block, asked: &[Column]) -> Result<()> {
+        let mut slots: Vec<(usize, usize)> = asked.iter().map(|c| c.place()).zip(0..).collect();
+        slots.sort_unstable();
+        while self.advance()? {
+            if let Err(error) = self.push_numbers(block, asked) {
+                block.drop_numbers();
+                return Err(error);
+            }
+            let place = self.row_place();
+            let row = self.row();
+            block.push_row(place, |out| cells::push_row(out, row.cells()));
+            let time = &self.time;
+            let Source::Text(text) = &mut self.source else {
+                break;
+            };
+            let number = |column: usize, value: f64| match time {
+                Some((time, unit)) if *time == column => unit.in_seconds(value),
+                _ => value,
+            };
+            text.plain_rows(self.header.len(), &slots, number, block);
+            if block.is_full() || text.is_drained() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn push_numbers(&self, block: &mut Block, asked: &[Column]) -> Result<()> {
+        for (slot, column) in asked.iter().enumerate() {
+            block.push_number(slot, self.number(*column)?);
+        }
+        Ok(())
+    }
+
+    fn fill_from_numbers(&mut self, block: &mut Block, asked: &[Column], text: bool) -> Result<()> {
+        let Source::Numbers(numbers) = &mut self.source else {
+            return Ok(());
+        };
+        let places: Vec<usize> = asked.iter().map(|column| column.place()).collect();
+        let filled = numbers.fill(block, &places, text);
+        filled.map_err(|problem| self.fault(None, problem))?;
+        for (slot, column) in asked.iter().enumerate() {
+            if let Some((time, unit)) = &self.time
+                && *time == column.place()
+            {
+                for value in &mut block.numbers[slot] {
+                    *value = unit.in_seconds(*value);
+                }
+            }
+        }
+        let finite = |n: usize| block.numbers.iter().all(|series| series[n].is_finite());
+        let Some(bad) = (0..block.len()).find(|n| !finite(*n)) else {
+            return Ok(());
+        };
+        if let Source::Numbers(numbers) = &mut self.source {
+            numbers.go_back(block.len() - 1 - bad);
+        }
+        block.truncate(bad);
+        let found: Result<Vec<f64>> = asked.iter().map(|column| self.number(*column)).collect();
+        found.map(|_| ())
+    }
+
+    /// An error at a row of a block.
+    pub(crate) fn fault_in(
+        &self,
+        (block, row): (&Block, usize),
+        column: Option<Column>,
+        problem: String,
+    ) -> Error {
+        self.fault_at(block.place(row), column, problem)
+    }
+}

@@ -1,0 +1,100 @@
+//! Finds the ends of cells and lines in a text, eight bytes at a time. Cells are so short that a
+//! search that starts anew for each of them costs more.
+
+/// The places of four bytes in a text, in order.
+pub(super) struct Marks<'t> {
+    words: &'t [[u8; 8]],
+    rest: &'t [u8],
+    /// Each of the bytes, eight times.
+    bytes: [u64; 4],
+    /// Where the next word begins.
+    at: usize,
+    /// The highest bit of each byte of the word before that is one of them.
+    found: u64,
+}
+
+const LOW: u64 = u64::from_ne_bytes([0x7f; 8]);
+
+impl<'t> Marks<'t> {
+    /// The bytes are not 0.
+    pub(super) fn new(text: &'t [u8], bytes: [u8; 4]) -> Self {
+        let (words, rest) = text.as_chunks();
+        Self {
+            words,
+            rest,
+            bytes: bytes.map(|byte| u64::from_ne_bytes([byte; 8])),
+            at: 0,
+            found: 0,
+        }
+    }
+
+    fn search(&mut self, word: [u8; 8]) {
+        let word = u64::from_le_bytes(word);
+        // Without a carry from byte to byte: the highest bit is set where no other bit is.
+        let zeros = |word: u64| !(((word & LOW) + LOW) | word | LOW);
+        let [a, b, c, d] = self.bytes.map(|byte| zeros(word ^ byte));
+        self.found = a | b | c | d;
+        self.at += 8;
+    }
+}
+
+impl Iterator for Marks<'_> {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        while self.found == 0 {
+            if let Some((word, words)) = self.words.split_first() {
+                self.words = words;
+                self.search(*word);
+            } else if self.rest.is_empty() {
+                return None;
+            } else {
+                let mut word = [0; 8];
+                word[..self.rest.len()].copy_from_slice(self.rest);
+                self.rest = &[];
+                self.search(word);
+            }
+        }
+        let place = self.at - 8 + self.found.trailing_zeros() as usize / 8;
+        self.found &= self.found - 1;
+        Some(place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    #[test]
+    fn marks_are_those_of_a_search_byte_by_byte() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let alphabet = [
+            b',',
+            b'\n',
+            b',' + 1,
+            b',' - 1,
+            b',' | 0x80,
+            0,
+            0xff,
+            b'\r',
+            b'"',
+            b'a',
+            b'\n' | 0x80,
+        ];
+        for round in 0..20_000 {
+            let length = round % 40;
+            let byte = |_| match random.next_u32() % 4 {
+                0 => random.next_u32() as u8,
+                _ => alphabet[random.next_u32() as usize % alphabet.len()],
+            };
+            let text: Vec<u8> = (0..length).map(byte).collect();
+            let is_mark = |n: &usize| matches!(text[*n], b',' | b'\n' | b'\r' | b'"');
+            let expected: Vec<usize> = (0..length).filter(is_mark).collect();
+            let found: Vec<usize> = Marks::new(&text, [b',', b'\n', b'\r', b'"']).collect();
+            assert_eq!(found, expected, "{text:?}");
+        }
+    }
+}
