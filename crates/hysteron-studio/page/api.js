@@ -10,7 +10,7 @@
 /** @typedef {{name: string, default: string, range: string, purpose: string}} Option */
 /** @typedef {{files: File[], fits: Fit[], jobs: JobView[], best: number|null, best_by: string, options: Option[], memory: [number, number]}} Overview */
 /** @typedef {{fit: number|null, x: (number|null)[], y: (number|null)[]}} Line */
-/** @typedef {{picture: string, x: string, y: string, lines: Line[], samples: number, marked: [number, number]|null}} Curves */
+/** @typedef {{picture: string, x: string, y: string, lines: Line[], samples: number, span: [number, number]|null, marked: [number, number]|null}} Curves */
 
 /** @type {(fault: Fault) => void} */
 let onFault = () => {};

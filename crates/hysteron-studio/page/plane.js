@@ -10,8 +10,11 @@ const CLASSES = ["never excited", "excited once", "not told apart", "well determ
 /** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null}} */
 const now = { kind: "weights", fit: null, chosen: false, at: null };
 
+/** Shows the states of the operators from now on. */
+export const states = () => (now.kind = "states");
+
 /**
- * Shows the states at the sample that was pointed at.
+ * Shows the staircase at the sample that was pointed at.
  * @param {number|null} file
  * @param {number} time
  * @param {any} overview
@@ -19,8 +22,8 @@ const now = { kind: "weights", fit: null, chosen: false, at: null };
  */
 export function at(file, time, overview, drawn) {
   if (file === null || drawn.size === 0) return;
-  Object.assign(now, { at: [file, time], kind: "states" });
-  show(overview, drawn);
+  now.at = [file, time];
+  return show(overview, drawn);
 }
 
 /**
@@ -41,9 +44,9 @@ export async function show(overview, drawn) {
     el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
     el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === now.kind, disabled: kind === "states" && !now.at }, text)))),
   );
-  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.kind === "states" ? now.at : null }).catch(() => null);
+  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.at }).catch(() => null);
   if (!seen) {
-    now.kind = "weights";
+    Object.assign(now, { kind: "weights", at: null });
     return;
   }
   const classes = seen.kind === "excitation";
@@ -54,13 +57,15 @@ export async function show(overview, drawn) {
   const places = levels.map((/** @type {string} */ _, /** @type {number} */ n) => n);
   const every = Math.max(1, Math.ceil(levels.length / 8));
   const ticks = { tickvals: places.filter((/** @type {number} */ n) => n % every === 0), ticktext: levels.filter((/** @type {string} */ _, /** @type {number} */ n) => n % every === 0), showgrid: false, zeroline: false };
+  // Cell n, counted from 0, is drawn around n, and ends at n + 1 in the units of the staircase.
+  const along = (/** @type {0|1} */ axis) => seen.staircase.map((/** @type {number[]} */ point) => point[axis] - 0.5);
+  const stairs = (/** @type {string} */ color, /** @type {number} */ width) => ({ x: along(0), y: along(1), mode: "lines", line: { color, width }, hoverinfo: "skip", showlegend: false });
   await draw(by("plot-plane"), [{
     type: "heatmap", z: seen.values, colorscale: scale, ...ends, hoverongaps: false, xgap: 1, ygap: 1,
     hovertemplate: "α %{x}, β %{y}: %{z:.4g}<extra></extra>",
     colorbar: classes ? { tickvals: [0, 1, 2, 3], ticktext: CLASSES, thickness: 12 } : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
-  }], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: ticks, yaxis: ticks, dragmode: false });
-  const [input, measured, modelled] = seen.sample ?? [];
+  }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: ticks, yaxis: ticks, dragmode: false });
   by("plane-caption").textContent = seen.sample
-    ? `States of the operators at row ${seen.row}: input ${shown(input)}, measured ${shown(measured)}, model ${shown(modelled)}. The edge is the staircase of what the model remembers.`
-    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states.";
+    ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off.`
+    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states and its staircase.";
 }

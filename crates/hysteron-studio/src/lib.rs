@@ -13,7 +13,7 @@ mod session;
 #[cfg(feature = "server")]
 pub use server::Server;
 pub use session::{
-    Answer, ColumnView, Curves, Download, DriveView, Fault, FileView, Finished, FitView, Held, Id,
+    Answer, Area, ColumnView, Curves, Download, DriveView, Fault, FileView, Finished, FitView, Held, Id,
     Job, JobView, Line, Overview, Part, Picture, PlaneKind, PlaneView, Pull, Purpose, Request,
-    Response, Session, Take, View,
+    Response, SampleView, Session, Take, View,
 };

@@ -34,6 +34,7 @@ pub(super) async fn session(
         Request::Overview
             | Request::Curves(_)
             | Request::Plane { .. }
+            | Request::Sample { .. }
             | Request::Pull(_)
             | Request::Take(_)
             | Request::Drive { .. }

@@ -17,7 +17,7 @@ mod take_home;
 pub use drive::{DriveView, Pull};
 pub use fault::Fault;
 pub use fitting::{Finished, FitView, Held, Job, JobView};
-pub use look::{Curves, Line, Picture, PlaneKind, PlaneView, View};
+pub use look::{Area, Curves, Line, Picture, PlaneKind, PlaneView, SampleView, View};
 pub use opened::{ColumnView, FileView, Part};
 pub use request::{Id, Overview, Purpose, Request, Response};
 pub use take_home::{Download, Take};
@@ -166,6 +166,9 @@ impl Session {
             Request::Plane { fit, kind, at } => {
                 return Ok(Response::Plane(self.plane(fit, kind, at)?).into());
             }
+            Request::Sample { file, fits, at } => {
+                return Ok(Response::Sample(self.sample(file, &fits, at)?).into());
+            }
             Request::Drive { fit } => return Ok(Response::Driven(self.drive(fit)?).into()),
             Request::Pull(pull) => return Ok(Response::Driven(self.pull(&pull)?).into()),
             Request::Take(take) => return Ok(Response::Taken(self.take(&take)?).into()),
@@ -224,6 +227,7 @@ impl Session {
     fn forget_courses(&mut self, file: Id) {
         for fit in &mut self.fits {
             fit.courses.remove(&file);
+            fit.reached = None;
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::drive::{DriveView, Pull};
 use super::fitting::{FitView, Held, JobView};
-use super::look::{Curves, PlaneKind, PlaneView, View};
+use super::look::{Curves, PlaneKind, PlaneView, SampleView, View};
 use super::opened::{FileView, Part};
 use super::take_home::{Download, Take};
 use hysteron::FitOption;
@@ -104,6 +104,16 @@ pub enum Request {
         #[serde(default)]
         at: Option<(Id, f64)>,
     },
+    /// A sample.
+    Sample {
+        /// The file.
+        file: Id,
+        /// The fits whose outputs are wanted.
+        #[serde(default)]
+        fits: Vec<Id>,
+        /// Its time, or without one its number from 1.
+        at: f64,
+    },
     /// Starts to drive a model by hand.
     Drive {
         /// The fit.
@@ -127,6 +137,8 @@ pub enum Response {
     Curves(Curves),
     /// A plane.
     Plane(PlaneView),
+    /// A sample.
+    Sample(SampleView),
     /// A model that is driven.
     Driven(DriveView),
     /// Something to take home.

@@ -136,6 +136,7 @@ impl Session {
                 output: fit.output,
                 dt: fit.dt,
                 courses: BTreeMap::new(),
+                reached: None,
             });
         }
         let ids = new.files.iter().map(|file| file.id);
