@@ -16,13 +16,13 @@ const OVER_TIME = new Set(["output", "input", "residuals"]);
 /** @type {Area} */
 const ALL = { input: null, output: null };
 
-/** What is shown. @type {{file: number|null, window: [number, number]|null, area: Area, span: [number, number]|null, marking: boolean, overview: any, drawn: Set<number>, whole: [number, number]|null, samples: number, asked: number, changed?: any}} */
-const now = { file: null, window: null, area: ALL, span: null, marking: false, overview: null, drawn: new Set(), whole: null, samples: 0, asked: 0 };
+/** What is shown. @type {{file: number|null, window: [number, number]|null, area: Area, raw: boolean, span: [number, number]|null, marking: boolean, overview: any, drawn: Set<number>, whole: [number, number]|null, samples: number, asked: number, changed?: any}} */
+const now = { file: null, window: null, area: ALL, raw: true, span: null, marking: false, overview: null, drawn: new Set(), whole: null, samples: 0, asked: 0 };
 
 /** @param {string} band */
 const view = (band) => {
   const node = by(/** @type {any} */ (BANDS.find(([name]) => name === band))[1]);
-  return { file: now.file, fits: [...now.drawn], picture: band, window: now.window, area: now.area, pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
+  return { file: now.file, fits: [...now.drawn], picture: band, window: now.window, area: now.area, raw: now.raw, pixels: [Math.max(100, node.clientWidth), Math.max(100, node.clientHeight)] };
 };
 
 /** The pictures that can be taken home as numbers. */
@@ -67,6 +67,7 @@ function tools(files, changed) {
     el("button", { "data-key": "later", "aria-label": "Later", onclick: () => zoom(1, 0.25) }, "▶"),
     el("button", { "data-key": "all", onclick: () => (Object.assign(now, { window: null, area: ALL }), redraw()) }, "Show all"),
     el("button", { "data-key": "mark", "aria-pressed": String(now.marking), onclick: () => ((now.marking = !now.marking), again()) }, now.marking ? "Drag over the output to mark…" : "Mark a span for validation"),
+    file?.steps ? el("button", { "data-key": "as-read", "aria-pressed": String(now.raw), onclick: () => ((now.raw = !now.raw), again()) }, "As read, too") : null,
     file && now.marking
       ? el("form", { class: "row", onsubmit: (/** @type {any} */ e) => {
           e.preventDefault();
@@ -103,12 +104,12 @@ async function picture([band, id], mine) {
   const curves = /** @type {import("./api.js").Curves} */ (await ask("curves", view(band)).catch(() => null));
   if (!curves || mine !== now.asked) return;
   const place = (/** @type {number} */ id) => now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id);
-  const traces = curves.lines.map(({ fit, x, y }) => ({
+  const traces = curves.lines.map(({ fit, raw, x, y }) => ({
     x, y,
     type: band === "histogram" ? "bar" : "scatter",
     mode: band === "residuals_over_input" ? "markers" : "lines",
-    name: fit === null ? "measured" : `fit ${place(fit) + 1}`,
-    line: stroke(fit === null ? null : place(fit)),
+    name: raw ? "as read" : fit === null ? "measured" : `fit ${place(fit) + 1}`,
+    line: raw ? { color: "#e69f00", width: 1 } : stroke(fit === null ? null : place(fit)),
     marker: { color: stroke(fit === null ? null : place(fit)).color, size: 3 },
     opacity: band === "histogram" && curves.lines.length > 1 ? 0.6 : 1,
     connectgaps: false,

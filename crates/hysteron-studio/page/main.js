@@ -6,6 +6,7 @@ import * as opening from "./open.js";
 import * as fitting from "./fit.js";
 import * as looking from "./look.js";
 import * as driving from "./drive.js";
+import * as designing from "./design.js";
 import * as home from "./home.js";
 import { isDark } from "./plot.js";
 
@@ -33,6 +34,7 @@ async function show(found) {
   }
   await looking.show(found, drawn, show);
   await driving.show(found);
+  await designing.show(found);
   await home.show(found);
   for (const link of document.querySelectorAll("nav a")) link.setAttribute("aria-disabled", String(by(String(link.getAttribute("href")).slice(1)).hidden));
   document.body.dataset.shown = String(found.fits.length);

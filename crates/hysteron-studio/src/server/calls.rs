@@ -35,6 +35,7 @@ pub(super) async fn session(
             | Request::Curves(_)
             | Request::Plane { .. }
             | Request::Sample { .. }
+            | Request::Design(_)
             | Request::Pull(_)
             | Request::Take(_)
             | Request::Drive { .. }

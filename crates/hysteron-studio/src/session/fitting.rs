@@ -4,8 +4,8 @@ use super::fault::{Fault, spelt};
 use super::request::{Id, Purpose, Response};
 use super::{Answer, MOST, Session};
 use hysteron::{
-    Advice, Errors, Fit, HeldOut, HoldOut, Model, Progress, Quantity, Recording, advice,
-    State, fit_holding_out,
+    Advice, Errors, Fit, HeldOut, HoldOut, Model, Progress, Quantity, Recording, State, advice,
+    fit_holding_out,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

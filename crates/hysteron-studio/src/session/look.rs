@@ -42,6 +42,9 @@ pub struct View {
     /// The part of the loop that is shown: samples beside it are left out of every picture.
     #[serde(default)]
     pub area: Area,
+    /// The file before its preparation too, where it is prepared.
+    #[serde(default)]
+    pub raw: bool,
     /// Width and height of the picture in pixels.
     pub pixels: (u32, u32),
 }
@@ -68,7 +71,7 @@ impl Area {
             || (n + 1 < recording.len() && self.has(recording, n + 1))
     }
 
-    fn has(&self, recording: &Recording, n: usize) -> bool {
+    pub(super) fn has(&self, recording: &Recording, n: usize) -> bool {
         let inside = |ends: Option<(f64, f64)>, value: f64| {
             ends.is_none_or(|(low, high)| (low..=high).contains(&value))
         };
@@ -100,6 +103,8 @@ pub struct Curves {
 pub struct Line {
     /// The fit; `None` for what was measured.
     pub fit: Option<Id>,
+    /// Whether it is what was measured, before its preparation.
+    pub raw: bool,
     /// Where its points are.
     pub x: Vec<Option<f64>>,
     /// And how high.
@@ -160,7 +165,7 @@ const BARS: usize = 60;
 
 impl Session {
     /// The modelled output of a fit on a file.
-    fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
+    pub(super) fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
         let recording = self.file(file)?.recording()?.clone();
         let fitted = self.fitted(fit)?;
         if let Some(course) = fitted.courses.get(&file) {
@@ -197,7 +202,10 @@ impl Session {
             Some(_) => "time [s]".to_owned(),
             None => "sample".to_owned(),
         };
-        let shown: Vec<bool> = rows.clone().map(|n| view.area.shows(&recording, n)).collect();
+        let shown: Vec<bool> = rows
+            .clone()
+            .map(|n| view.area.shows(&recording, n))
+            .collect();
         let first = rows.start;
         // What is not a number breaks a line.
         let seen = |n: usize, value: f64| if shown[n - first] { value } else { f64::NAN };
@@ -211,8 +219,16 @@ impl Session {
         };
         let kept = || rows.clone().filter(|n| shown[n - first]);
         let measured = |n: usize| recording.output[n];
-        let line = |fit, (x, y)| Line { fit, x, y };
+        let line = |fit, (x, y)| Line {
+            fit,
+            raw: false,
+            x,
+            y,
+        };
         let mut lines = Vec::new();
+        if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
+            lines.extend(before(raw, view));
+        }
         let residual = |course: &Arc<Vec<f64>>, n: usize| recording.output[n] - course[n];
         match view.picture {
             Picture::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
@@ -312,10 +328,6 @@ impl Session {
             }
         };
         let count = model.plane().levels();
-        let mut rows = vec![vec![None; count]; count];
-        for ((i, j), value) in operators(count).zip(values) {
-            rows[j - 1][i - 1] = Some(value);
-        }
         let levels = match model.spacing() {
             [] => (1..=count).map(|k| model.plane().level(k)).collect(),
             [_, levels @ ..] => levels.to_vec(),
@@ -323,7 +335,7 @@ impl Session {
         Ok(PlaneView {
             kind,
             levels,
-            values: rows,
+            values: cells(count, values.into_iter()),
             unit: model.input.to_column(),
             of: match kind {
                 PlaneKind::Weights => format!("weight{}", unit_of(&model)),
@@ -362,7 +374,12 @@ impl Session {
             time: around.time.map(|time| &time[rows.clone()]),
             load: around.load.map(|load| &load[rows.clone()]),
         };
-        model.run_in(&mut state, &recording.input[rows.clone()], around, &mut vec![0.0; rows.len()])?;
+        model.run_in(
+            &mut state,
+            &recording.input[rows.clone()],
+            around,
+            &mut vec![0.0; rows.len()],
+        )?;
         fitted.reached = Some((file, count, state.clone()));
         Ok(state)
     }
@@ -371,6 +388,44 @@ impl Session {
 fn unit_of(model: &Model) -> String {
     let unit = model.output.unit.as_ref();
     unit.map_or(String::new(), |unit| format!(" [{unit}]"))
+}
+
+/// Values of operators, for each level of `β`, for each level of `α` up to it.
+pub(super) fn cells(count: usize, values: impl Iterator<Item = f64>) -> Vec<Vec<Option<f64>>> {
+    let mut rows = vec![vec![None; count]; count];
+    for ((i, j), value) in operators(count).zip(values) {
+        rows[j - 1][i - 1] = Some(value);
+    }
+    rows
+}
+
+/// The line of a recording before its preparation, in the pictures that have one.
+fn before(raw: &Recording, view: &View) -> Option<Line> {
+    let rows = rows(raw, view.window).filter(|n| view.area.shows(raw, *n));
+    let (x, y) = match view.picture {
+        Picture::Input => thinned(
+            rows.map(|n| [when(raw, n), raw.input[n]]),
+            view.pixels,
+            true,
+        ),
+        Picture::Output => thinned(
+            rows.map(|n| [when(raw, n), raw.output[n]]),
+            view.pixels,
+            true,
+        ),
+        Picture::Loop => thinned(
+            rows.map(|n| [raw.input[n], raw.output[n]]),
+            view.pixels,
+            false,
+        ),
+        Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => return None,
+    };
+    Some(Line {
+        fit: None,
+        raw: true,
+        x,
+        y,
+    })
 }
 
 /// The time of a sample, or its number from 1.
@@ -399,7 +454,7 @@ fn nearest(recording: &Recording, time: f64) -> usize {
 }
 
 /// The samples in a window of the time, and one more at each end, so that lines go to its edge.
-fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<usize> {
+pub(super) fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<usize> {
     let count = recording.len();
     let Some((from, to)) = window.filter(|(from, to)| from < to) else {
         return 0..count;
@@ -422,7 +477,7 @@ fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<us
 type Points = (Vec<Option<f64>>, Vec<Option<f64>>);
 
 /// The points that a picture of so many pixels can show.
-fn thinned(
+pub(super) fn thinned(
     points: impl Iterator<Item = Point> + Clone,
     (width, height): (u32, u32),
     is_function: bool,

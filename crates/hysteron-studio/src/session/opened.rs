@@ -2,11 +2,12 @@
 
 use super::fault::Fault;
 use super::look::when;
+use super::prepare::Steps;
 use super::request::{Id, Purpose};
 use bytes::Bytes;
 use hysteron::{
-    ColumnSummary, Columns, Quantity, ReadOptions, Recording, Repair, TablePreview, TableReader,
-    branches, preview_table, usual_tolerance,
+    ColumnSummary, Columns, Preparation, Progress, Quantity, ReadOptions, Recording, Repair,
+    TablePreview, TableReader, branches, prepare, preview_table, usual_tolerance,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -38,7 +39,13 @@ pub(super) struct Opened {
     pub(super) mend: bool,
     pub(super) purpose: Purpose,
     pub(super) marked: Option<(usize, usize)>,
+    pub(super) steps: Option<Steps>,
+    /// As it was read.
+    raw: Option<Arc<Recording>>,
+    /// After the preparation.
     recording: Result<Arc<Recording>, Fault>,
+    preparation: Option<Preparation>,
+    repair: Option<RepairView>,
     notes: Vec<String>,
 }
 
@@ -50,6 +57,15 @@ pub struct ColumnView {
     pub summary: ColumnSummary,
     /// The smallest and the largest number in each part of the rows.
     pub picture: Vec<Option<(f64, f64)>>,
+}
+
+/// What a repair of the rows would do.
+#[derive(Debug, Clone, Serialize)]
+pub struct RepairView {
+    /// The rows, and what would become of them.
+    pub notes: Vec<String>,
+    /// Samples that there would be.
+    pub samples: usize,
 }
 
 /// A file as the page shows it.
@@ -73,6 +89,12 @@ pub struct FileView {
     pub notes: Vec<String>,
     /// What is wrong with it as a recording.
     pub problem: Option<Fault>,
+    /// What a repair would do, where there is something wrong that it mends.
+    pub repair: Option<RepairView>,
+    /// The steps of its preparation; `None` if it is taken as it is.
+    pub steps: Option<Steps>,
+    /// What the preparation did.
+    pub preparation: Option<Preparation>,
     /// Whether rows are repaired.
     pub mend: bool,
     /// What it is for.
@@ -111,7 +133,11 @@ impl Opened {
             mend: false,
             purpose: Purpose::Fit,
             marked: None,
+            steps: None,
+            raw: None,
             recording: Err(Fault::defect("not read yet")),
+            preparation: None,
+            repair: None,
             notes: Vec::new(),
         };
         opened.read(memory);
@@ -126,6 +152,7 @@ impl Opened {
             let names = columns.table.columns.iter();
             names.map(|column| column.name.clone()).collect::<Vec<_>>()
         };
+        new.steps.clone_from(&self.steps);
         if same(&new.preview) == same(&self.preview) {
             new.roles = self.roles.clone();
         }
@@ -141,6 +168,24 @@ impl Opened {
     pub(super) fn set_mend(&mut self, on: bool, memory: u64) {
         self.mend = on;
         self.read(memory);
+    }
+
+    /// Prepares the recording, or takes it as it is. A refusal leaves it as it was.
+    pub(super) fn set_steps(&mut self, steps: Option<Steps>) -> Result<(), Fault> {
+        let raw = self.raw.clone();
+        let raw = raw.ok_or_else(|| match &self.recording {
+            Err(fault) => fault.clone(),
+            Ok(_) => Fault::defect("not read yet"),
+        })?;
+        let (recording, preparation) = prepared(&raw, steps.as_ref())?;
+        (self.recording, self.preparation, self.steps) = (Ok(recording), preparation, steps);
+        self.keep_marked();
+        Ok(())
+    }
+
+    /// The recording before its preparation.
+    pub(super) fn raw(&self) -> Option<&Arc<Recording>> {
+        self.raw.as_ref().filter(|_| self.steps.is_some())
     }
 
     pub(super) fn mark(&mut self, rows: Option<(usize, usize)>) -> Result<(), Fault> {
@@ -178,16 +223,40 @@ impl Opened {
             .recording
             .as_ref()
             .map_or(0, |recording| recording.len());
-        (self.bytes.len() + 4 * size_of::<f64>() * samples) as u64
+        let raw = self.raw().map_or(0, |raw| raw.len());
+        (self.bytes.len() + 4 * size_of::<f64>() * (samples + raw)) as u64
     }
 
     /// Makes the recording of the columns.
     fn read(&mut self, memory: u64) {
-        let (recording, notes) = match self.try_read(memory) {
-            Ok((recording, notes)) => (Ok(Arc::new(recording)), notes),
-            Err(fault) => (Err(fault), self.remarks.clone()),
-        };
-        (self.recording, self.notes) = (recording, notes);
+        (self.raw, self.preparation, self.repair) = (None, None, None);
+        match self.try_read(memory, self.mend) {
+            Ok((raw, notes)) => {
+                let raw = Arc::new(raw);
+                (self.recording, self.notes) = match prepared(&raw, self.steps.as_ref()) {
+                    Ok((recording, preparation)) => {
+                        self.preparation = preparation;
+                        (Ok(recording), notes)
+                    }
+                    Err(fault) => (Err(fault), notes),
+                };
+                self.raw = Some(raw);
+            }
+            Err(fault) => {
+                if !self.mend {
+                    let would = self.try_read(memory, true).ok();
+                    self.repair = would.map(|(recording, notes)| RepairView {
+                        notes,
+                        samples: recording.len(),
+                    });
+                }
+                (self.recording, self.notes) = (Err(fault), self.remarks.clone());
+            }
+        }
+        self.keep_marked();
+    }
+
+    fn keep_marked(&mut self) {
         let count = self
             .recording
             .as_ref()
@@ -195,7 +264,7 @@ impl Opened {
         self.marked = self.marked.filter(|(_, last)| *last <= count);
     }
 
-    fn try_read(&self, memory: u64) -> Result<(Recording, Vec<String>), Fault> {
+    fn try_read(&self, memory: u64, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
         let Part {
             input,
             output,
@@ -211,11 +280,7 @@ impl Opened {
             load: load.as_deref(),
             ..Columns::new(input, output)
         };
-        let repair = if self.mend {
-            Repair::Mend
-        } else {
-            Repair::Refuse
-        };
+        let repair = if mend { Repair::Mend } else { Repair::Refuse };
         let options = ReadOptions {
             repair,
             max_memory: memory,
@@ -248,6 +313,9 @@ impl Opened {
             reasons: self.preview.roles.reasons.clone(),
             notes: self.notes.clone(),
             problem: self.recording.as_ref().err().cloned(),
+            repair: self.repair.clone(),
+            steps: self.steps.clone(),
+            preparation: self.preparation.clone(),
             mend: self.mend,
             purpose: self.purpose,
             marked: self.marked,
@@ -262,6 +330,18 @@ impl Opened {
             output: shown(|recording| &recording.output_quantity),
         }
     }
+}
+
+/// A recording after these steps, and what they did.
+fn prepared(
+    raw: &Arc<Recording>,
+    steps: Option<&Steps>,
+) -> Result<(Arc<Recording>, Option<Preparation>), Fault> {
+    let Some(steps) = steps else {
+        return Ok((raw.clone(), None));
+    };
+    let (recording, report) = prepare(raw, &steps.options()?, Progress::NONE)?;
+    Ok((Arc::new(recording), Some(report)))
 }
 
 /// The last part of a path, safe to show.
