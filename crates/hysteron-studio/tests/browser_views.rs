@@ -213,7 +213,7 @@ fn every_view_answers_the_hand() {
         ] {
             browser.size(&tab, width, 900);
             browser.value(&tab, &format!("document.documentElement.dataset.theme === '{theme}' || (document.documentElement.dataset.theme = '{theme}' === 'dark' ? 'light' : 'dark', document.querySelector('#theme').click())"));
-            std::thread::sleep(std::time::Duration::from_millis(1500));
+            std::thread::sleep(std::time::Duration::from_millis(4000));
             keep(&mut browser, &tab, &format!("views-{theme}-{width}"));
         }
     }

@@ -45,6 +45,8 @@ pub(super) struct Opened {
     /// After the preparation.
     recording: Result<Arc<Recording>, Fault>,
     preparation: Option<Preparation>,
+    /// Branches of its input. They are counted once: a page asks often.
+    branches: usize,
     repair: Option<RepairView>,
     notes: Vec<String>,
 }
@@ -137,6 +139,7 @@ impl Opened {
             raw: None,
             recording: Err(Fault::defect("not read yet")),
             preparation: None,
+            branches: 0,
             repair: None,
             notes: Vec::new(),
         };
@@ -256,7 +259,13 @@ impl Opened {
         self.keep_marked();
     }
 
+    /// What hangs on the number of samples, after the recording has changed.
     fn keep_marked(&mut self) {
+        self.branches = self.recording.as_ref().map_or(0, |recording| {
+            let input = &recording.input;
+            let of_samples = branches(input, usual_tolerance(input));
+            of_samples.last().map_or(0, |last| last + 1)
+        });
         let count = self
             .recording
             .as_ref()
@@ -320,12 +329,7 @@ impl Opened {
             purpose: self.purpose,
             marked: self.marked,
             samples: recording.map_or(0, |recording| recording.len()),
-            branches: recording.map_or(0, |recording| {
-                let input = &recording.input;
-                branches(input, usual_tolerance(input))
-                    .last()
-                    .map_or(0, |last| last + 1)
-            }),
+            branches: self.branches,
             input: shown(|recording| &recording.input_quantity),
             output: shown(|recording| &recording.output_quantity),
         }
