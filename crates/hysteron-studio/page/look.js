@@ -87,11 +87,9 @@ function tools(files, changed) {
 async function redraw() {
   const mine = ++now.asked;
   const bands = BANDS.filter(([band]) => now.drawn.size > 0 || ["output", "input", "loop"].includes(band));
-  // The output first: it says which part of the time is shown.
-  await picture(bands[0], mine);
+  await Promise.all(bands.map((band) => picture(band, mine)));
   if (mine !== now.asked) return;
   play.show(now.overview, now.drawn, now.file, now.window ?? now.span ?? [0, 1], now.samples);
-  await Promise.all(bands.slice(1).map((band) => picture(band, mine)));
   if (mine === now.asked && now.drawn.size > 0) await plane.show(now.overview, now.drawn);
 }
 
@@ -120,7 +118,7 @@ async function picture([band, id], mine) {
     Object.assign(now, { span: curves.span, samples: curves.samples });
     if (!now.window && !isPart) now.whole = curves.span;
   }
-  const range = overTime ? now.window ?? now.span : band === "histogram" ? null : now.area.input;
+  const range = overTime ? now.window ?? curves.span : band === "histogram" ? null : now.area.input;
   const height = band === "loop" ? now.area.output : null;
   const shapes = overTime && curves.marked
     ? [{ type: "rect", xref: "x", yref: "paper", x0: curves.marked[0], x1: curves.marked[1], y0: 0, y1: 1, fillcolor: "rgba(230,159,0,.22)", line: { width: 0 }, label: { text: band === "output" ? "validation" : "", textposition: "top left" } }]

@@ -16,10 +16,13 @@ const drawn = new Set();
 const known = new Set();
 /** @type {import("./api.js").Overview | null} */
 let overview = null;
+/** What is shown, as text. */
+let seen = "";
 
 /** @param {import("./api.js").Overview} found */
 async function show(found) {
   overview = found;
+  seen = JSON.stringify(found);
   const ids = new Set(found.fits.map((fit) => fit.id));
   for (const id of [...drawn]) if (!ids.has(id)) drawn.delete(id);
   for (const id of ids) {
@@ -41,7 +44,8 @@ async function show(found) {
 }
 
 const draw = () => overview && looking.show(overview, drawn, show);
-const refresh = () => ask("overview").then(show, () => {});
+// The page that made a change has drawn it already.
+const refresh = () => ask("overview").then((found) => (JSON.stringify(found) === seen ? undefined : show(found)), () => {});
 
 whenRefused((fault) => {
   const node = by("fault");

@@ -36,8 +36,8 @@ function ticks(levels) {
 const STEPS = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
 const SCALE = STEPS.flatMap((step, n) => [[n / 4, step], [(n + 1) / 4, step]]);
 
-/** The scale of how well operators are determined. A narrow page has it above the plane. @param {boolean} narrow */
-const bar = (narrow) => ({ tickvals: [0, 1, 2, 3], ticktext: narrow ? ["never", "once", "together", "well"] : CLASSES, thickness: 12, ...(narrow ? { orientation: "h", y: 1.02, yanchor: "bottom" } : {}) });
+/** The scale of how well operators are determined. A narrow page has short words. @param {boolean} narrow */
+const bar = (narrow) => ({ tickvals: [0, 1, 2, 3], ticktext: narrow ? ["never", "once", "together", "well"] : CLASSES, thickness: 12 });
 
 /**
  * A plane of how well operators are determined.

@@ -308,12 +308,23 @@ impl Drive {
             Policy::Hold => None,
             Policy::Anticipate => ahead.unwrap_or(as_it_came),
         };
-        let target = Target::new(output).heading(heading);
+        let target = Target::new(output + self.past(heading)).heading(heading);
         let inverse = self.model.inverse()?;
         let solution = inverse.step(&mut way.state.clone(), self.wanted(target))?;
         let mut next = self.pushed(way, solution.input)?;
         next.status = solution.status.name();
         Ok(next)
+    }
+
+    /// A hair in a direction. The inverse sums in another order, so an equal target could lie
+    /// behind by rounding.
+    fn past(&self, heading: Option<Direction>) -> f64 {
+        let hair = 1e-12 * (self.outputs.1 - self.outputs.0).abs();
+        match heading {
+            Some(Direction::Rising) => hair,
+            Some(Direction::Falling) => -hair,
+            None => 0.0,
+        }
     }
 
     /// The inputs between which the output stands still: where it starts to rise, and to fall.
@@ -322,14 +333,9 @@ impl Drive {
             return None;
         }
         let inverse = self.model.inverse().ok()?;
-        // The inverse sums in another order, so an equal target could lie behind by rounding.
-        let hair = 1e-12 * (self.outputs.1 - self.outputs.0).abs();
         let edge = |heading| {
-            let past = match heading {
-                Direction::Rising => hair,
-                Direction::Falling => -hair,
-            };
-            let target = Target::new(self.way.output + past).heading(Some(heading));
+            let target = Target::new(self.way.output + self.past(Some(heading)));
+            let target = target.heading(Some(heading));
             let solution = inverse
                 .step(&mut self.way.state.clone(), self.wanted(target))
                 .ok()?;

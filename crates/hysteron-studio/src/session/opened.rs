@@ -10,6 +10,7 @@ use hysteron::{
     TablePreview, TableReader, branches, prepare, preview_table, usual_tolerance,
 };
 use serde::{Deserialize, Serialize};
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 /// Columns by their names.
@@ -32,6 +33,7 @@ pub(super) struct Opened {
     pub(super) id: Id,
     pub(super) name: String,
     pub(super) bytes: Bytes,
+    digest: u64,
     preview: TablePreview,
     /// What was assumed about the table as a whole.
     remarks: Vec<String>,
@@ -79,6 +81,8 @@ pub struct FileView {
     pub name: String,
     /// Its size in bytes.
     pub bytes: usize,
+    /// Tells versions of a file apart.
+    pub digest: u64,
     /// Rows below the header.
     pub rows: u64,
     /// Its columns.
@@ -123,6 +127,7 @@ impl Opened {
         let mut opened = Self {
             id,
             name,
+            digest: digest(&bytes),
             bytes,
             preview,
             remarks,
@@ -316,6 +321,7 @@ impl Opened {
             id: self.id,
             name: self.name.clone(),
             bytes: self.bytes.len(),
+            digest: self.digest,
             rows: self.preview.table.rows,
             columns: columns.collect(),
             roles: self.roles.clone(),
@@ -334,6 +340,13 @@ impl Opened {
             output: shown(|recording| &recording.output_quantity),
         }
     }
+}
+
+/// A number of the bytes that JavaScript holds exactly.
+fn digest(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytes);
+    hasher.finish() >> 11
 }
 
 /// A recording after these steps, and what they did.
