@@ -99,7 +99,9 @@ impl State {
         let turns: Vec<f64> = self.turning_points().collect();
         let first = turns.first().map(|top| [0.0, *top]);
         let last = turns.last().map(|now| [*now, *now]);
-        let corners = turns.windows(2).map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]);
+        let corners = turns
+            .windows(2)
+            .map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]);
         first.into_iter().chain(corners).chain(last).collect()
     }
 
