@@ -17,7 +17,10 @@ pub(crate) fn stop() -> bool {
 }
 
 pub(crate) fn run(args: &args::Studio) -> Result<()> {
-    let server = Server::bind(args.port, args.memory.max_memory)?;
+    let mut server = Server::bind(args.port, args.memory.max_memory)?;
+    if let Some(session) = &args.session {
+        server.keep(session).map_err(worded)?;
+    }
     for file in &args.files {
         server.open(file).map_err(worded)?;
     }

@@ -20,6 +20,18 @@ export function el(tag, attributes = {}, ...children) {
 }
 
 /**
+ * Saves a file as the user's browser does.
+ * @param {{name: string, blob: Blob}} file
+ */
+export function save({ name, blob }) {
+  const link = el("a", { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(/** @type {any} */ (link).href), 10000);
+}
+
+/**
  * The element with an id.
  * @param {string} id
  * @returns {any}

@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { by, el, fill, shown } from "./dom.js";
 import { draw, ink, stroke } from "./plot.js";
+import * as hand from "./hand.js";
 
 const STATUS = /** @type {Record<string, string>} */ ({ ok: "reached", low: "below every output of the model", high: "above every output of the model", passed: "inside a jump of the model", limited: "not in this time step: the drive is at its end" });
 
@@ -62,15 +63,19 @@ async function build(overview) {
               el("option", { value: "hold", selected: now.policy === "hold" }, "hold: the input stays until the output has to move"),
               el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
           : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
+        hand.form(fit.inverse, (what) => move(what), () => now.view),
         number("dt", "Time step [s]"), number("load", "Load"),
         el("p", { id: "drive-status", role: "status" })),
-      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far, over what was measured (grey). The bar is the dead band: between its ends the output stands still."))),
+      el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far, over what was measured (grey). The bar is the dead band: between its ends the output stands still. Drag in the picture."),
+        el("div", { id: "plot-moves", class: "plot low", hidden: true }), el("figcaption", { id: "moves-caption", hidden: true }, "The input of both policies for the same outputs, since the input was moved by hand."))),
   );
   await answer(fit);
 }
 
 /** Sends the latest move only: a hand is faster than any answer. @param {object} what */
 async function move(what) {
+  const isPath = "inputs" in what || "outputs" in what;
+  if (!isPath && now.waiting && ("inputs" in now.waiting || "outputs" in now.waiting)) return;
   now.waiting = what;
   now.chosen = true;
   if (now.busy) return;
@@ -94,7 +99,7 @@ let known = null;
 /** @param {any} fit */
 async function answer(fit) {
   known = fit ?? known;
-  const { input, output, wanted, status, other, dead_band: band, trail, inputs, outputs } = now.view;
+  const { input, output, wanted, status, rival, moves, dead_band: band, trail, inputs, outputs } = now.view;
   const active = document.activeElement?.id;
   if (active !== "drive-input") by("drive-input").value = String(input);
   if (active !== "drive-output") by("drive-output").value = String(output);
@@ -102,15 +107,20 @@ async function answer(fit) {
   by("value-output").textContent = shown(output);
   const parts = [];
   if (wanted !== null) parts.push(`Wanted ${shown(wanted)}: ${STATUS[status] ?? status}.`);
-  if (other) parts.push(`With “${other[0]}” the input would be ${shown(other[1])}.`);
+  if (rival) parts.push(`Input with “${now.policy}”: ${shown(input)}, with “${rival.policy}”: ${shown(rival.input)}.`);
   if (band) parts.push(`Dead band: ${shown(band[0])} to ${shown(band[1])}.`);
   by("drive-status").textContent = parts.join(" ") || "Move a slider: with the mouse, or with the arrow keys.";
   const traces = [
     ...(now.loop ? [{ x: now.loop.x, y: now.loop.y, mode: "lines", name: "measured", line: { ...stroke(null), width: 1 }, opacity: 0.45, showlegend: false, hoverinfo: "skip" }] : []),
     { x: trail.map((/** @type {number[]} */ p) => p[0]), y: trail.map((/** @type {number[]} */ p) => p[1]), mode: "lines", name: "way", line: stroke(0), showlegend: false, hoverinfo: "skip" },
+    ...(rival ? [{ x: rival.trail.map((/** @type {number[]} */ p) => p[0]), y: rival.trail.map((/** @type {number[]} */ p) => p[1]), mode: "lines", name: rival.policy, line: stroke(1), showlegend: false, hoverinfo: "skip" }] : []),
     ...(band ? [{ x: band, y: [output, output], mode: "lines", name: "dead band", line: { color: "#e69f00", width: 7 }, opacity: 0.75, showlegend: false }] : []),
     { x: [input], y: [output], mode: "markers", name: "now", marker: { size: 13, color: "#d55e00", line: { color: ink("card"), width: 2 } }, showlegend: false },
   ];
   const wide = (/** @type {[number, number]} */ [low, high]) => { const more = 0.07 * (high - low); return [low - more, high + more]; };
   await draw(by("plot-drive"), traces, { x: known?.input ?? "input", y: known?.output ?? "output", xaxis: { range: wide(inputs) }, yaxis: { range: wide(outputs) }, dragmode: false });
+  hand.drags(by("plot-drive"), Boolean(known?.inverse), (what) => move(what));
+  by("plot-moves").hidden = by("moves-caption").hidden = moves.length === 0;
+  const line = (/** @type {number} */ place, /** @type {string} */ name) => ({ x: moves.map((/** @type {number[]} */ _, /** @type {number} */ n) => n + 1), y: moves.map((/** @type {number[]} */ move) => move[place]), mode: "lines", name, line: stroke(place - 1) });
+  if (moves.length > 0) await draw(by("plot-moves"), [line(1, "hold"), line(2, "anticipate")], { x: "pull", y: known?.input ?? "input" });
 }

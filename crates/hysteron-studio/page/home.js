@@ -1,17 +1,8 @@
 // What can be taken home.
 
 import { take } from "./api.js";
-import { by, el, fill } from "./dom.js";
+import { by, el, fill, save } from "./dom.js";
 import { picturesAs, shownViews } from "./look.js";
-
-/** @param {{name: string, blob: Blob}} file */
-function save({ name, blob }) {
-  const link = el("a", { href: URL.createObjectURL(blob), download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(/** @type {any} */ (link).href), 10000);
-}
 
 /** Until the user chooses a fit, it is the best. @type {{fit: number|null, chosen: boolean, file: number|null, language: string, seen: string}} */
 const now = { fit: null, chosen: false, file: null, language: "command", seen: "" };
@@ -33,6 +24,7 @@ export async function show(overview) {
       if (!by(id).closest("[hidden]")) take({ what: "csv", ...views(band) }).then((file) => save({ ...file, name: `${id.slice(5)}.csv` }), () => {});
     }
   };
+  const samples = (/** @type {string} */ what) => take({ what, ...shownViews().views("output") }).then(save, () => {});
   const code = el("pre", { tabindex: 0, "aria-label": "What was clicked, as text" });
   const language = (/** @type {string} */ what, /** @type {string} */ text) =>
     el("button", { "data-key": `as-${what}`, "aria-pressed": String(now.language === what), onclick: () => ((now.language = what), show(overview)) }, text);
@@ -52,6 +44,8 @@ export async function show(overview) {
       el("button", { onclick: () => picturesAs("svg") }, "Pictures (SVG)"),
       el("button", { onclick: () => picturesAs("png") }, "Pictures (PNG)"),
       el("button", { onclick: numbers }, "Numbers shown (CSV)"),
+      el("button", { id: "take-csv", onclick: () => samples("table") }, "All samples shown (CSV)"),
+      el("button", { id: "take-parquet", onclick: () => samples("parquet") }, "All samples shown (Parquet)"),
       get("Session", { what: "session" }),
       el("span", { class: "quiet" }, "A session holds recordings and fits. Drop it here to go on.")),
     fit ? el("div", { class: "card" },

@@ -6,6 +6,7 @@ import * as opening from "./open.js";
 import * as fitting from "./fit.js";
 import * as looking from "./look.js";
 import * as driving from "./drive.js";
+import * as designing from "./design.js";
 import * as home from "./home.js";
 import { isDark } from "./plot.js";
 
@@ -15,10 +16,13 @@ const drawn = new Set();
 const known = new Set();
 /** @type {import("./api.js").Overview | null} */
 let overview = null;
+/** What is shown, as text. */
+let seen = "";
 
 /** @param {import("./api.js").Overview} found */
 async function show(found) {
   overview = found;
+  seen = JSON.stringify(found);
   const ids = new Set(found.fits.map((fit) => fit.id));
   for (const id of [...drawn]) if (!ids.has(id)) drawn.delete(id);
   for (const id of ids) {
@@ -33,13 +37,15 @@ async function show(found) {
   }
   await looking.show(found, drawn, show);
   await driving.show(found);
+  await designing.show(found);
   await home.show(found);
   for (const link of document.querySelectorAll("nav a")) link.setAttribute("aria-disabled", String(by(String(link.getAttribute("href")).slice(1)).hidden));
   document.body.dataset.shown = String(found.fits.length);
 }
 
 const draw = () => overview && looking.show(overview, drawn, show);
-const refresh = () => ask("overview").then(show, () => {});
+// The page that made a change has drawn it already.
+const refresh = () => ask("overview").then((found) => (JSON.stringify(found) === seen ? undefined : show(found)), () => {});
 
 whenRefused((fault) => {
   const node = by("fault");

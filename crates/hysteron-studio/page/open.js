@@ -2,6 +2,7 @@
 
 import { ask, open } from "./api.js";
 import { by, el, fill, shown } from "./dom.js";
+import * as prepare from "./prepare.js";
 
 const ROLES = [["", "not used"], ["input", "input"], ["output", "output"], ["time", "time"], ["load", "load"]];
 const PURPOSES = [["fit", "to fit"], ["validate", "for validation"], ["look", "only to look at"]];
@@ -66,7 +67,9 @@ function card(file, changed) {
     el("div", { class: "columns" }, ...file.columns.map((column) => columnCard(file, column, send))),
     file.problem &&
       el("p", { class: "problem" }, file.problem.problem, file.problem.remedy && `. What helps: ${file.problem.remedy}.`),
+    prepare.repair(file),
     file.notes.length > 0 && el("ul", { class: "notes" }, ...file.notes.map((note) => el("li", {}, note))),
+    prepare.form(file, send),
     el("details", {}, el("summary", { class: "quiet" }, "Why these columns?"), el("ul", { class: "notes quiet" }, ...file.reasons.map((reason) => el("li", {}, reason)))),
     el(
       "div",

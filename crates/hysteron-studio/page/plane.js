@@ -5,13 +5,16 @@ import { by, el, fill, shown } from "./dom.js";
 import { draw } from "./plot.js";
 
 const KINDS = [["weights", "weights"], ["excitation", "how well determined"], ["errors", "standard errors"], ["states", "states at a sample"]];
-const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
+export const CLASSES = ["never excited", "excited once", "not told apart", "well determined"];
 
 /** Until the user chooses a fit, it is the best. @type {{kind: string, fit: number|null, chosen: boolean, at: [number, number]|null}} */
 const now = { kind: "weights", fit: null, chosen: false, at: null };
 
+/** Shows the states of the operators from now on. */
+export const states = () => (now.kind = "states");
+
 /**
- * Shows the states at the sample that was pointed at.
+ * Shows the staircase at the sample that was pointed at.
  * @param {number|null} file
  * @param {number} time
  * @param {any} overview
@@ -19,8 +22,33 @@ const now = { kind: "weights", fit: null, chosen: false, at: null };
  */
 export function at(file, time, overview, drawn) {
   if (file === null || drawn.size === 0) return;
-  Object.assign(now, { at: [file, time], kind: "states" });
-  show(overview, drawn);
+  now.at = [file, time];
+  return show(overview, drawn);
+}
+
+/** Levels of a plane as places with a few texts. @param {number[]} levels */
+function ticks(levels) {
+  const every = Math.max(1, Math.ceil(levels.length / 8));
+  const places = levels.map((_, n) => n).filter((n) => n % every === 0);
+  return { tickvals: places, ticktext: places.map((n) => shown(levels[n])), showgrid: false, zeroline: false };
+}
+
+const STEPS = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
+const SCALE = STEPS.flatMap((step, n) => [[n / 4, step], [(n + 1) / 4, step]]);
+
+/** The scale of how well operators are determined. A narrow page has short words. @param {boolean} narrow */
+const bar = (narrow) => ({ tickvals: [0, 1, 2, 3], ticktext: narrow ? ["never", "once", "together", "well"] : CLASSES, thickness: 12 });
+
+/**
+ * A plane of how well operators are determined.
+ * @param {HTMLElement} node
+ * @param {number[]} levels
+ * @param {(number|null)[][]} values
+ * @param {string} unit
+ */
+export function classes(node, levels, values, unit) {
+  const heat = { type: "heatmap", x: levels.map((_, n) => n), y: levels.map((_, n) => n), z: values, colorscale: SCALE, zmin: -0.5, zmax: 3.5, hoverongaps: false, xgap: 1, ygap: 1, colorbar: bar(node.clientWidth < 480) };
+  return draw(node, [heat], { x: `α, falling: ${unit}`, y: `β, rising: ${unit}`, xaxis: ticks(levels), yaxis: ticks(levels), dragmode: false });
 }
 
 /**
@@ -41,26 +69,24 @@ export async function show(overview, drawn) {
     el("label", {}, "Plane of ", el("select", { "data-key": "plane-fit", onchange: (/** @type {any} */ e) => (Object.assign(now, { fit: Number(e.target.value), chosen: true }), again()) }, ...fits.map((/** @type {any} */ fit) => el("option", { value: String(fit.id), selected: fit.id === now.fit }, name(fit))))),
     el("label", {}, "Show ", el("select", { "data-key": "plane-kind", onchange: (/** @type {any} */ e) => ((now.kind = e.target.value), again()) }, ...KINDS.map(([kind, text]) => el("option", { value: kind, selected: kind === now.kind, disabled: kind === "states" && !now.at }, text)))),
   );
-  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.kind === "states" ? now.at : null }).catch(() => null);
+  const seen = await ask("plane", { fit: now.fit, kind: now.kind, at: now.at }).catch(() => null);
   if (!seen) {
-    now.kind = "weights";
+    Object.assign(now, { kind: "weights", at: null });
     return;
   }
-  const classes = seen.kind === "excitation";
-  const ends = classes ? { zmin: -0.5, zmax: 3.5 } : seen.kind === "states" ? { zmin: 0, zmax: 1 } : { zmin: 0 };
-  const steps = ["#b0b7bf", "#e69f00", "#56b4e9", "#0072b2"];
-  const levels = seen.levels.map((/** @type {number} */ level) => shown(level));
-  const scale = classes ? steps.flatMap((step, n) => [[n / 4, step], [(n + 1) / 4, step]]) : "Viridis";
-  const places = levels.map((/** @type {string} */ _, /** @type {number} */ n) => n);
-  const every = Math.max(1, Math.ceil(levels.length / 8));
-  const ticks = { tickvals: places.filter((/** @type {number} */ n) => n % every === 0), ticktext: levels.filter((/** @type {string} */ _, /** @type {number} */ n) => n % every === 0), showgrid: false, zeroline: false };
+  const isClass = seen.kind === "excitation";
+  const ends = isClass ? { zmin: -0.5, zmax: 3.5 } : seen.kind === "states" ? { zmin: 0, zmax: 1 } : { zmin: 0 };
+  const scale = isClass ? SCALE : "Viridis";
+  const axis = ticks(seen.levels);
+  // Cell n, counted from 0, is drawn around n, and ends at n + 1 in the units of the staircase.
+  const along = (/** @type {0|1} */ axis) => seen.staircase.map((/** @type {number[]} */ point) => point[axis] - 0.5);
+  const stairs = (/** @type {string} */ color, /** @type {number} */ width) => ({ x: along(0), y: along(1), mode: "lines", line: { color, width }, hoverinfo: "skip", showlegend: false });
   await draw(by("plot-plane"), [{
     type: "heatmap", z: seen.values, colorscale: scale, ...ends, hoverongaps: false, xgap: 1, ygap: 1,
     hovertemplate: "α %{x}, β %{y}: %{z:.4g}<extra></extra>",
-    colorbar: classes ? { tickvals: [0, 1, 2, 3], ticktext: CLASSES, thickness: 12 } : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
-  }], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: ticks, yaxis: ticks, dragmode: false });
-  const [input, measured, modelled] = seen.sample ?? [];
+    colorbar: isClass ? bar(by("plot-plane").clientWidth < 480) : { title: { text: seen.of, side: "right" }, thickness: 12, exponentformat: "power" },
+  }, ...(seen.staircase.length > 0 ? [stairs("#ffffff", 6), stairs("#d55e00", 3)] : [])], { x: `α, falling: ${seen.unit}`, y: `β, rising: ${seen.unit}`, xaxis: axis, yaxis: { ...axis }, dragmode: false });
   by("plane-caption").textContent = seen.sample
-    ? `States of the operators at row ${seen.row}: input ${shown(input)}, measured ${shown(measured)}, model ${shown(modelled)}. The edge is the staircase of what the model remembers.`
-    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states.";
+    ? `The line is the staircase at row ${seen.sample.row}: its corners are the turning points that the model remembers. Below it operators are on, above it off.`
+    : "The plane: one cell for each operator, which switches on at β and off at α. Click a sample over time for its states and its staircase.";
 }

@@ -60,6 +60,16 @@ export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
 }
 
 /**
+ * Sets the marks of the sample pointed at, and keeps all other shapes.
+ * @param {any} node
+ * @param {object[]} shapes
+ */
+export function mark(node, shapes) {
+  const others = (node.layout.shapes ?? []).filter((/** @type {any} */ shape) => shape.name !== "now");
+  return Plotly.relayout(node, { shapes: [...others, ...shapes] });
+}
+
+/**
  * Plotly takes some markup in texts. Names come from files, and are text only.
  * @param {string} text
  */

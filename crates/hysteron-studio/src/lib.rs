@@ -13,7 +13,8 @@ mod session;
 #[cfg(feature = "server")]
 pub use server::Server;
 pub use session::{
-    Answer, ColumnView, Curves, Download, DriveView, Fault, FileView, Finished, FitView, Held, Id,
-    Job, JobView, Line, Overview, Part, Picture, PlaneKind, PlaneView, Pull, Purpose, Request,
-    Response, Session, Take, View,
+    Answer, Area, ColumnView, Curves, DesignView, Download, DriveView, Fault, FileView, Finished,
+    FitView, Held, Id, Job, JobView, Line, Overview, Part, Picture, PlaneKind, PlaneView, Pull,
+    Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps, Take, View,
+    Wish,
 };

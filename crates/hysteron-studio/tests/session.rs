@@ -107,7 +107,7 @@ fn a_file_becomes_a_model_that_is_driven_and_taken_home() {
         let plane = value(&mut session, request);
         assert_eq!(plane["values"].as_array().unwrap().len(), 15, "{kind}");
         if kind == "states" {
-            assert_eq!(plane["row"], 124);
+            assert_eq!(plane["sample"]["row"], 124);
         }
     }
 
@@ -311,6 +311,11 @@ fn request() -> impl Strategy<Value = Value> {
         Just("rust"),
         Just("session"),
     ];
+    let step = prop_oneof![Just("auto"), Just("off"), Just("2"), Just("no"), Just("-1")];
+    let steps = proptest::collection::vec(step, 4);
+    let table = prop_oneof![Just("table"), Just("parquet"), Just("csv")];
+    let rate = prop_oneof![Just(0.5), Just(3.0), Just(0.0), Just(-1.0)];
+    let path = proptest::collection::vec(number(), 0..30);
     prop_oneof![
         1 => id().prop_map(|file| json!({"request": "close", "file": file})),
         1 => (id(), column.clone(), column.clone(), column).prop_map(|(file, a, b, c)| json!({
@@ -328,7 +333,8 @@ fn request() -> impl Strategy<Value = Value> {
         1 => id().prop_map(|fit| json!({"request": "forget", "fit": fit})),
         4 => (id(), id(), band, number(), number(), any::<[u32; 2]>()).prop_map(
             |(f, fit, band, a, b, pixels)| json!({"request": "curves", "file": f, "fits": [fit],
-                "picture": band, "window": [a, b], "pixels": pixels})),
+                "picture": band, "window": [a, b], "area": {"input": [a, 30.0], "output": [b, 8.0]}, "raw": true,
+                "pixels": pixels})),
         1 => (id(), kind, id(), number()).prop_map(|(fit, kind, file, at)| json!({"request": "plane",
             "fit": fit, "kind": kind, "at": [file, at]})),
         2 => id().prop_map(|fit| json!({"request": "drive", "fit": fit})),
@@ -338,6 +344,29 @@ fn request() -> impl Strategy<Value = Value> {
             pull[if out { "output" } else { "input" }] = json!(to);
             pull
         }),
+        1 => (id(), proptest::option::of(steps)).prop_map(|(file, steps)| json!({
+            "request": "prepare", "file": file, "steps": steps.map(|steps| json!({
+                "spikes": steps[0], "low_pass": steps[1], "dead_band": steps[2],
+                "resample": steps[3]}))})),
+        1 => (id(), id(), number()).prop_map(|(file, fit, at)| json!({"request": "sample",
+            "file": file, "fits": [fit], "at": at})),
+        1 => (id(), path, any::<bool>()).prop_map(|(drive, path, out)| {
+            let mut pull = json!({"request": "pull", "drive": drive});
+            pull[if out { "outputs" } else { "inputs" }] = json!(path);
+            pull
+        }),
+        1 => (id(), rate.clone(), rate, any::<bool>(), any::<bool>()).prop_map(
+            |(fit, up, down, whole, taken)| {
+                let mut wish = json!({"request": "design", "fit": fit, "heating": up,
+                    "cooling": down, "whole": whole, "budget": whole.then_some(0.5)});
+                if taken {
+                    (wish["request"], wish["what"]) = (json!("take"), json!("profile"));
+                }
+                wish
+            }),
+        1 => (id(), id(), table, number(), number()).prop_map(|(file, fit, what, a, b)| json!({
+            "request": "take", "what": what, "file": file, "fits": [fit], "picture": "output",
+            "window": [a, b], "area": {"input": [b, a]}, "pixels": [100, 100]})),
         2 => (id(), what).prop_map(|(fit, what)| json!({"request": "take", "what": what,
             "fit": fit})),
     ]

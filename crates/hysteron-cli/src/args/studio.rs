@@ -18,6 +18,9 @@ pub(crate) struct Studio {
     /// Print the address, and open no browser
     #[arg(long)]
     pub(crate) no_open: bool,
+    /// Keep the session in this file, and go on with it if it is there
+    #[arg(long, value_name = "FILE")]
+    pub(crate) session: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: Memory,
 }

@@ -34,6 +34,8 @@ pub(super) async fn session(
         Request::Overview
             | Request::Curves(_)
             | Request::Plane { .. }
+            | Request::Sample { .. }
+            | Request::Design(_)
             | Request::Pull(_)
             | Request::Take(_)
             | Request::Drive { .. }

@@ -11,6 +11,7 @@ use crate::{Fault, Session};
 use axum::Router;
 use axum::routing::{get, post};
 use guard::Guard;
+use std::io::Write;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,6 +24,7 @@ pub struct Server {
     listener: std::net::TcpListener,
     token: String,
     shared: Arc<Shared>,
+    kept: Option<PathBuf>,
 }
 
 /// What all calls share.
@@ -48,6 +50,23 @@ impl Shared {
 
     fn changed(&self) {
         self.changes.send_modify(|count| *count += 1);
+    }
+
+    /// Writes the session to a file, which is whole at every moment.
+    fn save(&self, path: &Path) {
+        let session = self.session().to_json();
+        let folder = path.parent().filter(|folder| *folder != Path::new(""));
+        let write = || {
+            let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
+            file.write_all(session.as_bytes())?;
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)
+        };
+        if let Err(source) = write() {
+            let path = path.to_owned();
+            let fault = Fault::from(hysteron::Error::File { path, source });
+            *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(fault);
+        }
     }
 
     fn open_named(&self, path: &Path) -> Result<(), Fault> {
@@ -90,6 +109,7 @@ impl Server {
             listener,
             token,
             shared,
+            kept: None,
         })
     }
 
@@ -105,6 +125,24 @@ impl Server {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         named.push(path.to_owned());
+        Ok(())
+    }
+
+    /// Keeps the session in a file: opens it if it is there, and writes it soon after each change
+    /// and at the end. A studio that was killed goes on from there.
+    ///
+    /// # Errors
+    /// [`Fault`] for a file that is there and is no session.
+    pub fn keep(&mut self, path: &Path) -> Result<(), Fault> {
+        if path.exists() {
+            let failed = |source| hysteron::Error::File {
+                path: path.to_owned(),
+                source,
+            };
+            let bytes = std::fs::read(path).map_err(failed)?;
+            self.shared.session().restore(&bytes)?;
+        }
+        self.kept = Some(path.to_owned());
         Ok(())
     }
 
@@ -133,6 +171,10 @@ impl Server {
             let _ = stop.recv();
             let _ = end.send(true);
         });
+        let kept = self.kept.clone();
+        if let Some(path) = self.kept {
+            runtime.spawn(keep(shared.clone(), path));
+        }
         let served = runtime.block_on(async move {
             let address: SocketAddr = self.listener.local_addr()?;
             let guard = Guard::new(address.port(), self.token);
@@ -144,9 +186,25 @@ impl Server {
             }
         });
         shared.session().cancel_all();
+        if let Some(path) = kept {
+            shared.save(&path);
+        }
         // Events are open as long as a page is.
         runtime.shutdown_background();
         served
+    }
+}
+
+/// Writes the session after its changes.
+async fn keep(shared: Arc<Shared>, path: PathBuf) {
+    let mut changes = shared.changes.subscribe();
+    while changes.changed().await.is_ok() {
+        // Changes come in groups.
+        tokio::time::sleep(std::time::Duration::from_millis(300)).await;
+        changes.mark_unchanged();
+        let (shared, path) = (shared.clone(), path.clone());
+        let saved = tokio::task::spawn_blocking(move || shared.save(&path));
+        let _ = saved.await;
     }
 }
 

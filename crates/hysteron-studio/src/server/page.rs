@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-const FILES: [(&str, &str, &str); 12] = [
+const FILES: [(&str, &str, &str); 16] = [
     (
         "style.css",
         "text/css; charset=utf-8",
@@ -24,8 +24,12 @@ const FILES: [(&str, &str, &str); 12] = [
     ("open.js", SCRIPT, include_str!("../../page/open.js")),
     ("fit.js", SCRIPT, include_str!("../../page/fit.js")),
     ("look.js", SCRIPT, include_str!("../../page/look.js")),
+    ("play.js", SCRIPT, include_str!("../../page/play.js")),
     ("plane.js", SCRIPT, include_str!("../../page/plane.js")),
     ("drive.js", SCRIPT, include_str!("../../page/drive.js")),
+    ("design.js", SCRIPT, include_str!("../../page/design.js")),
+    ("prepare.js", SCRIPT, include_str!("../../page/prepare.js")),
+    ("hand.js", SCRIPT, include_str!("../../page/hand.js")),
     ("home.js", SCRIPT, include_str!("../../page/home.js")),
     ("plot.js", SCRIPT, include_str!("../../page/plot.js")),
 ];

@@ -1,9 +1,12 @@
 //! What was clicked, as commands: for the shell, in Python and in Rust.
 
 use super::Session;
+use super::design::Wish;
 use super::fitting::Fitted;
 use super::opened::Opened;
+use super::prepare::Steps;
 use super::request::Id;
+use hysteron::{Operator, Plane};
 
 /// The files of a fit that are still open.
 fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {
@@ -60,6 +63,12 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
             .any(|file| file.mend)
             .then(|| "--repair".to_owned()),
     );
+    words.extend(
+        fitted
+            .iter()
+            .find_map(|file| file.steps.as_ref())
+            .map(Steps::as_options),
+    );
     let option =
         |(name, text): (&String, &String)| format!("--{} {}", name.replace('_', "-"), quoted(text));
     words.extend(fit.options.iter().map(option));
@@ -88,6 +97,35 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     text
 }
 
+/// The command for a profile.
+pub(super) fn design(session: &Session, fit: &Fitted, plane: &Plane, wish: &Wish) -> String {
+    let mut words = vec![
+        "hysteron design".to_owned(),
+        format!("--range={},{}", plane.min(), plane.max()),
+        format!("--levels {}", plane.levels()),
+        format!("--heating-rate {}", wish.heating),
+        format!("--cooling-rate {}", wish.cooling),
+    ];
+    words.extend(wish.budget.map(|minutes| format!("--budget {minutes}")));
+    match fit.model.operator() {
+        Operator::Mkp => {}
+        Operator::Kp => words.push("--operator kp".into()),
+        Operator::Relay => words.push("--operator relay".into()),
+    }
+    let recorded = files(session, &fit.files);
+    if let (false, Some(file)) = (wish.whole, recorded.first()) {
+        words.extend(
+            recorded
+                .iter()
+                .map(|file| format!("--from {}", path(&file.name))),
+        );
+        let input = file.roles.input.as_deref().unwrap_or_default();
+        words.push(format!("--input {}", quoted(input)));
+    }
+    words.push("-o profile.csv".into());
+    words.join(" \\\n    ") + "\n"
+}
+
 /// A string literal of Python or Rust. Of what both escape, names hold quotes and backslashes only.
 fn literal(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
@@ -100,11 +138,15 @@ pub(super) fn python(session: &Session, fit: &Fitted) -> String {
             .map(|(name, column)| format!("{name}={}", literal(column)))
             .collect();
         words.extend(file.mend.then(|| "repair=True".to_owned()));
-        format!(
+        let read = format!(
             "pyhysteron.read({}, {})",
             literal(&file.name),
             words.join(", ")
-        )
+        );
+        match &file.steps {
+            Some(steps) => format!("pyhysteron.prepare({read}{})[0]", steps.as_python()),
+            None => read,
+        }
     };
     let list = |files: Vec<&Opened>| {
         let each: Vec<String> = files.iter().map(read).collect();
@@ -151,20 +193,32 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
             found.map(|(_, column)| literal(column))
         };
         let option = |name| of(name).map_or("None".into(), |column| format!("Some({column})"));
-        format!(
-            "    Recording::read({}.as_ref(), Columns {{ input: {}, output: {}, time: {}, load: {} \
-             }}, Repair::{})?.0,\n",
+        let read = format!(
+            "Recording::read({}.as_ref(), Columns {{ input: {}, output: {}, time: {}, load: {} \
+             }}, Repair::{})?.0",
             literal(&file.name),
             of("input").unwrap_or_default(),
             of("output").unwrap_or_default(),
             option("time"),
             option("load"),
             if file.mend { "Mend" } else { "Refuse" },
-        )
+        );
+        match &file.steps {
+            Some(steps) => format!(
+                "    prepare(&{read}, &{}, Progress::NONE)?.0,\n",
+                steps.as_rust()
+            ),
+            None => format!("    {read},\n"),
+        }
     };
     let list = |ids: &[Id]| files(session, ids).iter().map(read).collect::<String>();
     let mut text =
-        "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n\n".to_owned();
+        "use hysteron::{Columns, Fit, HoldOut, Recording, Repair, fit_holding_out};\n".to_owned();
+    let all = files(session, &fit.files);
+    if all.iter().any(|file| file.steps.is_some()) {
+        text += "use hysteron::{PrepareOptions, Progress, Step, prepare};\n";
+    }
+    text += "\n";
     text += &format!("let recordings = vec![\n{}];\n", list(&fit.files));
     text += "let fit = Fit::new()";
     for (name, word) in &fit.options {

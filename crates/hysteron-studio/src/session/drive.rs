@@ -1,10 +1,11 @@
 //! A model that is driven by hand: its input is moved and the output answers, or the output is
-//! pulled and the inverse answers.
+//! pulled and the inverse answers. While the output is pulled, the other policy goes its own way
+//! beside it.
 
 use super::fault::Fault;
 use super::request::Id;
 use super::{MOST, Session};
-use hysteron::{Direction, Model, Policy, Sample, State, Target, Wanted};
+use hysteron::{Direction, Model, Policy, Sample, State, Target, Wanted, headings};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -15,27 +16,38 @@ const TRAIL: usize = 2000;
 /// and shows the branch.
 const STEPS: u32 = 48;
 
-/// A model, its state, and the way it came.
-#[derive(Debug)]
+/// The most samples of a path.
+const PATH: usize = 4000;
+
+/// A model that is driven.
+#[derive(Debug, Clone)]
 pub(super) struct Drive {
     pub(super) fit: Id,
     model: Arc<Model>,
-    state: State,
     dt: f64,
     load: Option<f64>,
-    input: f64,
-    output: f64,
+    way: Way,
+    /// The way of the other policy since the input was moved.
+    rival: Option<(Policy, Way)>,
     wanted: Option<f64>,
-    status: &'static str,
-    other: Option<(Policy, f64)>,
-    trail: Vec<[f64; 2]>,
+    moves: Vec<[f64; 3]>,
     /// Inputs and outputs that the page offers.
     inputs: (f64, f64),
     outputs: (f64, f64),
 }
 
-/// Moves a model that is driven.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+/// A state, and how it came there.
+#[derive(Debug, Clone)]
+struct Way {
+    state: State,
+    input: f64,
+    output: f64,
+    status: &'static str,
+    trail: Vec<[f64; 2]>,
+}
+
+/// Moves a model that is driven. One of `input`, `output`, `inputs` and `outputs` is given.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Pull {
     /// The drive.
     pub drive: Id,
@@ -45,6 +57,12 @@ pub struct Pull {
     /// Or the output that is wanted.
     #[serde(default)]
     pub output: Option<f64>,
+    /// Or a path of inputs.
+    #[serde(default)]
+    pub inputs: Option<Vec<f64>>,
+    /// Or a path of outputs that are wanted. Where it turns is known ahead.
+    #[serde(default)]
+    pub outputs: Option<Vec<f64>>,
     /// What the inverse does when the target reverses.
     #[serde(default)]
     pub policy: Policy,
@@ -69,8 +87,11 @@ pub struct DriveView {
     pub wanted: Option<f64>,
     /// Whether it was reached: ok, low, high, passed, limited.
     pub status: &'static str,
-    /// The input that the other policy gives.
-    pub other: Option<(Policy, f64)>,
+    /// The other policy, pulled by the same outputs since the input was moved.
+    pub rival: Option<RivalView>,
+    /// The output wanted, and the input with the policies hold and anticipate, for each pull since
+    /// the input was moved.
+    pub moves: Vec<[f64; 3]>,
     /// The inputs between which the output stands still.
     pub dead_band: Option<(f64, f64)>,
     /// Inputs and outputs on the way here.
@@ -85,24 +106,42 @@ pub struct DriveView {
     pub load: Option<f64>,
 }
 
+/// The other policy of a drive.
+#[derive(Debug, Clone, Serialize)]
+pub struct RivalView {
+    /// Which it is.
+    pub policy: Policy,
+    /// Its input.
+    pub input: f64,
+    /// Its output.
+    pub output: f64,
+    /// Whether the wanted output was reached.
+    pub status: &'static str,
+    /// Its way since the input was moved.
+    pub trail: Vec<[f64; 2]>,
+}
+
 impl Session {
     pub(super) fn drive(&mut self, fit: Id) -> Result<DriveView, Fault> {
         let fitted = self.fitted(fit)?;
         let model = fitted.model.clone();
         let mut drive = Drive {
             fit,
-            state: model.off(),
             dt: fitted.dt.unwrap_or(1.0),
             load: model.load.as_ref().map(|load| {
                 let (low, high) = load.range();
                 low + 0.5 * (high - low)
             }),
-            input: fitted.input.0,
-            output: 0.0,
+            way: Way {
+                state: model.off(),
+                input: fitted.input.0,
+                output: 0.0,
+                status: "ok",
+                trail: Vec::new(),
+            },
+            rival: None,
             wanted: None,
-            status: "ok",
-            other: None,
-            trail: Vec::new(),
+            moves: Vec::new(),
             inputs: fitted.input,
             outputs: fitted.output,
             model,
@@ -120,15 +159,37 @@ impl Session {
     pub(super) fn pull(&mut self, pull: &Pull) -> Result<DriveView, Fault> {
         let drive = self.drives.get_mut(&pull.drive);
         let drive = drive.ok_or_else(|| Fault::gone("drive", pull.drive))?;
+        // A path that is refused at its middle moves nothing.
+        let mut moved = drive.clone();
         if let Some(dt) = pull.dt {
-            drive.dt = dt;
+            moved.dt = dt;
         }
-        if let (Some(load), Some(_)) = (pull.load, drive.load) {
-            drive.load = Some(load);
+        if let (Some(load), Some(_)) = (pull.load, moved.load) {
+            moved.load = Some(load);
         }
-        match (pull.input, pull.output) {
-            (Some(input), None) => drive.push(input)?,
-            (None, Some(output)) => drive.pull(output, pull.policy)?,
+        let path = pull.inputs.as_ref().or(pull.outputs.as_ref());
+        if path.is_some_and(|path| path.len() > PATH || path.is_empty()) {
+            return Err(Fault::missing(
+                "a path has one sample or more, and not too many",
+                &format!("give up to {PATH}"),
+            ));
+        }
+        match (pull.input, pull.output, &pull.inputs, &pull.outputs) {
+            (Some(input), None, None, None) => moved.push(input)?,
+            (None, Some(output), None, None) => moved.pull(output, pull.policy, None)?,
+            (None, None, Some(inputs), None) => {
+                for input in inputs {
+                    moved.push(*input)?;
+                }
+            }
+            (None, None, None, Some(outputs)) => {
+                // A hand does not draw smaller turns on purpose.
+                let still = 0.002 * (moved.outputs.1 - moved.outputs.0).abs();
+                let ahead = headings(outputs, still);
+                for (output, heading) in outputs.iter().zip(ahead) {
+                    moved.pull(*output, pull.policy, Some(heading))?;
+                }
+            }
             _ => {
                 return Err(Fault::missing(
                     "a drive is moved by an input or by an output",
@@ -136,7 +197,15 @@ impl Session {
                 ));
             }
         }
+        *drive = moved;
         Ok(drive.view(pull.drive))
+    }
+}
+
+impl Way {
+    fn limit(&mut self) {
+        let beyond = self.trail.len().saturating_sub(TRAIL);
+        self.trail.drain(..beyond);
     }
 }
 
@@ -158,54 +227,104 @@ impl Drive {
     }
 
     fn push(&mut self, input: f64) -> Result<(), Fault> {
-        let mut state = self.state.clone();
-        let from = self.trail.last().map_or(input, |last| last[0]);
-        let far = (input - from).abs() > 0.005 * (self.inputs.1 - self.inputs.0);
-        let mut way = Vec::new();
-        if far && !self.model.is_timed() {
-            for step in 1..STEPS {
-                let between = from + (input - from) * (f64::from(step) / f64::from(STEPS));
-                let output = self.model.step(&mut state, self.sample(between))?.output;
-                way.push([between, output]);
-            }
-        }
-        let output = self.model.step(&mut state, self.sample(input))?.output;
-        way.push([input, output]);
-        (self.state, self.input, self.output) = (state, input, output);
-        (self.wanted, self.other, self.status) = (None, None, "ok");
-        self.trail.extend(way);
-        let beyond = self.trail.len().saturating_sub(TRAIL);
-        self.trail.drain(..beyond);
+        self.way = self.pushed(&self.way, input)?;
+        (self.wanted, self.rival) = (None, None);
+        self.moves.clear();
         Ok(())
     }
 
-    fn pull(&mut self, wanted: f64, policy: Policy) -> Result<(), Fault> {
-        let (input, status) = self.solve(wanted, policy)?;
+    /// The way with a step to an input.
+    fn pushed(&self, way: &Way, input: f64) -> Result<Way, Fault> {
+        let mut way = way.clone();
+        let from = way.trail.last().map_or(input, |last| last[0]);
+        let far = (input - from).abs() > 0.005 * (self.inputs.1 - self.inputs.0);
+        if far && !self.model.is_timed() {
+            for step in 1..STEPS {
+                let between = from + (input - from) * (f64::from(step) / f64::from(STEPS));
+                let output = self
+                    .model
+                    .step(&mut way.state, self.sample(between))?
+                    .output;
+                way.trail.push([between, output]);
+            }
+        }
+        way.output = self.model.step(&mut way.state, self.sample(input))?.output;
+        way.input = input;
+        way.status = "ok";
+        way.trail.push([input, way.output]);
+        way.limit();
+        Ok(way)
+    }
+
+    /// Pulls the output with both policies. `ahead` is where the target goes next; without it, it
+    /// is taken to go on as it came.
+    fn pull(
+        &mut self,
+        wanted: f64,
+        policy: Policy,
+        ahead: Option<Option<Direction>>,
+    ) -> Result<(), Fault> {
         let other = match policy {
             Policy::Hold => Policy::Anticipate,
             Policy::Anticipate => Policy::Hold,
         };
-        let other = self
-            .solve(wanted, other)
-            .ok()
-            .map(|(input, _)| (other, input));
-        self.push(input)?;
-        (self.wanted, self.status, self.other) = (Some(wanted), status, other);
+        let rival = self.rival.take().filter(|(of, _)| *of == other);
+        let rival = match rival {
+            Some((_, way)) => way,
+            None => {
+                self.moves.clear();
+                Way {
+                    trail: self.way.trail.last().copied().into_iter().collect(),
+                    ..self.way.clone()
+                }
+            }
+        };
+        let way = self.pulled(&self.way, wanted, policy, ahead)?;
+        let rival = self.pulled(&rival, wanted, other, ahead)?;
+        let (hold, anticipate) = match policy {
+            Policy::Hold => (way.input, rival.input),
+            Policy::Anticipate => (rival.input, way.input),
+        };
+        self.moves.push([wanted, hold, anticipate]);
+        let beyond = self.moves.len().saturating_sub(TRAIL);
+        self.moves.drain(..beyond);
+        (self.way, self.rival, self.wanted) = (way, Some((other, rival)), Some(wanted));
         Ok(())
     }
 
-    /// The input for a wanted output; nothing moves.
-    fn solve(&self, output: f64, policy: Policy) -> Result<(f64, &'static str), Fault> {
+    fn pulled(
+        &self,
+        way: &Way,
+        output: f64,
+        policy: Policy,
+        ahead: Option<Option<Direction>>,
+    ) -> Result<Way, Fault> {
+        let as_it_came = match () {
+            () if output > way.output => Some(Direction::Rising),
+            () if output < way.output => Some(Direction::Falling),
+            () => None,
+        };
         let heading = match policy {
             Policy::Hold => None,
-            Policy::Anticipate if output > self.output => Some(Direction::Rising),
-            Policy::Anticipate if output < self.output => Some(Direction::Falling),
-            Policy::Anticipate => None,
+            Policy::Anticipate => ahead.unwrap_or(as_it_came),
         };
-        let target = Target::new(output).heading(heading);
+        let target = Target::new(output + self.past(heading)).heading(heading);
         let inverse = self.model.inverse()?;
-        let solution = inverse.step(&mut self.state.clone(), self.wanted(target))?;
-        Ok((solution.input, solution.status.name()))
+        let solution = inverse.step(&mut way.state.clone(), self.wanted(target))?;
+        let mut next = self.pushed(way, solution.input)?;
+        next.status = solution.status.name();
+        Ok(next)
+    }
+
+    /// A hair in a direction. The inverse sums in another order, so an equal target could lie
+    /// behind by rounding.
+    fn past(&self, heading: Option<Direction>) -> f64 {
+        let hair = 1e-12 * (self.outputs.1 - self.outputs.0).abs();
+        match heading {
+            Some(Direction::Rising) => hair,
+            Some(Direction::Falling) => -hair,
+            None => 0.0,
+        }
     }
 
     /// The inputs between which the output stands still: where it starts to rise, and to fall.
@@ -214,16 +333,11 @@ impl Drive {
             return None;
         }
         let inverse = self.model.inverse().ok()?;
-        // The inverse sums in another order, so an equal target could lie behind by rounding.
-        let hair = 1e-12 * (self.outputs.1 - self.outputs.0).abs();
         let edge = |heading| {
-            let past = match heading {
-                Direction::Rising => hair,
-                Direction::Falling => -hair,
-            };
-            let target = Target::new(self.output + past).heading(Some(heading));
+            let target = Target::new(self.way.output + self.past(Some(heading)));
+            let target = target.heading(Some(heading));
             let solution = inverse
-                .step(&mut self.state.clone(), self.wanted(target))
+                .step(&mut self.way.state.clone(), self.wanted(target))
                 .ok()?;
             Some(solution.input)
         };
@@ -234,13 +348,20 @@ impl Drive {
     fn view(&self, id: Id) -> DriveView {
         DriveView {
             drive: id,
-            input: self.input,
-            output: self.output,
+            input: self.way.input,
+            output: self.way.output,
             wanted: self.wanted,
-            status: self.status,
-            other: self.other,
+            status: self.way.status,
+            rival: self.rival.as_ref().map(|(policy, way)| RivalView {
+                policy: *policy,
+                input: way.input,
+                output: way.output,
+                status: way.status,
+                trail: way.trail.clone(),
+            }),
+            moves: self.moves.clone(),
             dead_band: self.dead_band(),
-            trail: self.trail.clone(),
+            trail: self.way.trail.clone(),
             inputs: self.inputs,
             outputs: self.outputs,
             dt: self.model.is_timed().then_some(self.dt),

@@ -4,7 +4,7 @@ use super::fault::{Fault, spelt};
 use super::request::{Id, Purpose, Response};
 use super::{Answer, MOST, Session};
 use hysteron::{
-    Advice, Errors, Fit, HeldOut, HoldOut, Model, Progress, Quantity, Recording, advice,
+    Advice, Errors, Fit, HeldOut, HoldOut, Model, Progress, Quantity, Recording, State, advice,
     fit_holding_out,
 };
 use serde::{Deserialize, Serialize};
@@ -116,6 +116,8 @@ pub(super) struct Fitted {
     pub(super) dt: Option<f64>,
     /// The modelled output on each file that it was drawn with.
     pub(super) courses: BTreeMap<Id, Arc<Vec<f64>>>,
+    /// A file, a number of its rows, and the state after them.
+    pub(super) reached: Option<(Id, usize, State)>,
 }
 
 /// A fit as the page shows it.
@@ -309,6 +311,7 @@ impl Job {
             held_out,
             advice,
             courses: BTreeMap::new(),
+            reached: None,
         })
     }
 }

@@ -3,7 +3,7 @@
 use super::Session;
 use super::fault::Fault;
 use super::request::Id;
-use hysteron::{Model, Recording, Start, Surroundings, forward, operators};
+use hysteron::{Model, Recording, Start, State, Surroundings, forward, operators};
 use hysteron_report::decimate::{self, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -39,8 +39,44 @@ pub struct View {
     /// The part of the time that is shown, in seconds, or in samples from 1; `None` for all.
     #[serde(default)]
     pub window: Option<(f64, f64)>,
+    /// The part of the loop that is shown: samples beside it are left out of every picture.
+    #[serde(default)]
+    pub area: Area,
+    /// The file before its preparation too, where it is prepared.
+    #[serde(default)]
+    pub raw: bool,
     /// Width and height of the picture in pixels.
     pub pixels: (u32, u32),
+}
+
+/// A part of the loop. `None` for the whole of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(default)]
+pub struct Area {
+    /// Lowest and highest input.
+    pub input: Option<(f64, f64)>,
+    /// Lowest and highest measured output.
+    pub output: Option<(f64, f64)>,
+}
+
+impl Area {
+    /// Whether the loop is inside at a sample, or on the way from or to it, so that lines go to
+    /// the edge.
+    fn shows(&self, recording: &Recording, n: usize) -> bool {
+        if self.input.is_none() && self.output.is_none() {
+            return true;
+        }
+        self.has(recording, n)
+            || (n > 0 && self.has(recording, n - 1))
+            || (n + 1 < recording.len() && self.has(recording, n + 1))
+    }
+
+    pub(super) fn has(&self, recording: &Recording, n: usize) -> bool {
+        let inside = |ends: Option<(f64, f64)>, value: f64| {
+            ends.is_none_or(|(low, high)| (low..=high).contains(&value))
+        };
+        inside(self.input, recording.input[n]) && inside(self.output, recording.output[n])
+    }
 }
 
 /// Lines to draw.
@@ -54,8 +90,10 @@ pub struct Curves {
     pub y: String,
     /// The lines.
     pub lines: Vec<Line>,
-    /// Samples in the window.
+    /// Samples in the window and the area.
     pub samples: usize,
+    /// The time of the first and of the last of them.
+    pub span: Option<(f64, f64)>,
     /// The part of the time marked for validation.
     pub marked: Option<(f64, f64)>,
 }
@@ -65,6 +103,8 @@ pub struct Curves {
 pub struct Line {
     /// The fit; `None` for what was measured.
     pub fit: Option<Id>,
+    /// Whether it is what was measured, before its preparation.
+    pub raw: bool,
     /// Where its points are.
     pub x: Vec<Option<f64>>,
     /// And how high.
@@ -98,10 +138,26 @@ pub struct PlaneView {
     pub unit: String,
     /// The unit of the values.
     pub of: String,
-    /// The sample whose states are shown: input, measured and modelled output.
-    pub sample: Option<[f64; 3]>,
+    /// The line between the operators that are on and off at the sample pointed at, as points of
+    /// `α` and `β`. One unit is one cell, and cell `n` ends at `n`: [`hysteron::State::staircase`].
+    pub staircase: Vec<[f64; 2]>,
+    /// The sample pointed at.
+    pub sample: Option<SampleView>,
+}
+
+/// A sample of a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct SampleView {
     /// Its row, counted from 1.
-    pub row: Option<usize>,
+    pub row: usize,
+    /// Its time in seconds, or its number from 1.
+    pub time: f64,
+    /// Its input.
+    pub input: f64,
+    /// The measured output.
+    pub output: f64,
+    /// The modelled output of each fit.
+    pub modelled: Vec<(Id, f64)>,
 }
 
 /// Bars of a histogram.
@@ -109,7 +165,7 @@ const BARS: usize = 60;
 
 impl Session {
     /// The modelled output of a fit on a file.
-    fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
+    pub(super) fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
         let recording = self.file(file)?.recording()?.clone();
         let fitted = self.fitted(fit)?;
         if let Some(course) = fitted.courses.get(&file) {
@@ -146,17 +202,33 @@ impl Session {
             Some(_) => "time [s]".to_owned(),
             None => "sample".to_owned(),
         };
+        let shown: Vec<bool> = rows
+            .clone()
+            .map(|n| view.area.shows(&recording, n))
+            .collect();
+        let first = rows.start;
+        // What is not a number breaks a line.
+        let seen = |n: usize, value: f64| if shown[n - first] { value } else { f64::NAN };
         let over_time = |of: &dyn Fn(usize) -> f64| {
-            let points = rows.clone().map(|n| [when(&recording, n), of(n)]);
+            let points = rows.clone().map(|n| [when(&recording, n), seen(n, of(n))]);
             thinned(points, view.pixels, true)
         };
         let over_input = |of: &dyn Fn(usize) -> f64| {
-            let points = rows.clone().map(|n| [recording.input[n], of(n)]);
+            let points = rows.clone().map(|n| [recording.input[n], seen(n, of(n))]);
             thinned(points, view.pixels, false)
         };
+        let kept = || rows.clone().filter(|n| shown[n - first]);
         let measured = |n: usize| recording.output[n];
-        let line = |fit, (x, y)| Line { fit, x, y };
+        let line = |fit, (x, y)| Line {
+            fit,
+            raw: false,
+            x,
+            y,
+        };
         let mut lines = Vec::new();
+        if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
+            lines.extend(before(raw, view));
+        }
         let residual = |course: &Arc<Vec<f64>>, n: usize| recording.output[n] - course[n];
         match view.picture {
             Picture::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
@@ -171,7 +243,7 @@ impl Session {
                 Picture::Loop => over_input(&|n| course[n]),
                 Picture::Residuals => over_time(&|n| residual(course, n)),
                 Picture::ResidualsOverInput => over_input(&|n| residual(course, n)),
-                Picture::Histogram => histogram(rows.clone().map(|n| residual(course, n))),
+                Picture::Histogram => histogram(kept().map(|n| residual(course, n))),
             };
             lines.push(line(Some(*fit), points));
         }
@@ -193,8 +265,29 @@ impl Session {
             x,
             y,
             lines,
-            samples: rows.len(),
+            samples: kept().count(),
+            span: kept().next().map(|n| {
+                let last = kept().next_back().unwrap_or(n);
+                (when(&recording, n), when(&recording, last))
+            }),
             marked: marked.map(|(a, b)| (when(&recording, a - 1), when(&recording, b - 1))),
+        })
+    }
+
+    /// The sample nearest to a time.
+    pub(super) fn sample(&mut self, file: Id, fits: &[Id], at: f64) -> Result<SampleView, Fault> {
+        let recording = self.file(file)?.recording()?.clone();
+        let n = nearest(&recording, at);
+        let mut modelled = Vec::new();
+        for &fit in fits {
+            modelled.push((fit, self.course(fit, file)?[n]));
+        }
+        Ok(SampleView {
+            row: n + 1,
+            time: when(&recording, n),
+            input: recording.input[n],
+            output: recording.output[n],
+            modelled,
         })
     }
 
@@ -212,7 +305,14 @@ impl Session {
                 "fit with “bootstrap” 60",
             )
         };
-        let (mut sample, mut row) = (None, None);
+        let (sample, state) = match at {
+            None => (None, None),
+            Some((file, time)) => {
+                let sample = self.sample(file, &[fit], time)?;
+                let state = self.state_at(fit, file, sample.row)?;
+                (Some(sample), Some(state))
+            }
+        };
         let values: Vec<f64> = match kind {
             PlaneKind::Weights => model.weights().to_vec(),
             PlaneKind::Errors => confidence.ok_or_else(unknown)?.standard_error.clone(),
@@ -221,22 +321,13 @@ impl Session {
                 classes.map(|class| f64::from(*class as u8)).collect()
             }
             PlaneKind::States => {
-                let (file, time) = at.ok_or_else(|| {
+                let state = state.as_ref().ok_or_else(|| {
                     Fault::missing("no sample is chosen", "point at a sample over time")
                 })?;
-                let recording = self.file(file)?.recording()?.clone();
-                let course = self.course(fit, file)?;
-                let n = nearest(&recording, time);
-                sample = Some([recording.input[n], recording.output[n], course[n]]);
-                row = Some(n + 1);
-                states(&model, &recording, n + 1)?
+                model.operator_states(state)?
             }
         };
         let count = model.plane().levels();
-        let mut rows = vec![vec![None; count]; count];
-        for ((i, j), value) in operators(count).zip(values) {
-            rows[j - 1][i - 1] = Some(value);
-        }
         let levels = match model.spacing() {
             [] => (1..=count).map(|k| model.plane().level(k)).collect(),
             [_, levels @ ..] => levels.to_vec(),
@@ -244,7 +335,7 @@ impl Session {
         Ok(PlaneView {
             kind,
             levels,
-            values: rows,
+            values: cells(count, values.into_iter()),
             unit: model.input.to_column(),
             of: match kind {
                 PlaneKind::Weights => format!("weight{}", unit_of(&model)),
@@ -252,9 +343,45 @@ impl Session {
                 PlaneKind::Excitation => "how well determined".into(),
                 PlaneKind::States => "state".into(),
             },
+            staircase: state.map_or(Vec::new(), |state| state.staircase()),
             sample,
-            row,
         })
+    }
+
+    /// The state of a model after the first `count` rows of a file. It goes on from the state that
+    /// was asked for before, where that is no later: a play through the time takes each row once.
+    fn state_at(&mut self, fit: Id, file: Id, count: usize) -> Result<State, Fault> {
+        let recording = self.file(file)?.recording()?.clone();
+        let fitted = self.fits.iter_mut().find(|other| other.id == fit);
+        let fitted = fitted.ok_or_else(|| Fault::gone("fit", fit))?;
+        let reached = fitted.reached.take();
+        // A model that depends on time has to see each step of it.
+        let goes_on = |(of, at, _): &(Id, usize, State)| {
+            *of == file && *at <= count && !fitted.model.is_timed()
+        };
+        let reached = reached.filter(goes_on);
+        let (from, mut state) = match reached {
+            Some((_, at, state)) => (at, state),
+            None => (0, fitted.model.start()),
+        };
+        let rows = from..count;
+        let model = &fitted.model;
+        let around = Surroundings {
+            time: recording.time.as_deref().filter(|_| model.is_timed()),
+            load: recording.load.as_deref().filter(|_| model.load.is_some()),
+        };
+        let around = Surroundings {
+            time: around.time.map(|time| &time[rows.clone()]),
+            load: around.load.map(|load| &load[rows.clone()]),
+        };
+        model.run_in(
+            &mut state,
+            &recording.input[rows.clone()],
+            around,
+            &mut vec![0.0; rows.len()],
+        )?;
+        fitted.reached = Some((file, count, state.clone()));
+        Ok(state)
     }
 }
 
@@ -263,20 +390,42 @@ fn unit_of(model: &Model) -> String {
     unit.map_or(String::new(), |unit| format!(" [{unit}]"))
 }
 
-/// The states of the operators after the first `count` rows.
-fn states(model: &Model, recording: &Recording, count: usize) -> Result<Vec<f64>, Fault> {
-    let around = Surroundings {
-        time: recording.time.as_deref().map(|time| &time[..count]),
-        load: recording.load.as_deref().map(|load| &load[..count]),
+/// Values of operators, for each level of `β`, for each level of `α` up to it.
+pub(super) fn cells(count: usize, values: impl Iterator<Item = f64>) -> Vec<Vec<Option<f64>>> {
+    let mut rows = vec![vec![None; count]; count];
+    for ((i, j), value) in operators(count).zip(values) {
+        rows[j - 1][i - 1] = Some(value);
+    }
+    rows
+}
+
+/// The line of a recording before its preparation, in the pictures that have one.
+fn before(raw: &Recording, view: &View) -> Option<Line> {
+    let rows = rows(raw, view.window).filter(|n| view.area.shows(raw, *n));
+    let (x, y) = match view.picture {
+        Picture::Input => thinned(
+            rows.map(|n| [when(raw, n), raw.input[n]]),
+            view.pixels,
+            true,
+        ),
+        Picture::Output => thinned(
+            rows.map(|n| [when(raw, n), raw.output[n]]),
+            view.pixels,
+            true,
+        ),
+        Picture::Loop => thinned(
+            rows.map(|n| [raw.input[n], raw.output[n]]),
+            view.pixels,
+            false,
+        ),
+        Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => return None,
     };
-    let around = Surroundings {
-        time: around.time.filter(|_| model.is_timed()),
-        load: around.load.filter(|_| model.load.is_some()),
-    };
-    let mut state = model.start();
-    let input = &recording.input[..count];
-    model.run_in(&mut state, input, around, &mut vec![0.0; count])?;
-    Ok(model.operator_states(&state)?)
+    Some(Line {
+        fit: None,
+        raw: true,
+        x,
+        y,
+    })
 }
 
 /// The time of a sample, or its number from 1.
@@ -305,7 +454,7 @@ fn nearest(recording: &Recording, time: f64) -> usize {
 }
 
 /// The samples in a window of the time, and one more at each end, so that lines go to its edge.
-fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<usize> {
+pub(super) fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<usize> {
     let count = recording.len();
     let Some((from, to)) = window.filter(|(from, to)| from < to) else {
         return 0..count;
@@ -328,7 +477,7 @@ fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::ops::Range<us
 type Points = (Vec<Option<f64>>, Vec<Option<f64>>);
 
 /// The points that a picture of so many pixels can show.
-fn thinned(
+pub(super) fn thinned(
     points: impl Iterator<Item = Point> + Clone,
     (width, height): (u32, u32),
     is_function: bool,

@@ -1,24 +1,29 @@
 //! The session: what is open, without a transport. A request in, a response out.
 //!
-//! `request` defines both, `fault` what is wrong. `opened` is a file, `fitting` a fit while it runs
+//! `request` defines both, `fault` what is wrong. `opened` is a file, `prepare` its
+//! preparation, `design` the experiment that is missing, `fitting` a fit while it runs
 //! and afterwards, `look` the pictures, `drive` a model moved by hand, `take_home` what can be taken
 //! away, `commands` the same work as text, `saved` the session as a file.
 
 mod commands;
+mod design;
 mod drive;
 mod fault;
 mod fitting;
 mod look;
 mod opened;
+mod prepare;
 mod request;
 mod saved;
 mod take_home;
 
-pub use drive::{DriveView, Pull};
+pub use design::{DesignView, Wish};
+pub use drive::{DriveView, Pull, RivalView};
 pub use fault::Fault;
 pub use fitting::{Finished, FitView, Held, Job, JobView};
-pub use look::{Curves, Line, Picture, PlaneKind, PlaneView, View};
-pub use opened::{ColumnView, FileView, Part};
+pub use look::{Area, Curves, Line, Picture, PlaneKind, PlaneView, SampleView, View};
+pub use opened::{ColumnView, FileView, Part, RepairView};
+pub use prepare::Steps;
 pub use request::{Id, Overview, Purpose, Request, Response};
 pub use take_home::{Download, Take};
 
@@ -146,6 +151,10 @@ impl Session {
                 self.file_mut(file)?.set_mend(on, left);
                 self.forget_courses(file);
             }
+            Request::Prepare { file, steps } => {
+                self.file_mut(file)?.set_steps(steps)?;
+                self.forget_courses(file);
+            }
             Request::Use { file, purpose } => self.file_mut(file)?.purpose = purpose,
             Request::Mark { file, rows } => self.file_mut(file)?.mark(rows)?,
             Request::MarkSpan { file, from, to } => {
@@ -166,8 +175,14 @@ impl Session {
             Request::Plane { fit, kind, at } => {
                 return Ok(Response::Plane(self.plane(fit, kind, at)?).into());
             }
+            Request::Sample { file, fits, at } => {
+                return Ok(Response::Sample(self.sample(file, &fits, at)?).into());
+            }
             Request::Drive { fit } => return Ok(Response::Driven(self.drive(fit)?).into()),
             Request::Pull(pull) => return Ok(Response::Driven(self.pull(&pull)?).into()),
+            Request::Design(wish) => {
+                return Ok(Response::Designed(Box::new(self.design(&wish)?)).into());
+            }
             Request::Take(take) => return Ok(Response::Taken(self.take(&take)?).into()),
         }
         Ok(Response::Overview(Box::new(self.overview())).into())
@@ -224,6 +239,7 @@ impl Session {
     fn forget_courses(&mut self, file: Id) {
         for fit in &mut self.fits {
             fit.courses.remove(&file);
+            fit.reached = None;
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use super::fault::Fault;
 use super::look::when;
+use super::prepare::Steps;
 use super::request::{Id, Purpose};
 use bytes::Bytes;
 use hysteron::{
-    ColumnSummary, Columns, Quantity, ReadOptions, Recording, Repair, TablePreview, TableReader,
-    branches, preview_table, usual_tolerance,
+    ColumnSummary, Columns, Preparation, Progress, Quantity, ReadOptions, Recording, Repair,
+    TablePreview, TableReader, branches, prepare, preview_table, usual_tolerance,
 };
 use serde::{Deserialize, Serialize};
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 /// Columns by their names.
@@ -31,6 +33,7 @@ pub(super) struct Opened {
     pub(super) id: Id,
     pub(super) name: String,
     pub(super) bytes: Bytes,
+    digest: u64,
     preview: TablePreview,
     /// What was assumed about the table as a whole.
     remarks: Vec<String>,
@@ -38,7 +41,15 @@ pub(super) struct Opened {
     pub(super) mend: bool,
     pub(super) purpose: Purpose,
     pub(super) marked: Option<(usize, usize)>,
+    pub(super) steps: Option<Steps>,
+    /// As it was read.
+    raw: Option<Arc<Recording>>,
+    /// After the preparation.
     recording: Result<Arc<Recording>, Fault>,
+    preparation: Option<Preparation>,
+    /// Branches of its input. They are counted once: a page asks often.
+    branches: usize,
+    repair: Option<RepairView>,
     notes: Vec<String>,
 }
 
@@ -52,6 +63,15 @@ pub struct ColumnView {
     pub picture: Vec<Option<(f64, f64)>>,
 }
 
+/// What a repair of the rows would do.
+#[derive(Debug, Clone, Serialize)]
+pub struct RepairView {
+    /// The rows, and what would become of them.
+    pub notes: Vec<String>,
+    /// Samples that there would be.
+    pub samples: usize,
+}
+
 /// A file as the page shows it.
 #[derive(Debug, Clone, Serialize)]
 pub struct FileView {
@@ -61,6 +81,8 @@ pub struct FileView {
     pub name: String,
     /// Its size in bytes.
     pub bytes: usize,
+    /// Tells versions of a file apart.
+    pub digest: u64,
     /// Rows below the header.
     pub rows: u64,
     /// Its columns.
@@ -73,6 +95,12 @@ pub struct FileView {
     pub notes: Vec<String>,
     /// What is wrong with it as a recording.
     pub problem: Option<Fault>,
+    /// What a repair would do, where there is something wrong that it mends.
+    pub repair: Option<RepairView>,
+    /// The steps of its preparation; `None` if it is taken as it is.
+    pub steps: Option<Steps>,
+    /// What the preparation did.
+    pub preparation: Option<Preparation>,
     /// Whether rows are repaired.
     pub mend: bool,
     /// What it is for.
@@ -99,6 +127,7 @@ impl Opened {
         let mut opened = Self {
             id,
             name,
+            digest: digest(&bytes),
             bytes,
             preview,
             remarks,
@@ -111,7 +140,12 @@ impl Opened {
             mend: false,
             purpose: Purpose::Fit,
             marked: None,
+            steps: None,
+            raw: None,
             recording: Err(Fault::defect("not read yet")),
+            preparation: None,
+            branches: 0,
+            repair: None,
             notes: Vec::new(),
         };
         opened.read(memory);
@@ -126,6 +160,7 @@ impl Opened {
             let names = columns.table.columns.iter();
             names.map(|column| column.name.clone()).collect::<Vec<_>>()
         };
+        new.steps.clone_from(&self.steps);
         if same(&new.preview) == same(&self.preview) {
             new.roles = self.roles.clone();
         }
@@ -141,6 +176,24 @@ impl Opened {
     pub(super) fn set_mend(&mut self, on: bool, memory: u64) {
         self.mend = on;
         self.read(memory);
+    }
+
+    /// Prepares the recording, or takes it as it is. A refusal leaves it as it was.
+    pub(super) fn set_steps(&mut self, steps: Option<Steps>) -> Result<(), Fault> {
+        let raw = self.raw.clone();
+        let raw = raw.ok_or_else(|| match &self.recording {
+            Err(fault) => fault.clone(),
+            Ok(_) => Fault::defect("not read yet"),
+        })?;
+        let (recording, preparation) = prepared(&raw, steps.as_ref())?;
+        (self.recording, self.preparation, self.steps) = (Ok(recording), preparation, steps);
+        self.keep_marked();
+        Ok(())
+    }
+
+    /// The recording before its preparation.
+    pub(super) fn raw(&self) -> Option<&Arc<Recording>> {
+        self.raw.as_ref().filter(|_| self.steps.is_some())
     }
 
     pub(super) fn mark(&mut self, rows: Option<(usize, usize)>) -> Result<(), Fault> {
@@ -178,16 +231,46 @@ impl Opened {
             .recording
             .as_ref()
             .map_or(0, |recording| recording.len());
-        (self.bytes.len() + 4 * size_of::<f64>() * samples) as u64
+        let raw = self.raw().map_or(0, |raw| raw.len());
+        (self.bytes.len() + 4 * size_of::<f64>() * (samples + raw)) as u64
     }
 
     /// Makes the recording of the columns.
     fn read(&mut self, memory: u64) {
-        let (recording, notes) = match self.try_read(memory) {
-            Ok((recording, notes)) => (Ok(Arc::new(recording)), notes),
-            Err(fault) => (Err(fault), self.remarks.clone()),
-        };
-        (self.recording, self.notes) = (recording, notes);
+        (self.raw, self.preparation, self.repair) = (None, None, None);
+        match self.try_read(memory, self.mend) {
+            Ok((raw, notes)) => {
+                let raw = Arc::new(raw);
+                (self.recording, self.notes) = match prepared(&raw, self.steps.as_ref()) {
+                    Ok((recording, preparation)) => {
+                        self.preparation = preparation;
+                        (Ok(recording), notes)
+                    }
+                    Err(fault) => (Err(fault), notes),
+                };
+                self.raw = Some(raw);
+            }
+            Err(fault) => {
+                if !self.mend {
+                    let would = self.try_read(memory, true).ok();
+                    self.repair = would.map(|(recording, notes)| RepairView {
+                        notes,
+                        samples: recording.len(),
+                    });
+                }
+                (self.recording, self.notes) = (Err(fault), self.remarks.clone());
+            }
+        }
+        self.keep_marked();
+    }
+
+    /// What hangs on the number of samples, after the recording has changed.
+    fn keep_marked(&mut self) {
+        self.branches = self.recording.as_ref().map_or(0, |recording| {
+            let input = &recording.input;
+            let of_samples = branches(input, usual_tolerance(input));
+            of_samples.last().map_or(0, |last| last + 1)
+        });
         let count = self
             .recording
             .as_ref()
@@ -195,7 +278,7 @@ impl Opened {
         self.marked = self.marked.filter(|(_, last)| *last <= count);
     }
 
-    fn try_read(&self, memory: u64) -> Result<(Recording, Vec<String>), Fault> {
+    fn try_read(&self, memory: u64, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
         let Part {
             input,
             output,
@@ -211,11 +294,7 @@ impl Opened {
             load: load.as_deref(),
             ..Columns::new(input, output)
         };
-        let repair = if self.mend {
-            Repair::Mend
-        } else {
-            Repair::Refuse
-        };
+        let repair = if mend { Repair::Mend } else { Repair::Refuse };
         let options = ReadOptions {
             repair,
             max_memory: memory,
@@ -242,26 +321,44 @@ impl Opened {
             id: self.id,
             name: self.name.clone(),
             bytes: self.bytes.len(),
+            digest: self.digest,
             rows: self.preview.table.rows,
             columns: columns.collect(),
             roles: self.roles.clone(),
             reasons: self.preview.roles.reasons.clone(),
             notes: self.notes.clone(),
             problem: self.recording.as_ref().err().cloned(),
+            repair: self.repair.clone(),
+            steps: self.steps.clone(),
+            preparation: self.preparation.clone(),
             mend: self.mend,
             purpose: self.purpose,
             marked: self.marked,
             samples: recording.map_or(0, |recording| recording.len()),
-            branches: recording.map_or(0, |recording| {
-                let input = &recording.input;
-                branches(input, usual_tolerance(input))
-                    .last()
-                    .map_or(0, |last| last + 1)
-            }),
+            branches: self.branches,
             input: shown(|recording| &recording.input_quantity),
             output: shown(|recording| &recording.output_quantity),
         }
     }
+}
+
+/// A number of the bytes that JavaScript holds exactly.
+fn digest(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytes);
+    hasher.finish() >> 11
+}
+
+/// A recording after these steps, and what they did.
+fn prepared(
+    raw: &Arc<Recording>,
+    steps: Option<&Steps>,
+) -> Result<(Arc<Recording>, Option<Preparation>), Fault> {
+    let Some(steps) = steps else {
+        return Ok((raw.clone(), None));
+    };
+    let (recording, report) = prepare(raw, &steps.options()?, Progress::NONE)?;
+    Ok((Arc::new(recording), Some(report)))
 }
 
 /// The last part of a path, safe to show.

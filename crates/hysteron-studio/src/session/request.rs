@@ -1,9 +1,11 @@
 //! The requests of a session and its responses.
 
+use super::design::{DesignView, Wish};
 use super::drive::{DriveView, Pull};
 use super::fitting::{FitView, Held, JobView};
-use super::look::{Curves, PlaneKind, PlaneView, View};
+use super::look::{Curves, PlaneKind, PlaneView, SampleView, View};
 use super::opened::{FileView, Part};
+use super::prepare::Steps;
 use super::take_home::{Download, Take};
 use hysteron::FitOption;
 use serde::{Deserialize, Serialize};
@@ -49,6 +51,14 @@ pub enum Request {
         file: Id,
         /// Whether they are repaired.
         on: bool,
+    },
+    /// Prepares a recording, or takes it as it is.
+    Prepare {
+        /// The file.
+        file: Id,
+        /// The steps; `None` for no preparation.
+        #[serde(default)]
+        steps: Option<Steps>,
     },
     /// Says what a file is for.
     Use {
@@ -104,6 +114,16 @@ pub enum Request {
         #[serde(default)]
         at: Option<(Id, f64)>,
     },
+    /// A sample.
+    Sample {
+        /// The file.
+        file: Id,
+        /// The fits whose outputs are wanted.
+        #[serde(default)]
+        fits: Vec<Id>,
+        /// Its time, or without one its number from 1.
+        at: f64,
+    },
     /// Starts to drive a model by hand.
     Drive {
         /// The fit.
@@ -111,6 +131,8 @@ pub enum Request {
     },
     /// Moves a model that is driven.
     Pull(Pull),
+    /// The profile of input that the data lack.
+    Design(Wish),
     /// Something to take home.
     Take(Take),
 }
@@ -127,8 +149,12 @@ pub enum Response {
     Curves(Curves),
     /// A plane.
     Plane(PlaneView),
+    /// A sample.
+    Sample(SampleView),
     /// A model that is driven.
     Driven(DriveView),
+    /// A profile.
+    Designed(Box<DesignView>),
     /// Something to take home.
     Taken(Download),
 }

@@ -4,6 +4,7 @@ use super::Session;
 use super::fault::Fault;
 use super::fitting::Fitted;
 use super::opened::{Opened, Part, plain_name};
+use super::prepare::Steps;
 use super::request::{Id, Purpose};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -32,6 +33,8 @@ struct SavedFile {
     name: String,
     roles: Part,
     mend: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    steps: Option<Steps>,
     purpose: Purpose,
     marked: Option<(usize, usize)>,
     /// The bytes of the file in base64.
@@ -59,12 +62,13 @@ pub(super) fn is_session(bytes: &[u8]) -> bool {
 }
 
 impl Session {
-    pub(super) fn to_json(&self) -> String {
+    pub(crate) fn to_json(&self) -> String {
         let file = |file: &Opened| SavedFile {
             id: file.id,
             name: file.name.clone(),
             roles: file.roles.clone(),
             mend: file.mend,
+            steps: file.steps.clone(),
             purpose: file.purpose,
             marked: file.marked,
             bytes: STANDARD.encode(&file.bytes),
@@ -93,7 +97,7 @@ impl Session {
     }
 
     /// Puts a saved session in the place of this one. Returns the number of its first file.
-    pub(super) fn restore(&mut self, bytes: &[u8]) -> Result<Id, Fault> {
+    pub(crate) fn restore(&mut self, bytes: &[u8]) -> Result<Id, Fault> {
         let bad = |problem: &dyn std::fmt::Display| Fault::session(problem.to_string());
         if !self.running.is_empty() {
             return Err(Fault::missing("a fit is running", "cancel it first"));
@@ -114,6 +118,7 @@ impl Session {
             }
             let mut opened = Opened::new(file.id, plain_name(&file.name), bytes, left)?;
             (opened.mend, opened.purpose) = (file.mend, file.purpose);
+            opened.steps = file.steps;
             opened.set_roles(file.roles, left);
             if file.marked.is_some() {
                 opened.mark(file.marked)?;
@@ -136,6 +141,7 @@ impl Session {
                 output: fit.output,
                 dt: fit.dt,
                 courses: BTreeMap::new(),
+                reached: None,
             });
         }
         let ids = new.files.iter().map(|file| file.id);

@@ -1,12 +1,13 @@
 //! What can be taken home: the model, code, a report, the numbers of a picture, the same work as
 //! commands, the session.
 
+use super::design::Wish;
 use super::fault::Fault;
-use super::look::View;
+use super::look::{View, rows};
 use super::request::Id;
 use super::{Session, commands};
 use base64::Engine;
-use hysteron::{Recording, evaluate};
+use hysteron::{Recording, TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
 use hysteron_report::Report;
 use serde::{Deserialize, Serialize, Serializer};
@@ -44,6 +45,12 @@ pub enum Take {
     },
     /// The numbers of a picture, as a table.
     Csv(View),
+    /// All samples of the part that is shown, with the outputs and residuals of the fits, as CSV.
+    Table(View),
+    /// The same as Parquet.
+    Parquet(View),
+    /// The profile of an experiment, as CSV.
+    Profile(Wish),
     /// The commands that do what was clicked.
     Command {
         /// The fit.
@@ -95,6 +102,21 @@ impl Session {
             Take::Fmu { fit, inverse } => self.fmu(fit, inverse)?,
             Take::Report { fit, file } => self.report(fit, file)?,
             Take::Csv(ref view) => text("picture.csv", "text/csv", self.csv(view)?),
+            Take::Table(ref view) => Download {
+                name: "samples.csv".into(),
+                media: "text/csv",
+                bytes: self.table(view, "samples.csv")?,
+            },
+            Take::Parquet(ref view) => Download {
+                name: "samples.parquet".into(),
+                media: "application/vnd.apache.parquet",
+                bytes: self.table(view, "samples.parquet")?,
+            },
+            Take::Profile(ref wish) => Download {
+                name: "profile.csv".into(),
+                media: "text/csv",
+                bytes: self.profile_table(wish)?,
+            },
             Take::Command { fit } => text(
                 "fit.sh",
                 "text/plain",
@@ -188,6 +210,46 @@ impl Session {
         })
     }
 
+    /// The samples of a view.
+    fn table(&mut self, view: &View, name: &str) -> Result<Vec<u8>, Fault> {
+        let recording = self.file(view.file)?.recording()?.clone();
+        let mut courses = Vec::new();
+        for &fit in &view.fits {
+            courses.push((fit, self.course(fit, view.file)?));
+        }
+        let mut names: Vec<String> = recording.time.iter().map(|_| "time [s]".into()).collect();
+        names.push(recording.input_quantity.to_column());
+        names.push(recording.output_quantity.to_column());
+        names.extend(
+            recording
+                .load
+                .iter()
+                .map(|_| recording.load_quantity.to_column()),
+        );
+        for (fit, _) in &courses {
+            names.extend([
+                format!("model of fit {fit}"),
+                format!("residual of fit {fit}"),
+            ]);
+        }
+        let rows = rows(&recording, view.window);
+        let rows = rows.filter(|n| view.area.has(&recording, *n));
+        written(name, |path| {
+            let mut table = TableWriter::plain(Some(path.into()))?;
+            table.row(&names)?;
+            for n in rows {
+                let mut cells: Vec<f64> = recording.time.iter().map(|time| time[n]).collect();
+                cells.extend([recording.input[n], recording.output[n]]);
+                cells.extend(recording.load.iter().map(|load| load[n]));
+                for (_, course) in &courses {
+                    cells.extend([course[n], recording.output[n] - course[n]]);
+                }
+                table.row(cells.iter().map(f64::to_string))?;
+            }
+            Ok(table.finish()?)
+        })
+    }
+
     fn csv(&mut self, view: &View) -> Result<String, Fault> {
         let curves = self.curves(view)?;
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
@@ -204,6 +266,17 @@ impl Session {
         }
         Ok(text)
     }
+}
+
+/// The bytes of a file that is written under this name in a folder of its own.
+pub(super) fn written(
+    name: &str,
+    write: impl FnOnce(&Path) -> Result<(), Fault>,
+) -> Result<Vec<u8>, Fault> {
+    let folder = tempfile::tempdir().map_err(no_folder)?;
+    let path = folder.path().join(name);
+    write(&path)?;
+    std::fs::read(&path).map_err(no_folder)
 }
 
 fn no_folder(error: std::io::Error) -> Fault {

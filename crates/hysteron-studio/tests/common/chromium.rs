@@ -148,6 +148,34 @@ impl Chromium {
         self.value(tab, &code);
     }
 
+    /// Presses the mouse at the first of these points of the page, goes along them, and lets go.
+    pub fn drag(&mut self, tab: &Tab, points: &[(f64, f64)]) {
+        let mut send = |kind: &str, (x, y): (f64, f64)| {
+            let buttons = u8::from(kind != "mouseReleased");
+            let params = json!({"type": kind, "x": x, "y": y, "button": "left",
+                "buttons": buttons, "clickCount": 1});
+            self.call(Some(tab), "Input.dispatchMouseEvent", params);
+        };
+        send("mousePressed", points[0]);
+        for point in points {
+            send("mouseMoved", *point);
+        }
+        send("mouseReleased", points[points.len() - 1]);
+    }
+
+    /// Shares of an element's width and height as points of the page. It is scrolled into view.
+    pub fn points(&mut self, tab: &Tab, element: &str, shares: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let code = format!(
+            "(() => {{ const node = document.querySelector('{element}');
+             node.scrollIntoView({{block: 'center'}}); const box = node.getBoundingClientRect();
+             return [box.left, box.top, box.width, box.height]; }})()"
+        );
+        let [left, top, width, height]: [f64; 4] =
+            serde_json::from_value(self.value(tab, &code)).unwrap();
+        let place = |(x, y): &(f64, f64)| (left + x * width, top + y * height);
+        shares.iter().map(place).collect()
+    }
+
     /// A picture of the whole page.
     pub fn picture(&mut self, tab: &Tab) -> Vec<u8> {
         use base64::Engine;

@@ -18,7 +18,15 @@ pub struct Studio {
 
 impl Studio {
     pub fn start(budget: u64, files: &[&Path]) -> Self {
-        let server = Server::bind(0, budget).unwrap();
+        Self::keeping(budget, files, None)
+    }
+
+    /// A studio that keeps its session in a file.
+    pub fn keeping(budget: u64, files: &[&Path], kept: Option<&Path>) -> Self {
+        let mut server = Server::bind(0, budget).unwrap();
+        if let Some(kept) = kept {
+            server.keep(kept).unwrap();
+        }
         for file in files {
             server.open(file).unwrap();
         }

@@ -77,6 +77,34 @@ impl State {
         self.operators.turning_points()
     }
 
+    /// The line on the plane between the operators that are on and those that are off, as points
+    /// `[α, β]`, normalised to the plane. Operator `(i, j)` takes the cell from `[i - 1, j - 1]` to
+    /// `[i, j]`; the line goes through the cells of operators that are partly on. It begins at the
+    /// edge `α = 0` and ends on the diagonal at the present input.
+    ///
+    /// ```
+    /// # use hysteron::{Operator, Operators, Model, Plane, Sign};
+    /// # let plane = Plane::new(1.0, 4.0, 4)?;
+    /// # let operators = Operators::new(Operator::Mkp, plane, vec![1.0; 10], 0.0, Sign::Positive)?;
+    /// let model = Model::from(operators);
+    /// let mut state = model.off();
+    /// for input in [3.5, 1.0, 2.0] {
+    ///     model.step(&mut state, input.into())?;
+    /// }
+    /// assert_eq!(state.staircase(), [[0.0, 3.5], [1.0, 3.5], [1.0, 2.0], [2.0, 2.0]]);
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    #[must_use]
+    pub fn staircase(&self) -> Vec<[f64; 2]> {
+        let turns: Vec<f64> = self.turning_points().collect();
+        let first = turns.first().map(|top| [0.0, *top]);
+        let last = turns.last().map(|now| [*now, *now]);
+        let corners = turns
+            .windows(2)
+            .map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]);
+        first.into_iter().chain(corners).chain(last).collect()
+    }
+
     /// Whether the operators' input is rising.
     #[must_use]
     pub fn is_rising(&self) -> bool {

@@ -1,0 +1,102 @@
+// The sample pointed at: its mark in every view, and a play through the time.
+
+import { ask } from "./api.js";
+import { by, el, fill, shown } from "./dom.js";
+import * as plane from "./plane.js";
+import { mark } from "./plot.js";
+
+const OVER_TIME = ["plot-output", "plot-input", "plot-residuals"];
+/** A play takes so many seconds for the part that is shown. */
+const SPEEDS = [60, 20, 8, 3];
+
+/** @typedef {{row: number, time: number, input: number, output: number, modelled: [number, number][]}} Sample */
+
+/** @type {{file: number|null, range: [number, number], at: number|null, sample: Sample|null, overview: any, drawn: Set<number>, seconds: number, timer: number, waiting: boolean, busy: boolean, steps: number}} */
+const now = { file: null, range: [0, 1], at: null, sample: null, overview: null, drawn: new Set(), seconds: 20, timer: 0, waiting: false, busy: false, steps: 1 };
+
+/**
+ * The bar with the button, the speed, and the place in time.
+ * @param {any} overview
+ * @param {Set<number>} drawn
+ * @param {number|null} file
+ * @param {[number, number]} range of the time that is shown
+ * @param {number} samples in it
+ */
+export function show(overview, drawn, file, range, samples) {
+  if (file !== now.file) Object.assign(now, { at: null, sample: null });
+  Object.assign(now, { overview, drawn, file, range, steps: Math.max(1, samples) });
+  const [low, high] = range;
+  const title = now.timer ? "Pause" : "Play";
+  fill(
+    by("play"),
+    el("button", { id: "play-button", "data-key": "play", "aria-keyshortcuts": "Space", onclick: toggle }, now.timer ? "❚❚ Pause" : "▶ Play"),
+    el("label", {}, "in ", el("select", { "data-key": "play-speed", "aria-label": `${title} the part that is shown in`, onchange: (/** @type {any} */ e) => (now.seconds = Number(e.target.value)) }, ...SPEEDS.map((s) => el("option", { value: String(s), selected: s === now.seconds }, `${s} s`)))),
+    el("input", { id: "play-at", "data-key": "play-at", type: "range", min: low, max: high, step: (high - low) / Math.min(now.steps, 2000) || "any", value: String(now.at ?? low), "aria-label": "Sample, by its time", oninput: (/** @type {any} */ e) => to(Number(e.target.value)) }),
+    el("span", { id: "play-sample", role: "status", "aria-live": "off" }, words()),
+  );
+}
+
+const words = () => {
+  if (!now.sample) return "Space plays. Arrow keys move the sample.";
+  const { row, time, input, output, modelled } = now.sample;
+  const fits = modelled.map(([id, value]) => `, fit ${now.overview.fits.findIndex((/** @type {any} */ fit) => fit.id === id) + 1}: ${shown(value)}`);
+  return `Row ${row}, at ${shown(time)}: input ${shown(input)}, measured ${shown(output)}${fits.join("")}`;
+};
+
+/** Starts a play, or pauses it. */
+export function toggle() {
+  if (now.timer) {
+    clearInterval(now.timer);
+    now.timer = 0;
+  } else {
+    if (now.at === null || now.at >= now.range[1]) now.at = now.range[0];
+    let last = performance.now();
+    now.timer = setInterval(() => {
+      const [low, high] = now.range;
+      const way = ((performance.now() - last) / 1000 / now.seconds) * (high - low);
+      last = performance.now();
+      to(Math.min(high, Math.max(low, (now.at ?? low) + way)));
+      if ((now.at ?? high) >= high) toggle();
+    }, 40);
+  }
+  by("play-button").textContent = now.timer ? "❚❚ Pause" : "▶ Play";
+}
+
+/** Points at the sample nearest to a time. The latest wish counts. @param {number} time */
+export async function to(time) {
+  now.at = time;
+  now.waiting = true;
+  if (now.busy) return;
+  now.busy = true;
+  while (now.waiting && now.at !== null) {
+    now.waiting = false;
+    now.sample = await ask("sample", { file: now.file, fits: [...now.drawn], at: now.at }).catch(() => null);
+    by("play-sample").textContent = words();
+    by("play-at").value = String(now.at);
+    for (const id of [...OVER_TIME, "plot-loop"]) if (by(id).layout) await mark(by(id), shapes(id));
+    if (now.drawn.size > 0) await plane.at(now.file, now.at, now.overview, now.drawn);
+  }
+  now.busy = false;
+}
+
+/**
+ * The mark of the sample in a view.
+ * @param {string} id
+ * @returns {object[]}
+ */
+export function shapes(id) {
+  if (!now.sample) return [];
+  const { time, input, output } = now.sample;
+  const line = { color: "#d55e00", width: 2 };
+  if (OVER_TIME.includes(id)) return [{ type: "line", name: "now", xref: "x", yref: "paper", x0: time, x1: time, y0: 0, y1: 1, line }];
+  const round = { type: "circle", name: "now", xsizemode: "pixel", ysizemode: "pixel", xanchor: input, yanchor: output, x0: -7, x1: 7, y0: -7, y1: 7 };
+  return id === "plot-loop" ? [{ ...round, fillcolor: "rgba(213,94,0,.5)", line }] : [];
+}
+
+addEventListener("keydown", (event) => {
+  const target = /** @type {HTMLElement} */ (event.target);
+  const inside = target === document.body || (target.closest?.("#look") && !target.closest("button, select, input:not([type=range])"));
+  if (event.key !== " " || !inside || by("look").hidden) return;
+  event.preventDefault();
+  toggle();
+});

@@ -1,0 +1,102 @@
+//! The preparation of a file: its steps as texts, as on the command line.
+
+use super::fault::Fault;
+use hysteron::{PrepareOptions, Step};
+use serde::{Deserialize, Serialize};
+
+/// The steps of a preparation, each `auto`, `off` or a number: [`hysteron::PrepareOptions`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Steps {
+    /// Lost signs and spikes.
+    pub spikes: String,
+    /// Equal steps of time.
+    pub resample: String,
+    /// The low-pass filter.
+    pub low_pass: String,
+    /// The lag of the input's sensor.
+    pub lag: String,
+    /// The dead band for false reversals.
+    pub dead_band: String,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        let auto = || "auto".to_owned();
+        Self {
+            spikes: auto(),
+            resample: auto(),
+            low_pass: auto(),
+            lag: "off".into(),
+            dead_band: auto(),
+        }
+    }
+}
+
+impl Steps {
+    /// Names and texts, those of the command line first.
+    fn all(&self) -> [(&'static str, &'static str, &str); 5] {
+        [
+            ("spikes", "spikes", &self.spikes),
+            ("resample", "resample", &self.resample),
+            ("low-pass", "low_pass", &self.low_pass),
+            ("sensor-lag", "lag", &self.lag),
+            ("dead-band", "dead_band", &self.dead_band),
+        ]
+    }
+
+    pub(super) fn options(&self) -> Result<PrepareOptions, Fault> {
+        Ok(PrepareOptions {
+            spikes: step("spikes", &self.spikes)?,
+            resample: step("resample", &self.resample)?,
+            low_pass: step("low-pass", &self.low_pass)?,
+            lag: step("lag", &self.lag)?,
+            dead_band: step("dead band", &self.dead_band)?,
+        })
+    }
+
+    /// The steps that are not as usual.
+    fn changed(&self) -> impl Iterator<Item = (&'static str, &'static str, &str)> {
+        let usual = Self::default();
+        let usual = usual.all().map(|(.., text)| text.to_owned());
+        let all = self.all().into_iter().zip(usual);
+        all.filter(|((.., text), usual)| text != usual)
+            .map(|(step, _)| step)
+    }
+
+    pub(super) fn as_options(&self) -> String {
+        let steps = self
+            .changed()
+            .map(|(name, _, text)| format!(" --{name} {text}"));
+        format!("--prepare{}", steps.collect::<String>())
+    }
+
+    pub(super) fn as_python(&self) -> String {
+        let steps = self.changed().map(|(_, name, text)| match text {
+            "auto" | "off" => format!(", {name}=\"{text}\""),
+            number => format!(", {name}={number}"),
+        });
+        steps.collect()
+    }
+
+    pub(super) fn as_rust(&self) -> String {
+        let steps = self.changed().map(|(_, name, text)| match text {
+            "auto" => format!("{name}: Step::Auto, "),
+            "off" => format!("{name}: Step::Off, "),
+            number => format!("{name}: Step::Value({number} as f64), "),
+        });
+        let steps: String = steps.collect();
+        format!("PrepareOptions {{ {steps}..PrepareOptions::default() }}")
+    }
+}
+
+fn step(name: &str, text: &str) -> Result<Step, Fault> {
+    match text {
+        "auto" => Ok(Step::Auto),
+        "off" => Ok(Step::Off),
+        _ => text.parse().map(Step::Value).map_err(|_| {
+            let problem = format!("“{name}” is neither auto nor off nor a number");
+            Fault::missing(&problem, "choose one of them")
+        }),
+    }
+}
