@@ -3,10 +3,10 @@
 use crate::choices::{another_kind, choice, named, no_argument, operator, start_of};
 use crate::convert::{result, warn};
 use crate::error::{Raise, spelt};
-use crate::fleet::WeightPrior;
 use crate::inputs::{recordings_alone, recordings_of};
 use crate::integer::Integer;
 use crate::model::{Model, sign_of};
+use crate::prior::WeightPrior;
 use crate::progress::with_progress;
 use hysteron::{
     Auto, Candidates, Choice, Fit, FitOptions, HeldOut, HoldOut, LoadLaw, Smooth, Solver, Spacing,

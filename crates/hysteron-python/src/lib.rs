@@ -27,6 +27,7 @@ mod plane;
 mod plant;
 mod pool;
 mod prepare;
+mod prior;
 mod progress;
 mod read;
 mod recording;
@@ -69,7 +70,7 @@ mod _hysteron {
     #[pymodule_export]
     use crate::fit::{fit, left_out};
     #[pymodule_export]
-    use crate::fleet::{WeightPrior, fit_fleet, join_fleets, prior_of_fleet, read_fleet};
+    use crate::fleet::{fit_fleet, join_fleets, prior_of_fleet, read_fleet};
     #[pymodule_export]
     use crate::inverse::Inverse;
     #[pymodule_export]
@@ -82,6 +83,8 @@ mod _hysteron {
     use crate::plant::{PreisachPlant, SimulatedPlant, SpringPlant};
     #[pymodule_export]
     use crate::prepare::prepare;
+    #[pymodule_export]
+    use crate::prior::WeightPrior;
     #[pymodule_export]
     use crate::read::read;
     #[pymodule_export]

@@ -89,7 +89,7 @@ impl State {
     /// let model = Model::from(operators);
     /// let mut state = model.off();
     /// for input in [3.5, 1.0, 2.0] {
-    ///     model.step(&mut state, input.into())?;
+    ///     model.step(&mut state, input)?;
     /// }
     /// assert_eq!(state.staircase(), [[0.0, 3.5], [1.0, 3.5], [1.0, 2.0], [2.0, 2.0]]);
     /// # Ok::<(), hysteron::Error>(())
