@@ -3,7 +3,8 @@
 import json
 import os
 import signal
-import subprocess
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -101,6 +102,13 @@ def test_a_prior_says_what_a_short_recording_does_not(table):
         fleet.WeightPrior([])
 
 
+def kill_in_the_middle(pid, tables):
+    """Kills a worker as soon as a part is begun."""
+    while not (tables.exists() and any(tables.iterdir())):
+        time.sleep(0.01)
+    os.kill(pid, signal.SIGKILL)
+
+
 def test_dask_gives_the_same_bits_though_a_worker_dies(parts, table, tmp_path):
     distributed = pytest.importorskip("distributed")
     from pyhysteron.fleet import dask
@@ -113,9 +121,11 @@ def test_dask_gives_the_same_bits_though_a_worker_dies(parts, table, tmp_path):
             options = {**OPTIONS, "levels": 20, "bootstrap": 40}
             whole = tmp_path / "whole.parquet"
             fleet.fit_fleet(parts, whole, by="id", **options)
-            killer = subprocess.Popen(["sh", "-c", f"sleep 0.5; kill -{signal.SIGKILL.value} {pids[0]}"])
-            found = dask.fit_fleet(parts, target, folder=tmp_path / "tables", by="id", **options)
-            assert killer.poll() == 0, "the worker did not die in the middle"
+            tables = tmp_path / "tables"
+            killer = threading.Thread(target=kill_in_the_middle, args=(pids[0], tables))
+            killer.start()
+            found = dask.fit_fleet(parts, target, folder=tables, by="id", **options)
+            killer.join()
             assert pids[0] not in client.run(os.getpid).values()
             assert found.fitted == 40 and not found.failed
             assert target.read_bytes() == whole.read_bytes()
