@@ -77,6 +77,15 @@ impl<T: Real> Position<T> {
         }
     }
 
+    /// Moves to `x` if it lies ahead on the present branch. Returns whether it does.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, grid: Grid<'_, T>, x: T) -> bool {
+        match self.is_rising() {
+            true => self.follow::<true>(grid, x),
+            false => self.follow::<false>(grid, x),
+        }
+    }
+
     /// Whether both are the same position on the same branch. Outputs are not compared.
     pub(crate) fn is_at(&self, other: &Self) -> bool {
         let key = |position: &Self| (position.x, position.top, position.began, position.end);

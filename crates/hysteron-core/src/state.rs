@@ -211,10 +211,20 @@ impl<T: Real, S: Memory<Turn<T>>> State<T, S> {
     #[inline(always)]
     pub(crate) fn travel(&mut self, table: &[T], x: T, input: T) {
         let levels = self.levels;
+        let grid = Grid { table, levels };
+        if !self.position.advance(grid, x) {
+            self.turn(table, x);
+        }
+        self.input = input;
+    }
+
+    /// Where the input turns or a branch ends. Apart, so that a step along a branch stays short.
+    #[inline(never)]
+    fn turn(&mut self, table: &[T], x: T) {
+        let levels = self.levels;
         let turns = self.turns.as_mut();
         self.position
             .travel(turns, Grid { table, levels }, &mut [x]);
-        self.input = input;
     }
 
     /// Moves to `input`, which has to be finite, and returns `Σ μ γ` there.
