@@ -131,6 +131,11 @@ fn a_refusal_names_the_field() {
         ),
         (
             SPRING,
+            format!("loop = {{ preview_s = -0.1 }}\n{SPRING_SINE}"),
+            "`loop.preview_s`",
+        ),
+        (
+            SPRING,
             format!("adaptation.noise = 0\n{SPRING_SINE}"),
             "`adaptation`",
         ),

@@ -4,7 +4,7 @@
 use hysteron::Progress;
 use hysteron::control::{Device, Disturbance, SimulatedPlant};
 use hysteron_sim::plant::{WirePlant, WirePlantOptions};
-use hysteron_sim::track::{Kind, Scenario, track};
+use hysteron_sim::track::{Kind, Reference, Scenario, track};
 
 #[test]
 fn the_adaptive_drive_follows_a_warmer_room_and_a_heavier_load() {
@@ -30,6 +30,29 @@ fn the_adaptive_drive_follows_a_warmer_room_and_a_heavier_load() {
     let room = settled[1];
     assert!(rmse(1, room) < 0.3 * rmse(0, room), "{}", rmse(1, room));
     assert!(found.model.thermal.is_some());
+}
+
+/// A reference with corners, which a body that cools passively does not follow at once.
+#[test]
+fn a_drive_that_knows_the_reference_ahead_turns_in_time() {
+    let mut scenario = Scenario::load("wire").unwrap();
+    scenario.seeds = 1;
+    scenario.duration_s = 60.0;
+    scenario.disturbance.clear();
+    scenario.controllers = vec![Kind::InverseAnticipate];
+    scenario.reference = vec![Reference::Trapezoid {
+        low: 1.0,
+        high: 3.0,
+        ramp_s: 2.0,
+        rest_s: 3.0,
+    }];
+    let [late, early] = [0.0, 2.0].map(|preview_s| {
+        scenario.shared.preview_s = preview_s;
+        let found = track(&scenario, Progress::NONE).unwrap();
+        found.scores[0][0].last().unwrap().rmse
+    });
+    // It sets out earlier by what the body needs, no more: the gain is that of the corners.
+    assert!(early < 0.9 * late, "{early} {late}");
 }
 
 #[test]

@@ -69,10 +69,12 @@ impl Scenario {
         let LoopOptions {
             filter_s,
             tolerance,
-            ..
+            preview_s,
+            tuning: _,
         } = self.shared;
         require(from_zero(filter_s), "loop.filter_s", NOT_NEGATIVE)?;
         require(from_zero(tolerance), "loop.tolerance", NOT_NEGATIVE)?;
+        require(from_zero(preview_s), "loop.preview_s", NOT_NEGATIVE)?;
         self.check_adaptation()
             .or_else(|error| refuse("adaptation", &error.to_string()))?;
         self.check_events()

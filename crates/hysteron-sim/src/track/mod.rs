@@ -99,7 +99,7 @@ pub fn track(scenario: &Scenario, progress: Progress<'_>) -> Result<Comparison> 
     let course = Course {
         reference: &reference,
         headings: &headings,
-        ahead: 0,
+        ahead: (scenario.shared.preview_s / scenario.interval_s).round() as usize,
         events: &events,
     };
     let windows = score::windows(scenario);

@@ -42,6 +42,9 @@ pub struct LoopOptions {
     /// The inverse does not follow reversals of the reference up to this size, in the output's
     /// unit, from 0. Default 0.
     pub tolerance: f64,
+    /// How long before it is due the controllers are told the reference, s, from 0. Default 0. An
+    /// inverse of a model with a thermal body uses it: it heats or cools in time.
+    pub preview_s: f64,
     /// Test and rule that the PID is tuned by. Default `relay`.
     pub tuning: Tuning,
 }
