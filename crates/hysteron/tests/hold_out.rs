@@ -32,13 +32,16 @@ fn measured(seed: u64, reversals: usize, noise: f64) -> (Model, Recording) {
 }
 
 /// Every way of holding out, for a recording of this length.
-fn ways(length: usize) -> [HoldOut; 5] {
+fn ways(length: usize) -> [HoldOut; 7] {
     [
         HoldOut::Branches(0.2),
         HoldOut::Branches(1.0 / 3.0),
-        HoldOut::Rows(length - 100..=length),
-        HoldOut::Rows(120..=260),
-        HoldOut::Rows(1..=50),
+        HoldOut::Rows(vec![length - 100..=length]),
+        HoldOut::Rows(vec![120..=260]),
+        HoldOut::Rows(vec![1..=50]),
+        // Row 51 is left alone between them.
+        HoldOut::Rows(vec![1..=50, 52..=90]),
+        HoldOut::Rows(vec![300..=340, 1..=50, 120..=180, 150..=200]),
     ]
 }
 
@@ -151,7 +154,7 @@ fn a_good_model_beats_the_rivals_and_a_line_beats_a_bad_one() {
         .collect();
     let line = Recording::new(input, output).unwrap();
     let fit = Fit::new().levels(30).smooth(0.0).bootstrap(0);
-    let (_, report) = fit_holding_out(&fit, &line, &HoldOut::Rows(61..=90)).unwrap();
+    let (_, report) = fit_holding_out(&fit, &line, &HoldOut::Rows(vec![61..=90])).unwrap();
     let better: Vec<&str> = report.better().map(|rival| rival.name).collect();
     assert!(better.contains(&"straight line"), "{report:?}");
 }
@@ -186,11 +189,14 @@ fn what_cannot_be_held_out_is_refused() {
         HoldOut::Branches(-0.2),
         HoldOut::Branches(0.5),
         HoldOut::Branches(f64::NAN),
-        HoldOut::Rows(0..=3),
-        HoldOut::Rows(1..=length),
-        HoldOut::Rows(length..=length + 1),
+        HoldOut::Rows(vec![0..=3]),
+        HoldOut::Rows(vec![1..=9, 0..=3]),
+        HoldOut::Rows(vec![1..=100, 101..=length]),
+        HoldOut::Rows(vec![]),
+        HoldOut::Rows(vec![1..=length]),
+        HoldOut::Rows(vec![length..=length + 1]),
         #[allow(clippy::reversed_empty_ranges)]
-        HoldOut::Rows(9..=3),
+        HoldOut::Rows(vec![9..=3]),
     ] {
         assert!(recording.split(&what).is_err(), "{what:?}");
     }
@@ -198,7 +204,7 @@ fn what_cannot_be_held_out_is_refused() {
     let refused = one_loop.split(&HoldOut::Branches(0.2)).unwrap_err();
     assert!(refused.to_string().contains("three or more"), "{refused}");
     let two = [recording.clone(), recording.clone()];
-    let rows = HoldOut::Rows(1..=10);
+    let rows = HoldOut::Rows(vec![1..=10]);
     assert!(fit_holding_out(&Fit::new(), &two, &rows).is_err());
     // A lag needs every sample before a row.
     let mut timed = recording;
@@ -206,5 +212,5 @@ fn what_cannot_be_held_out_is_refused() {
     let lag = Fit::new().levels(8).bootstrap(0).lag(2.0);
     let refused = fit_holding_out(&lag, &timed, &HoldOut::Branches(0.2)).unwrap_err();
     assert!(refused.to_string().contains("rows at the"), "{refused}");
-    assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(length - 50..=length)).is_ok());
+    assert!(fit_holding_out(&lag, &timed, &HoldOut::Rows(vec![length - 50..=length])).is_ok());
 }

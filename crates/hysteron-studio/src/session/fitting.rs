@@ -206,7 +206,7 @@ impl Session {
                 (Some(HoldOut::Recordings(others)), "files".into())
             }
             (Held::Usual, Some((first, last))) => {
-                let rows = HoldOut::Rows(*first..=*last);
+                let rows = HoldOut::Rows(vec![*first..=*last]);
                 (Some(rows), format!("rows:{first}-{last}"))
             }
             (Held::Usual, None) => {

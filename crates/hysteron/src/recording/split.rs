@@ -15,12 +15,14 @@ const SHORTEST: usize = 3;
 
 /// What takes no part in a fit, to test it.
 ///
-/// A text says it as on the command line: `branches:20%`, or `rows:100-200`.
+/// A text says it as on the command line: `branches:20%`, `rows:100-200`, or
+/// `rows:100-200,350-400`.
 ///
 /// ```
 /// use hysteron::HoldOut;
 /// assert_eq!("branches:20%".parse::<HoldOut>()?, HoldOut::Branches(0.2));
-/// assert_eq!("rows:100-200".parse::<HoldOut>()?, HoldOut::Rows(100..=200));
+/// assert_eq!("rows:100-200".parse::<HoldOut>()?, HoldOut::Rows(vec![100..=200]));
+/// assert_eq!("rows:1-9,20-30".parse::<HoldOut>()?, HoldOut::Rows(vec![1..=9, 20..=30]));
 /// assert!("rows:100".parse::<HoldOut>().is_err());
 /// # Ok::<(), hysteron::Error>(())
 /// ```
@@ -29,8 +31,8 @@ pub enum HoldOut {
     /// This share of the branches, above 0 and up to a third. They are spread over the recording,
     /// in turn rising and falling. The first branch is not among them.
     Branches(f64),
-    /// These rows, counted from 1.
-    Rows(RangeInclusive<usize>),
+    /// The rows of these spans, counted from 1.
+    Rows(Vec<RangeInclusive<usize>>),
     /// Other recordings, as a whole.
     Recordings(Vec<Recording>),
 }
@@ -51,12 +53,14 @@ impl FromStr for HoldOut {
                 Ok(Self::Branches(percent / 100.0))
             }
             Some(("rows", rows)) => {
-                let ends = rows.split_once('-');
-                let ends =
-                    ends.and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
-                let (first, last) = ends
+                let span = |text: &str| {
+                    let (first, last) = text.split_once('-')?;
+                    Some(first.trim().parse().ok()?..=last.trim().parse().ok()?)
+                };
+                let spans = rows.split(',').map(span).collect::<Option<_>>();
+                let spans = spans
                     .ok_or_else(|| needed("two row numbers are needed, such as `rows:100-200`"))?;
-                Ok(Self::Rows(first..=last))
+                Ok(Self::Rows(spans))
             }
             _ => Err(needed("`branches:20%` or `rows:100-200` is needed")),
         }
@@ -66,7 +70,7 @@ impl FromStr for HoldOut {
 /// A recording in two parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Split {
-    /// What is left to be fitted. There are two recordings if rows from the middle are held out.
+    /// What is left to be fitted: a recording for each part between rows that are held out.
     pub training: Vec<Recording>,
     /// For each sample of the whole recording, whether it is held out.
     pub held_out: Vec<bool>,
@@ -92,7 +96,7 @@ impl Recording {
     /// let split = recording.split(&HoldOut::Branches(0.3))?;
     /// // The last branch, from 0 up to 3. Its first sample is a turning point, and stays.
     /// assert_eq!(split.training[0].input, [0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.0]);
-    /// let split = recording.split(&HoldOut::Rows(8..=10))?;
+    /// let split = recording.split(&HoldOut::Rows(vec![8..=10]))?;
     /// assert_eq!(split.training[0].len(), 7);
     /// assert!(split.held_out[7..].iter().all(|held_out| *held_out));
     /// # Ok::<(), hysteron::Error>(())
@@ -167,32 +171,53 @@ impl Recording {
         })
     }
 
-    fn split_rows(&self, rows: &RangeInclusive<usize>) -> Result<Split> {
-        let (first, last) = (*rows.start(), *rows.end());
-        if first < 1 || last < first || last > self.len() || last - first + 1 == self.len() {
-            return Err(Error::Fit(format!(
-                "rows {first} to {last} cannot be held out: the recording has rows 1 to {}, and \
-                 some have to be left",
+    fn split_rows(&self, rows: &[RangeInclusive<usize>]) -> Result<Split> {
+        let refused = |span: &RangeInclusive<usize>| {
+            Error::Fit(format!(
+                "rows {} to {} cannot be held out: the recording has rows 1 to {}, and some have \
+                 to be left",
+                span.start(),
+                span.end(),
                 self.len()
-            )));
+            ))
+        };
+        if rows.is_empty() {
+            return Err(Error::Fit(
+                "no rows are named that are to be held out".into(),
+            ));
         }
-        let held_out: Vec<bool> = (1..=self.len()).map(|row| rows.contains(&row)).collect();
-        let before = self.only(|n| n + 1 < first);
-        let after = self.only(|n| n + 1 > last);
+        let mut held_out = vec![false; self.len()];
+        for span in rows {
+            let samples = (1 <= *span.start() && span.start() <= span.end())
+                .then(|| held_out.get_mut(span.start() - 1..*span.end()));
+            samples.flatten().ok_or_else(|| refused(span))?.fill(true);
+            if held_out.iter().all(|held| *held) {
+                return Err(refused(span));
+            }
+        }
+        let mut training = Vec::new();
+        let mut begins = Vec::new();
+        for same in spans(&held_out)
+            .into_iter()
+            .filter(|span| !held_out[span.start])
+        {
+            begins.push(same.start);
+            training.extend(self.only(|n| same.contains(&n)));
+        }
         Ok(Split {
-            begins_inside: after.is_some(),
-            is_head: after.is_none(),
-            training: before.into_iter().chain(after).collect(),
+            begins_inside: begins.iter().any(|begin| *begin > 0),
+            is_head: begins == [0],
+            training,
             held_out,
         })
     }
 }
 
-/// The samples of each branch.
-fn spans(branch: &[usize]) -> Vec<std::ops::Range<usize>> {
+/// Where equal values follow each other, such as the numbers of branches.
+fn spans<T: PartialEq>(values: &[T]) -> Vec<std::ops::Range<usize>> {
     let mut from = 0;
-    let by_branch = branch.chunk_by(|a, b| a == b);
-    by_branch
+    let alike = values.chunk_by(|a, b| a == b);
+    alike
         .map(|same| {
             let span = from..from + same.len();
             from = span.end;
