@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Candidates, Fit, FitOptions, Model, Operator, Plane, Progress, Recording, Sign, cross_validate,
-    left_out,
+    Candidates, Choice, Fit, FitOptions, Model, Operator, Plane, Progress, Recording, Sign,
+    Spacing, cross_validate, left_out,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -145,4 +145,23 @@ fn samples_are_left_out_with_their_branch() {
         )
         .is_err()
     );
+    // Stages are not left out in silence.
+    let plain = FitOptions::default;
+    for options in [
+        FitOptions {
+            spacing: Spacing::Auto,
+            ..plain()
+        },
+        FitOptions {
+            creep: Choice::Auto,
+            ..plain()
+        },
+        FitOptions {
+            lag: Choice::Fixed(0.1),
+            ..plain()
+        },
+    ] {
+        let noisy = std::slice::from_ref(&noisy);
+        assert!(left_out(noisy, &options, None, Progress::NONE).is_err());
+    }
 }

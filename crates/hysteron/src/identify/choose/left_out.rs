@@ -1,9 +1,9 @@
 //! Errors on branches that were left out of the whole fit, including the choice of levels and
 //! smoothness.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::identify::choose::validate::{Candidates, choose};
-use crate::identify::options::FitOptions;
+use crate::identify::options::{Choice, FitOptions, Spacing};
 use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
@@ -35,19 +35,32 @@ pub struct LeftOut {
 /// `options`. With `candidates`, levels and smoothness are chosen by cross-validation of the
 /// branches that are not left out.
 ///
+/// The fits are those of the operators alone, because the stages around them are found from whole
+/// recordings. A load changes the weights, whatever the load law.
+///
 /// # Errors
-/// As [`crate::Fit::run`]; [`crate::Error::Fit`] if there is only one branch.
+/// As [`crate::Fit::run`]; [`crate::Error::Fit`] if there is only one branch, and for options that
+/// ask for spacing, creep or a lag.
 pub fn left_out(
     recordings: &[Recording],
     options: &FitOptions,
     candidates: Option<&Candidates>,
     progress: Progress<'_>,
 ) -> Result<LeftOut> {
+    let no_stages = options.spacing == Spacing::Uniform
+        && options.creep == Choice::Fixed(0)
+        && options.lag == Choice::Fixed(0.0);
+    if !no_stages {
+        return Err(Error::Fit(
+            "branches are left out of fits of the operators alone: without spacing, creep and lag"
+                .into(),
+        ));
+    }
     let mut problem = Problem::new(recordings, options)?;
     let experiment = &problem.experiment;
     let count = experiment.branches().min(FOLDS);
     if count < 2 {
-        return Err(crate::error::Error::Fit(
+        return Err(Error::Fit(
             "there is only one branch: nothing can be left out".into(),
         ));
     }

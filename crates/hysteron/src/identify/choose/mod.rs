@@ -1,8 +1,9 @@
 //! Chooses levels and smoothness.
 //!
 //! `criterion` says how good a candidate is: by the error on branches left out, or by the
-//! evidence where there are few branches. `search` walks through the candidates. `start` finds the state before the first sample.
-//! `validate` puts them together. `rivals` are simple predictors on the same branches. `left_out` tests the whole fit, including these choices.
+//! evidence where there are few branches. `search` walks through the candidates. `start` finds the
+//! state before the first sample. `validate` puts them together. `rivals` are simple predictors on
+//! the same branches. `left_out` tests the whole fit, including these choices.
 
 mod criterion;
 pub(super) mod left_out;
