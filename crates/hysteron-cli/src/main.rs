@@ -15,6 +15,7 @@ mod prepare;
 mod progress;
 mod recording;
 mod remedy;
+mod shell;
 mod start;
 #[cfg(feature = "studio")]
 mod studio;
@@ -59,6 +60,8 @@ fn main() -> ExitCode {
         Command::Start(args) => start::run(&args),
         #[cfg(feature = "studio")]
         Command::Studio(args) => studio::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -8,6 +8,7 @@ mod adapt;
 mod export;
 mod fit;
 mod fleet;
+mod shell;
 mod studio;
 mod value;
 
@@ -15,6 +16,7 @@ pub(crate) use adapt::*;
 pub(crate) use export::*;
 pub(crate) use fit::*;
 pub(crate) use fleet::*;
+pub(crate) use shell::*;
 pub(crate) use studio::*;
 pub(crate) use value::*;
 
@@ -114,6 +116,16 @@ pub(crate) enum Command {
         \x20 hysteron studio run1.csv run2.csv\n\
         \x20 hysteron studio --no-open --port 8123 run1.csv")]
     Studio(Studio),
+    /// Print a script with which a shell completes commands and options
+    #[command(after_help = "Examples:\n\
+        \x20 hysteron completions bash > ~/.local/share/bash-completion/completions/hysteron\n\
+        \x20 hysteron completions zsh > ~/.zfunc/_hysteron\n\
+        \x20 hysteron completions fish > ~/.config/fish/completions/hysteron.fish")]
+    Completions(Completions),
+    /// Write manual pages, one for each command
+    #[command(after_help = "Example:\n\
+        \x20 hysteron man -o ~/.local/share/man/man1")]
+    Man(Man),
 }
 
 #[derive(Args)]
