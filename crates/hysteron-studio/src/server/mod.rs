@@ -11,7 +11,7 @@ use crate::{Fault, Session};
 use axum::Router;
 use axum::routing::{get, post};
 use guard::Guard;
-use std::io::Write;
+use hysteron::{AtomicFile, Own};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -55,17 +55,10 @@ impl Shared {
     /// Writes the session to a file, which is whole at every moment.
     fn save(&self, path: &Path) {
         let session = self.session().to_json();
-        let folder = path.parent().filter(|folder| *folder != Path::new(""));
-        let write = || {
-            let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))?;
-            file.write_all(session.as_bytes())?;
-            file.as_file().sync_all()?;
-            file.persist(path).map_err(|error| error.error)
-        };
-        if let Err(source) = write() {
-            let path = path.to_owned();
-            let fault = Fault::from(hysteron::Error::File { path, source });
-            *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(fault);
+        let file = AtomicFile::create(path, Own::SAME_BYTES);
+        if let Err(error) = file.and_then(|file| file.commit_with(session.as_bytes())) {
+            let mut failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner);
+            *failed = Some(Fault::from(error));
         }
     }
 
