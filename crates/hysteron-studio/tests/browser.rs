@@ -8,30 +8,8 @@ mod common;
 #[path = "../../hysteron/tests/common/mod.rs"]
 mod recordings;
 
-use chromium::{Chromium, Tab};
+use chromium::{browser, keep};
 use common::Studio;
-use std::path::PathBuf;
-
-/// The browser, or a line that says why the test is skipped.
-fn browser() -> Option<Chromium> {
-    let found = Chromium::start();
-    if found.is_none() {
-        assert!(
-            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
-            "there is no chromium"
-        );
-        recordings::skip::skipped("there is no chromium");
-    }
-    found
-}
-
-/// Pictures of the page for people, in the folder that `HYSTERON_PICTURES` names.
-fn keep(browser: &mut Chromium, tab: &Tab, name: &str) {
-    if let Some(folder) = std::env::var_os("HYSTERON_PICTURES") {
-        let picture = browser.picture(tab);
-        std::fs::write(PathBuf::from(folder).join(format!("{name}.png")), picture).unwrap();
-    }
-}
 
 fn whole_way(name: &str, text: &str, pictures: &str) {
     let Some(mut browser) = browser() else { return };

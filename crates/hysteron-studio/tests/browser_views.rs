@@ -10,30 +10,8 @@ mod common;
 #[allow(dead_code)]
 mod recordings;
 
-use chromium::{Chromium, Tab};
+use chromium::{Chromium, Tab, browser, keep};
 use common::Studio;
-use std::path::PathBuf;
-
-/// The browser, or a line that says why the test is skipped.
-fn browser() -> Option<Chromium> {
-    let found = Chromium::start();
-    if found.is_none() {
-        assert!(
-            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
-            "there is no chromium"
-        );
-        recordings::skip::skipped("there is no chromium");
-    }
-    found
-}
-
-/// Pictures of the page for people, in the folder that `HYSTERON_PICTURES` names.
-fn keep(browser: &mut Chromium, tab: &Tab, name: &str) {
-    if let Some(folder) = std::env::var_os("HYSTERON_PICTURES") {
-        let picture = browser.picture(tab);
-        std::fs::write(PathBuf::from(folder).join(format!("{name}.png")), picture).unwrap();
-    }
-}
 
 /// Loops of a play that shrink, with a spike.
 fn table() -> String {

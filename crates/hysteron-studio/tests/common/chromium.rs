@@ -1,9 +1,11 @@
 //! A headless Chromium, driven through its protocol.
 #![allow(dead_code, clippy::unwrap_used, clippy::panic)]
 
+use crate::recordings::skip::skipped;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tungstenite::stream::MaybeTlsStream;
@@ -23,6 +25,27 @@ pub struct Chromium {
 pub struct Tab(String);
 
 const PATIENCE: Duration = Duration::from_secs(180);
+
+/// The browser, or a line that says why the test is skipped.
+pub fn browser() -> Option<Chromium> {
+    let found = Chromium::start();
+    if found.is_none() {
+        assert!(
+            std::env::var_os("HYSTERON_NO_SKIP").is_none(),
+            "there is no chromium"
+        );
+        skipped("there is no chromium");
+    }
+    found
+}
+
+/// Pictures of the page for people, in the folder that `HYSTERON_PICTURES` names.
+pub fn keep(browser: &mut Chromium, tab: &Tab, name: &str) {
+    if let Some(folder) = std::env::var_os("HYSTERON_PICTURES") {
+        let picture = browser.picture(tab);
+        std::fs::write(PathBuf::from(folder).join(format!("{name}.png")), picture).unwrap();
+    }
+}
 
 impl Chromium {
     /// `None` where there is none.
