@@ -78,7 +78,7 @@ use pyo3::types::{PyDict, PyString};
 /// hold_out : str, Recording or list of Recording, optional
 ///     What takes no part in the fit, and tests it beside a straight line and interpolation:
 ///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
-///     (counted from 1), or other recordings. `FitSummary.hold_out` has the errors there.
+///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. `FitSummary.hold_out` has the errors there.
 /// thermal : {None, 'first-order', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
 ///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a
@@ -146,10 +146,7 @@ pub(crate) fn fit(
         "load",
         "progress",
     ];
-    let mut fit = fit_with("fit", &names, bootstrap, options)?;
-    if let Some(prior) = prior {
-        fit = fit.prior(prior.inner.clone());
-    }
+    let mut fit = fit_with("fit", &names, (bootstrap, prior), options)?;
     let thermal = thermal.map_or(Ok(false), thermal_of)?;
     let recordings = recordings_of(recording, output, time, load)?;
     let repeats = repeats.map(|repeats| recordings_alone("repeats", repeats));
@@ -245,7 +242,7 @@ pub(crate) fn left_out<'py>(
 pub(crate) fn fit_with(
     call: &str,
     names: &[&str],
-    bootstrap: Option<Integer>,
+    (bootstrap, prior): (Option<Integer>, Option<PyRef<'_, WeightPrior>>),
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Fit<'static>> {
     let defaults = FitOptions {
@@ -264,6 +261,9 @@ pub(crate) fn fit_with(
     }
     if auto.start {
         fit = fit.start(Auto);
+    }
+    if let Some(prior) = prior {
+        fit = fit.prior(prior.inner.clone());
     }
     Ok(match bootstrap {
         None => fit.bootstrap(Auto),

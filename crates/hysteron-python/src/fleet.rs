@@ -106,11 +106,8 @@ pub(crate) fn fit_fleet<'py>(
         "force",
         "progress",
     ];
-    let mut fit = fit_with("fit_fleet", &names, bootstrap, options)?;
-    fit = fit.thermal(thermal.map_or(Ok(false), thermal_of)?);
-    if let Some(prior) = prior {
-        fit = fit.prior(prior.inner.clone());
-    }
+    let fit = fit_with("fit_fleet", &names, (bootstrap, prior), options)?
+        .thermal(thermal.map_or(Ok(false), thermal_of)?);
     let columns = Columns {
         time,
         load,

@@ -4,7 +4,7 @@
 use super::sums::Centred;
 use super::window::{Samples, Window};
 use crate::error::{Error, Result};
-use crate::identify::{SparseForm, nnls, pivoting};
+use crate::identify::{SparseForm, pivoting};
 use crate::model::{Model, OperatorState};
 use crate::progress::Progress;
 use hysteron_core::{Adaptation, Gate, Learning, Operator, Outcome, Verdict};
@@ -262,11 +262,7 @@ fn solve(centred: &Centred, (prior, start): (&[f64], &[f64]), ridge: f64) -> Opt
         matrix[n * (count + 1)] += strength;
         right[n] += strength * prior[n];
     }
-    let (mut x, exact) = pivoting::minimum(&matrix, &right, start);
-    if !exact {
-        nnls::solve(&matrix, &right, &mut x, Progress::NONE).ok()?;
-    }
-    Some(x)
+    pivoting::nonnegative(&matrix, &right, start, Progress::NONE).ok()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::row::FleetRow;
 use crate::error::{Error, Result};
+use crate::series::noise::median;
 
 /// Names of the numbers that are compared.
 const NAMES: [&str; COUNT] = ["stroke", "width", "slope", "position", "error"];
@@ -229,14 +230,6 @@ fn scale(mut values: Vec<f64>) -> (f64, f64) {
     match squares.sqrt() {
         deviation if deviation > rounding => (middle, deviation),
         _ => (middle, 0.0),
-    }
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values {
-        [] => 0.0,
-        values => 0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2]),
     }
 }
 

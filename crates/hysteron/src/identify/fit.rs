@@ -18,14 +18,14 @@ use std::sync::Arc;
 /// Identifies a model from recordings. Set the options that differ from the defaults, then call
 /// [`run`](Fit::run).
 ///
-/// [`Fit::new`] leaves everything to the data: levels, smoothness, spacing, start, outliers. It runs
-/// a bootstrap with [`FitOptions::usual_bootstrap`] replicates, so the model has standard errors and
-/// a band. A fit made from [`FitOptions`] leaves nothing to the data.
+/// [`Fit::new`] leaves everything to the data: levels, smoothness, spacing, start, outliers. It
+/// runs a bootstrap with [`FitOptions::usual_bootstrap`] replicates, so the model has standard
+/// errors and a band. A fit made from [`FitOptions`] leaves nothing to the data.
 ///
-/// The `n × N` matrix of operator states is never formed. For inputs with few turning points at once
-/// the Gram matrix takes `O(n + N²)` time, and from 300 unknowns on it is kept sparse. The solver then
-/// takes about `p` steps of `O(N p + p²)` each, where `p` is the number of weights that are not zero;
-/// with smoothness and a sparse matrix, about ten sparse factors.
+/// The `n × N` matrix of operator states is never formed. For inputs with few turning points at
+/// once the Gram matrix takes `O(n + N²)` time, and from 300 unknowns on it is kept sparse. The
+/// solver then takes about `p` steps of `O(N p + p²)` each, where `p` is the number of weights that
+/// are not zero; with smoothness and a sparse matrix, about ten sparse factors.
 ///
 /// ```
 /// use hysteron::{Fit, Recording};
@@ -109,8 +109,8 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of levels, 2 or more. [`Auto`](crate::Auto) chooses it by cross-validation: the error on branches
-    /// that were left out.
+    /// Number of levels, 2 or more. [`Auto`](crate::Auto) chooses it by cross-validation: the error
+    /// on branches that were left out.
     #[must_use]
     pub fn levels(mut self, levels: impl Into<Choice<usize>>) -> Self {
         match levels.into() {
@@ -202,8 +202,8 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load. [`Auto`](crate::Auto)
-    /// chooses it by loads that are left out.
+    /// Order of the weights as a function of the load, 0 to 5, for recordings with a load.
+    /// [`Auto`](crate::Auto) chooses it by loads that are left out.
     #[must_use]
     pub fn load_degree(mut self, degree: impl Into<Choice<usize>>) -> Self {
         self.options.load_degree = match degree.into() {
@@ -220,16 +220,16 @@ impl<'a> Fit<'a> {
         self
     }
 
-    /// Number of creep terms, 0 to 4. [`Auto`](crate::Auto) takes creep only if it predicts parts of the
-    /// recording that were left out. The recordings need time.
+    /// Number of creep terms, 0 to 4. [`Auto`](crate::Auto) takes creep only if it predicts parts
+    /// of the recording that were left out. The recordings need time.
     #[must_use]
     pub fn creep(mut self, terms: impl Into<Choice<usize>>) -> Self {
         self.options.creep = terms.into();
         self
     }
 
-    /// Time constant of a lag of the whole, in seconds. [`Auto`](crate::Auto) takes one only if it predicts parts
-    /// of the recording that were left out. The recordings need time.
+    /// Time constant of a lag of the whole, in seconds. [`Auto`](crate::Auto) takes one only if it
+    /// predicts parts of the recording that were left out. The recordings need time.
     #[must_use]
     pub fn lag(mut self, seconds: impl Into<Choice<f64>>) -> Self {
         self.options.lag = seconds.into();

@@ -32,7 +32,6 @@ pub use options::{Auto, Choice, FitOptions, LoadLaw, Spacing};
 pub use prior::WeightPrior;
 pub use weights::experiment::plane_of;
 pub(crate) use weights::fit::fit_weights;
-pub(crate) use weights::nnls;
 pub(crate) use weights::pivoting;
 pub(crate) use weights::rows::Term;
 pub(crate) use weights::sparse::{BranchSums, Initial, SparseForm, Square};

@@ -3,11 +3,13 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
+use crate::identify::pivoting;
 use crate::identify::stages::with_found_start;
+use crate::identify::weights::corner_system::eliminate;
 use crate::identify::weights::fit::described;
+use crate::identify::weights::gram::dot;
 use crate::identify::weights::problem::{Fitted, Problem};
-use crate::identify::weights::solve::{Solution, not_definite};
-use crate::identify::{nnls, pivoting};
+use crate::identify::weights::solve::{Solution, dense_factor, not_definite};
 use crate::model::{Model, Smooth, Solver, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -202,67 +204,45 @@ impl WeightPrior {
         let target = problem.target(self.model.sign());
         let samples = target.len();
         let mut grams = regressor.grams(experiment, 1, |_| Some(0), progress)?;
-        let gram = grams.pop().unwrap_or_default();
-        let mixed = regressor.adjoint(experiment, &vec![1.0; samples])?;
-        let (count, size) = (mixed.len(), mixed.len() + 1);
-        // `σ²` times the objective, with the offset before the columns. Several columns may belong
-        // to one weight, which is their sum.
-        let of_column = regressor.columns().iter().map(|column| column.operator + 1);
-        let place: Vec<usize> = std::iter::once(0).chain(of_column).collect();
-        let precision =
-            |i: usize, j: usize| self.noise * self.precision[place[i] * self.mean.len() + place[j]];
-        let all = (0..size * size).map(|n| precision(n / size, n % size));
-        let mut matrix: Vec<f64> = all.collect();
-        let pull = |row: &[f64]| self.noise * dot(row, &self.mean);
-        let pulls: Vec<f64> = self
-            .precision
-            .chunks_exact(self.mean.len())
-            .map(pull)
-            .collect();
-        let mut right: Vec<f64> = place.iter().map(|n| pulls[*n]).collect();
-        matrix[0] += samples as f64;
-        right[0] += target.iter().sum::<f64>();
-        for (n, b) in regressor.adjoint(experiment, &target)?.iter().enumerate() {
-            right[n + 1] += b;
-            matrix[n + 1] += mixed[n];
-            let row = &mut matrix[(n + 1) * size..(n + 2) * size];
-            row[0] += mixed[n];
-            let own = &gram[n * count..(n + 1) * count];
-            row[1..].iter_mut().zip(own).for_each(|(m, g)| *m += g);
+        let mut matrix = grams.pop().unwrap_or_default();
+        // `σ²` times the objective. Several columns may belong to one weight, which is their sum.
+        let size = self.mean.len();
+        let precision = |i: usize, j: usize| self.noise * self.precision[i * size + j];
+        let pull =
+            |i: usize| self.noise * dot(&self.precision[i * size..(i + 1) * size], &self.mean);
+        let place = regressor.columns().iter().map(|column| column.operator + 1);
+        let place: Vec<usize> = place.collect();
+        let count = place.len();
+        for (i, row) in matrix.chunks_exact_mut(count).enumerate() {
+            let own = place.iter().map(|j| precision(place[i], *j));
+            row.iter_mut().zip(own).for_each(|(m, p)| *m += p);
         }
         // The data may not tell the columns of one weight apart.
-        let mean = (1..size).map(|n| matrix[n * (size + 1)]).sum::<f64>() / count as f64;
-        (1..size).for_each(|n| matrix[n * (size + 1)] += TINY * mean);
+        let diagonal = (0..count).map(|n| matrix[n * (count + 1)]);
+        let tiny = TINY * diagonal.sum::<f64>() / count as f64;
+        (0..count).for_each(|n| matrix[n * (count + 1)] += tiny);
         // The offset may have any sign, so it is eliminated.
-        let first = &matrix[..size];
-        let less = |n: usize| first[n + 1] / first[0];
-        let rest: Vec<f64> = (0..count * count)
-            .map(|at| {
-                let (i, j) = (at / count, at % count);
-                matrix[(i + 1) * size + j + 1] - less(i) * first[j + 1]
-            })
-            .collect();
-        let b: Vec<f64> = (0..count)
-            .map(|n| right[n + 1] - less(n) * right[0])
-            .collect();
+        let mut mixed = regressor.adjoint(experiment, &vec![1.0; samples])?;
+        let own = mixed.iter_mut().zip(&place);
+        own.for_each(|(m, n)| *m += precision(*n, 0));
+        let inverse = 1.0 / (samples as f64 + precision(0, 0));
+        let middle = inverse * (target.iter().sum::<f64>() + pull(0));
+        eliminate(&mut matrix, std::slice::from_ref(&mixed), &[vec![inverse]]);
+        let mut right = regressor.adjoint(experiment, &target)?;
+        for ((b, m), n) in right.iter_mut().zip(&mixed).zip(&place) {
+            *b += pull(*n) - middle * m;
+        }
         let x = match problem.options.solver {
             Solver::Nnls => {
-                let start = place[1..].iter().map(|n| self.mean[*n].max(0.0));
-                let start: Vec<f64> = start.collect();
-                let (mut x, exact) = pivoting::minimum(&rest, &b, &start);
-                if !exact {
-                    nnls::solve(&rest, &b, &mut x, progress)?;
-                }
-                x
+                let start: Vec<f64> = place.iter().map(|n| self.mean[*n].max(0.0)).collect();
+                pivoting::nonnegative(&matrix, &right, &start, progress)?
             }
             Solver::Ols => {
-                let rest = Mat::from_fn(count, count, |i, j| rest[i * count + j]);
-                let factor = rest.llt(Side::Lower).map_err(|_| not_definite())?;
-                let x = factor.solve(&Mat::from_fn(count, 1, |n, _| b[n]));
+                let x = dense_factor(&matrix)?.solve(&Mat::from_fn(count, 1, |n, _| right[n]));
                 (0..count).map(|n| x[(n, 0)]).collect()
             }
         };
-        let offset = (right[0] - dot(&first[1..], &x)) / first[0];
+        let offset = middle - inverse * dot(&mixed, &x);
         let modelled = regressor.forward(experiment, &x)?;
         let residual = target.iter().zip(&modelled).map(|(y, h)| y - h - offset);
         let residual: Vec<f64> = residual.collect();
@@ -338,8 +318,4 @@ fn moments(rows: &[Vec<f64>]) -> (Vec<f64>, Mat<f64>) {
         }
     }
     (mean, covariance)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::gram::dot;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
 use crate::identify::weights::sums::{Coefficients, Sums, centred};
@@ -177,10 +178,6 @@ impl LeftOutErrors {
         let errors = errors.filter(|(n, _)| counts(n)).collect();
         (errors, self.units - if all { 0 } else { first.len() })
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Root mean squared deviations of the replicates from the fit, and their principal components.

@@ -1,6 +1,7 @@
 //! The normal equations with a prior, from a sparse Gram matrix over Everett corners.
 
 use crate::identify::weights::corner_gram::CornerGram;
+use crate::identify::weights::gram::dot;
 use crate::identify::weights::grid_factor::Factor;
 use crate::identify::weights::nnls::Quadratic;
 use crate::identify::weights::smoothness::Smoothness;
@@ -327,7 +328,7 @@ impl<'a> Restricted<'a> {
 }
 
 /// Subtracts `Aᵀ Z (Zᵀ Z)⁻¹ Zᵀ A` from the Gram matrix, with `mixed` the `Aᵀ z`.
-pub(super) fn eliminate(gram: &mut [f64], mixed: &[Vec<f64>], inverse: &[Vec<f64>]) {
+pub(crate) fn eliminate(gram: &mut [f64], mixed: &[Vec<f64>], inverse: &[Vec<f64>]) {
     for (a, left) in mixed.iter().enumerate() {
         for (b, right) in mixed.iter().enumerate() {
             let factor = inverse[a][b];
@@ -341,10 +342,6 @@ pub(super) fn eliminate(gram: &mut [f64], mixed: &[Vec<f64>], inverse: &[Vec<f64
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::gram::dot;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::Mixed;
 use faer::linalg::solvers::Solve;
@@ -100,8 +101,4 @@ impl FreeColumns {
     pub(crate) fn values(&self, products: &[f64]) -> Vec<f64> {
         self.inverse.iter().map(|row| dot(row, products)).collect()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -3,6 +3,9 @@
 //! the factor is computed anew. If most variables end above zero, as with smooth weights, about ten
 //! factors are enough. An active set method would add the variables one by one.
 
+use crate::error::Result;
+use crate::identify::weights::nnls;
+use crate::progress::Progress;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -12,6 +15,21 @@ const PATIENCE: usize = 5;
 
 /// Largest number of factors.
 const MOST: usize = 50;
+
+/// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, searched from `x`: by block exchanges, and by the
+/// active set method where they stop early.
+pub(crate) fn nonnegative(
+    a: &[f64],
+    b: &[f64],
+    x: &[f64],
+    progress: Progress<'_>,
+) -> Result<Vec<f64>> {
+    let (mut x, exact) = minimum(a, b, x);
+    if !exact {
+        nnls::solve(a, b, &mut x, progress)?;
+    }
+    Ok(x)
+}
 
 /// The minimum of `½ xᵀ A x − bᵀ x` over `x ≥ 0`, starting with the variables that are above zero
 /// in `x`. Returns true with the minimum. Returns false with a point near it if rounding or cycling

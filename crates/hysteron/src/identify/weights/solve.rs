@@ -430,7 +430,7 @@ fn half_log_determinant(matrix: &[f64]) -> Result<f64> {
     Ok((0..lower.nrows()).map(|n| lower[(n, n)].ln()).sum())
 }
 
-fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
+pub(crate) fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
     let count = matrix.len().isqrt();
     let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
     matrix.llt(Side::Lower).map_err(|_| not_definite())

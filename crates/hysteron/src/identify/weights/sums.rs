@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::identify::options::Prior;
-use crate::identify::weights::gram::Gram;
+use crate::identify::weights::gram::{Gram, dot};
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::{Mixed, Penalised, not_definite};
 use crate::model::{Sign, Solver};
@@ -300,8 +300,4 @@ pub(crate) fn centred(problem: &Problem, sign: Sign) -> Vec<f64> {
         target.iter_mut().for_each(|y| *y -= mean);
     }
     target
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
