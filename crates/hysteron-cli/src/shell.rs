@@ -25,7 +25,8 @@ pub(crate) fn man(args: &args::Man) -> Result<()> {
     let mut written = AtomicFolder::create(args.force.target(&args.out, &[]), None)?;
     let mut count = 0;
     for command in with_subcommands(&command) {
-        let page = Man::new(command.clone());
+        let source = concat!("hysteron ", env!("CARGO_PKG_VERSION"));
+        let page = Man::new(command.clone()).source(source);
         let name = page.get_filename();
         written.file(&name, |path| {
             let mut text = Vec::new();
