@@ -397,21 +397,12 @@ impl Inverse<'_> {
         tolerance: f64,
         surroundings: Surroundings<'_>,
     ) -> Result<Vec<Solution<f64>>> {
+        self.check_targets(targets.iter().copied())?;
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
         let samples = surroundings.samples(self.model, targets)?.zip(headings);
-        let wanted = samples.map(|((_, sample), heading)| {
-            let target = Target {
-                output: sample.input,
-                heading,
-                tolerance,
-            };
-            Wanted {
-                dt: sample.dt,
-                load: sample.load,
-                ..target.into()
-            }
-        });
-        self.through(state, &wanted.collect::<Vec<_>>())
+        samples
+            .map(|((_, sample), heading)| self.step(state, Wanted::of(sample, heading, tolerance)))
+            .collect()
     }
 
     /// As [`Inverse::series`], with all that is wanted of each sample.
@@ -424,10 +415,15 @@ impl Inverse<'_> {
         wanted: &[impl Into<Wanted> + Copy],
     ) -> Result<Vec<Solution<f64>>> {
         let wanted = || wanted.iter().map(|&wanted| wanted.into());
-        let finite = |wanted: &Wanted| (wanted.target.output - self.model.offset()).is_finite();
-        if let Some(index) = wanted().position(|wanted| !finite(&wanted)) {
-            return Err(hysteron_core::Error::InputNotFinite { index }.into());
-        }
+        self.check_targets(wanted().map(|wanted: Wanted| wanted.target.output))?;
         wanted().map(|wanted| self.step(state, wanted)).collect()
+    }
+
+    fn check_targets(&self, mut targets: impl Iterator<Item = f64>) -> Result<()> {
+        let offset = self.model.offset();
+        match targets.position(|target| !(target - offset).is_finite()) {
+            Some(index) => Err(hysteron_core::Error::InputNotFinite { index }.into()),
+            None => Ok(()),
+        }
     }
 }

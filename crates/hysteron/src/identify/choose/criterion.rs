@@ -14,7 +14,7 @@ const SMALLEST_RIDGE: f64 = 1e-9;
 
 /// The samples of one number of levels, as sums over the folds.
 pub(super) struct Level<'a> {
-    problem: Problem,
+    problem: Problem<'a>,
     folds: Vec<Fold>,
     whole: Reduced,
     progress: Progress<'a>,
@@ -34,7 +34,7 @@ pub(super) type Starts = Vec<Vec<f64>>;
 impl<'a> Level<'a> {
     /// `folds` has the fold of each sample, `None` for samples that do not count.
     pub(super) fn new(
-        problem: Problem,
+        problem: Problem<'a>,
         sign: Sign,
         folds: &[Option<usize>],
         progress: Progress<'a>,

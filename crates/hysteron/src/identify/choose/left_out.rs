@@ -64,8 +64,12 @@ pub fn left_out(
             "there is only one branch: nothing can be left out".into(),
         ));
     }
-    let fold: Vec<usize> = experiment.branch.iter().map(|b| b % count).collect();
-    let measured = experiment.output.clone();
+    let fold: Vec<usize> = experiment
+        .branch
+        .iter()
+        .map(|b| *b as usize % count)
+        .collect();
+    let measured = experiment.output.to_vec();
     let mut predicted = vec![0.0; measured.len()];
     let (mut training, mut chosen) = (0.0, Vec::new());
     for f in 0..count {

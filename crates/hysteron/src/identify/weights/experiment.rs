@@ -3,6 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
+use crate::identify::weights::of_load::OfLoad;
 use crate::identify::weights::regressor::MOST_RECORDINGS;
 use crate::model::Plane;
 use crate::model::bernstein;
@@ -10,26 +11,28 @@ use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::range;
 use crate::series::{branches, usual_tolerance};
+use std::borrow::Cow;
 use std::ops::Range;
 
-pub(crate) struct Experiment {
-    pub(crate) input: Vec<f64>,
-    pub(crate) output: Vec<f64>,
+pub(crate) struct Experiment<'a> {
+    /// Those of a single recording are borrowed from it.
+    pub(crate) input: Cow<'a, [f64]>,
+    pub(crate) output: Cow<'a, [f64]>,
     /// The range of samples of each recording.
     pub(crate) recordings: Vec<Range<usize>>,
     /// For each sample, the number of its branch, counted through all recordings.
-    pub(crate) branch: Vec<usize>,
+    pub(crate) branch: Vec<u32>,
     /// Smallest and largest load, if there is a load.
     pub(crate) load_range: Option<(f64, f64)>,
     /// Functions of the load at each sample; a single constant 1 without a load.
-    pub(crate) parts: Vec<Vec<f64>>,
+    pub(crate) parts: Vec<OfLoad>,
     /// The same for the offset, whose order is at least 1. Where gain and offset over the load are
     /// known, that offset is taken off the outputs, and a constant is left.
-    pub(crate) offsets: Vec<Vec<f64>>,
+    pub(crate) offsets: Vec<OfLoad>,
 }
 
-impl Experiment {
-    pub(crate) fn new(recordings: &[Recording], options: &FitOptions) -> Result<Self> {
+impl<'a> Experiment<'a> {
+    pub(crate) fn new(recordings: &'a [Recording], options: &FitOptions) -> Result<Self> {
         let Some(first) = recordings.first() else {
             return Err(Error::Fit("there is no recording to fit".into()));
         };
@@ -40,8 +43,8 @@ impl Experiment {
             )));
         }
         let mut experiment = Self {
-            input: Vec::new(),
-            output: Vec::new(),
+            input: joined(recordings, |recording| &recording.input),
+            output: joined(recordings, |recording| &recording.output),
             recordings: Vec::new(),
             branch: Vec::new(),
             load_range: None,
@@ -49,12 +52,12 @@ impl Experiment {
             offsets: Vec::new(),
         };
         let mut load = first.load.as_ref().map(|_| Vec::new());
+        let mut start = 0;
         for recording in recordings {
             recording.check()?;
-            let start = experiment.input.len();
-            experiment.input.extend_from_slice(&recording.input);
-            experiment.output.extend_from_slice(&recording.output);
-            experiment.recordings.push(start..experiment.input.len());
+            let end = start + recording.len();
+            experiment.recordings.push(start..end);
+            start = end;
             match (&mut load, &recording.load) {
                 (Some(all), Some(load)) => all.extend_from_slice(load),
                 (None, None) => {}
@@ -68,7 +71,7 @@ impl Experiment {
         experiment.find_branches();
         match load {
             None => {
-                experiment.parts = vec![vec![1.0; experiment.input.len()]];
+                experiment.parts = vec![OfLoad::One(experiment.input.len())];
                 experiment.offsets = experiment.parts.clone();
             }
             Some(load) => {
@@ -93,9 +96,10 @@ impl Experiment {
                 if let Some(curves) = &options.load_curves {
                     let at = load.iter().map(|load| curves.at(*load));
                     let at = at.collect::<Result<Vec<_>>>()?;
-                    experiment.parts = vec![at.iter().map(|at| at.gain).collect()];
-                    experiment.offsets = vec![vec![1.0; load.len()]];
-                    let outputs = experiment.output.iter_mut().zip(&at);
+                    let gains = at.iter().map(|at| at.gain).collect();
+                    experiment.parts = vec![OfLoad::Each(gains)];
+                    experiment.offsets = vec![OfLoad::One(load.len())];
+                    let outputs = experiment.output.to_mut().iter_mut().zip(&at);
                     outputs.for_each(|(y, at)| *y -= at.offset);
                     return Ok(experiment);
                 }
@@ -114,12 +118,14 @@ impl Experiment {
         for range in &self.recordings {
             let before = self.branches();
             let own = branches(&self.input[range.clone()], band);
-            self.branch.extend(own.iter().map(|branch| before + branch));
+            // No more branches than samples, and of these no memory holds 2³².
+            self.branch
+                .extend(own.iter().map(|branch| (before + branch) as u32));
         }
     }
 
     pub(crate) fn branches(&self) -> usize {
-        self.branch.last().map_or(0, |last| last + 1)
+        self.branch.last().map_or(0, |last| *last as usize + 1)
     }
 
     /// Groups the samples that are kept into units, which are left out or drawn as a whole. A unit
@@ -187,14 +193,22 @@ impl Experiment {
 }
 
 /// The Bernstein polynomials of a degree at each of the shares of the load range.
-fn functions(shares: impl Iterator<Item = f64>, degree: usize) -> Vec<Vec<f64>> {
+fn functions(shares: impl Iterator<Item = f64>, degree: usize) -> Vec<OfLoad> {
     let mut functions = vec![Vec::new(); degree + 1];
     for share in shares {
         for (function, value) in functions.iter_mut().zip(bernstein(degree, share)) {
             function.push(value);
         }
     }
-    functions
+    functions.into_iter().map(OfLoad::Each).collect()
+}
+
+/// A series of all recordings, one after the other.
+fn joined(recordings: &[Recording], series: impl Fn(&Recording) -> &Vec<f64>) -> Cow<'_, [f64]> {
+    match recordings {
+        [one] => Cow::Borrowed(series(one)),
+        all => Cow::Owned(all.iter().flat_map(series).copied().collect()),
+    }
 }
 
 /// Number of loads that differ by more than a thousandth of their range.

@@ -36,7 +36,7 @@ pub(crate) fn fit_weights_without(
         for outlier in outliers {
             let place = problem.experiment.recordings[outlier.recording].start + outlier.sample;
             let residual = fitted.solution.residual[place];
-            problem.experiment.output[place] -= fitted.sign.factor() * residual;
+            problem.experiment.output.to_mut()[place] -= fitted.sign.factor() * residual;
         }
         fitted = problem.solve(None, progress)?;
     }

@@ -5,6 +5,7 @@
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::dot;
+use crate::identify::weights::of_load::OfLoad;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::Mixed;
 use faer::linalg::solvers::Solve;
@@ -12,7 +13,7 @@ use faer::{Mat, Side};
 
 /// `Z`, the free columns at the samples kept, and `(Zᵀ Z)⁻¹`.
 pub(crate) struct FreeColumns {
-    columns: Vec<Vec<f64>>,
+    columns: Vec<OfLoad>,
     inverse: Vec<Vec<f64>>,
 }
 
@@ -26,16 +27,13 @@ impl FreeColumns {
     }
 
     /// `parts` are the functions of the load. `kept` is 1 for samples that count and 0 for others.
-    pub(crate) fn new(parts: &[Vec<f64>], kept: Option<&[f64]>) -> Result<Self> {
-        let columns: Vec<Vec<f64>> = parts
-            .iter()
-            .map(|part| match kept {
-                Some(kept) => part.iter().zip(kept).map(|(z, kept)| z * kept).collect(),
-                None => part.clone(),
-            })
-            .collect();
+    pub(crate) fn new(parts: &[OfLoad], kept: Option<&[f64]>) -> Result<Self> {
+        let columns: Vec<OfLoad> = parts.iter().map(|part| part.at_kept(kept)).collect();
         let count = columns.len();
-        let product = |a: usize, b: usize| dot(&columns[a], &columns[b]);
+        let product = |a: usize, b: usize| -> f64 {
+            let pairs = columns[a].iter().zip(columns[b].iter());
+            pairs.map(|(a, b)| a * b).sum()
+        };
         let mut gram = Mat::from_fn(count, count, product);
         // With few different loads the functions may be linearly dependent. A small ridge makes the
         // matrix definite.
@@ -56,7 +54,7 @@ impl FreeColumns {
     pub(crate) fn take_off(&self, residual: &mut [f64]) -> Vec<f64> {
         let values = self.values(&self.products(residual));
         for (z, value) in self.columns.iter().zip(&values) {
-            for (r, z) in residual.iter_mut().zip(z) {
+            for (r, z) in residual.iter_mut().zip(z.iter()) {
                 *r -= value * z;
             }
         }
@@ -66,7 +64,7 @@ impl FreeColumns {
     /// `Aᵀ z` for each free column `z`, and the inverse.
     pub(crate) fn mixed(&self, regressor: &Regressor, experiment: &Experiment) -> Result<Mixed> {
         let columns = self.columns.iter();
-        let columns = columns.map(|z| regressor.adjoint(experiment, z));
+        let columns = columns.map(|z| regressor.adjoint(experiment, &z.values()));
         Ok(Mixed {
             columns: columns.collect::<Result<_>>()?,
             inverse: self.inverse.clone(),
@@ -75,7 +73,8 @@ impl FreeColumns {
 
     /// `Zᵀ r`.
     pub(crate) fn products(&self, residual: &[f64]) -> Vec<f64> {
-        self.columns.iter().map(|z| dot(z, residual)).collect()
+        let product = |z: &OfLoad| z.iter().zip(residual).map(|(z, r)| z * r).sum();
+        self.columns.iter().map(product).collect()
     }
 
     /// `Zᵀ r` over the samples of each of `units` units.
@@ -85,7 +84,7 @@ impl FreeColumns {
         unit: &[Option<usize>],
         units: usize,
     ) -> Vec<Vec<f64>> {
-        let of = |z: &Vec<f64>| {
+        let of = |z: &OfLoad| {
             let mut sums = vec![0.0; units];
             for ((z, r), unit) in z.iter().zip(residual).zip(unit) {
                 if let Some(unit) = unit {

@@ -17,6 +17,7 @@ pub(super) mod gram;
 pub(super) mod grid_factor;
 pub(super) mod layout;
 pub(crate) mod nnls;
+pub(super) mod of_load;
 pub(crate) mod pivoting;
 pub(super) mod problem;
 pub(super) mod regressor;

@@ -19,8 +19,8 @@ const GRAM_BYTES: u128 = 4 << 30;
 /// sums is far below it.
 const CLEAR: f64 = 1e-6;
 
-pub(crate) struct Problem {
-    pub(crate) experiment: Experiment,
+pub(crate) struct Problem<'a> {
+    pub(crate) experiment: Experiment<'a>,
     pub(crate) regressor: Regressor,
     pub(crate) options: FitOptions,
 }
@@ -31,8 +31,8 @@ pub(crate) struct Fitted {
     pub(crate) sign: Sign,
 }
 
-impl Problem {
-    pub(crate) fn new(recordings: &[Recording], options: &FitOptions) -> Result<Self> {
+impl<'a> Problem<'a> {
+    pub(crate) fn new(recordings: &'a [Recording], options: &FitOptions) -> Result<Self> {
         check(options)?;
         let experiment = Experiment::new(recordings, options)?;
         if options.offset.is_some() && experiment.load_range.is_some() {
@@ -76,7 +76,7 @@ impl Problem {
         for (part, value) in self.experiment.offsets.iter().zip(&solution.free) {
             output
                 .iter_mut()
-                .zip(part)
+                .zip(part.iter())
                 .for_each(|(y, z)| *y += value * z);
         }
         Ok(output)

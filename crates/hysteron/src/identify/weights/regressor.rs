@@ -159,12 +159,11 @@ impl Regressor {
                         }
                     }
                     if any {
-                        let run =
-                            self.form
-                                .forward(&weights, &experiment.input[range.clone()], from)?;
-                        for (n, h) in range.clone().zip(run) {
-                            output[n] += values[n] * h;
-                        }
+                        let input = &experiment.input[range.clone()];
+                        let add = |n: usize, h: f64| {
+                            output[range.start + n] += values[range.start + n] * h;
+                        };
+                        self.form.forward(&weights, input, from, add)?;
                     }
                 }
             }

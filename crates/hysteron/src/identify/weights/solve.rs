@@ -289,7 +289,7 @@ impl Penalised {
 /// `Aᵀ A` of the samples kept, with the free columns eliminated, plus the prior.
 pub(crate) struct NormalEquations<'a> {
     regressor: &'a Regressor,
-    experiment: &'a Experiment,
+    experiment: &'a Experiment<'a>,
     free: &'a FreeColumns,
     kept: Option<&'a [f64]>,
     pub(crate) penalised: Penalised,
@@ -299,7 +299,7 @@ impl<'a> NormalEquations<'a> {
     /// `kept` is 1 for samples that count and 0 for others.
     pub(crate) fn new(
         regressor: &'a Regressor,
-        experiment: &'a Experiment,
+        experiment: &'a Experiment<'a>,
         free: &'a FreeColumns,
         kept: Option<&'a [f64]>,
         prior: Prior,
@@ -314,7 +314,7 @@ impl<'a> NormalEquations<'a> {
     /// As [`NormalEquations::new`], from a Gram matrix of the samples kept.
     pub(crate) fn of_gram(
         regressor: &'a Regressor,
-        experiment: &'a Experiment,
+        experiment: &'a Experiment<'a>,
         free: &'a FreeColumns,
         kept: Option<&'a [f64]>,
         prior: Prior,
@@ -388,8 +388,9 @@ impl<'a> NormalEquations<'a> {
     /// The solution `x` with its residual from `target`, after the best free columns are
     /// subtracted.
     fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
-        let modelled = self.regressor.forward(self.experiment, &x)?;
-        let mut residual: Vec<f64> = target.iter().zip(&modelled).map(|(y, h)| y - h).collect();
+        let mut residual = self.regressor.forward(self.experiment, &x)?;
+        let all = residual.iter_mut().zip(target);
+        all.for_each(|(h, y)| *h = y - *h);
         if let Some(kept) = self.kept {
             residual
                 .iter_mut()

@@ -26,6 +26,8 @@ pub(crate) const OPEN: f64 = 1e-9;
 
 /// Number of samples between two progress reports of a long loop.
 const REPORT: usize = 1 << 16;
+/// Samples that the model runs through at once.
+const BLOCK: usize = 1024;
 
 /// The regressor of a plane: `N` operators with states in `[0, 1]`, for any input.
 #[derive(Debug, Clone)]
@@ -93,13 +95,14 @@ impl SparseForm {
             .collect()
     }
 
-    /// `Φ μ`: a run of the forward model, `O(n + K²)`.
+    /// Tells `Φ μ` at each sample: a run of the forward model, `O(n + K²)`.
     pub(crate) fn forward(
         &self,
         weights: &[f64],
         input: &[f64],
         from: Initial,
-    ) -> Result<Vec<f64>> {
+        mut tell: impl FnMut(usize, f64),
+    ) -> Result<()> {
         let table = vec![0.0; table_len(self.plane.levels())];
         // A relay's output is ±1: scale and shift it to [0, 1]. KP states are those of MKP already.
         let relay = self.operator == Operator::Relay;
@@ -109,16 +112,20 @@ impl SparseForm {
             Operator::Mkp
         };
         let model = Model::new(self.plane, operator, weights, table)?;
-        let mut output = vec![0.0; input.len()];
+        let (low, high) = model.output_range();
+        let mut output = [0.0; BLOCK];
         let mut state = super::rows::state_of(&model, from)?;
-        model.run(&mut state, input, &mut output)?;
-        if relay {
-            let (low, high) = model.output_range();
-            output
-                .iter_mut()
-                .for_each(|y| *y = (*y + 0.5 * (high - low)) * 0.5);
+        for (block, input) in input.chunks(BLOCK).enumerate() {
+            model.run(&mut state, input, &mut output)?;
+            for (n, y) in output[..input.len()].iter().enumerate() {
+                let y = match relay {
+                    true => (y + 0.5 * (high - low)) * 0.5,
+                    false => *y,
+                };
+                tell(block * BLOCK + n, y);
+            }
         }
-        Ok(output)
+        Ok(())
     }
 
     /// Adds `Wᵀ r` over the samples of each group to its `sums`. Samples without a group do not
@@ -461,7 +468,9 @@ mod tests {
         let r: Vec<f64> = input.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
         // Sums of at most 400 · N numbers of size one.
         let close = |a: f64, b: f64| (a - b).abs() < 1e-10;
-        let forward = form.forward(&mu, &input, left).unwrap();
+        let mut forward = vec![f64::NAN; input.len()];
+        form.forward(&mu, &input, left, |n, y| forward[n] = y)
+            .unwrap();
         for (row, y) in phi[0].iter().zip(&forward) {
             assert!(close(row.iter().zip(&mu).map(|(a, b)| a * b).sum(), *y));
         }

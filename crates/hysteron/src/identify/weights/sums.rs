@@ -4,6 +4,7 @@
 use crate::error::Result;
 use crate::identify::options::Prior;
 use crate::identify::weights::gram::{Gram, dot};
+use crate::identify::weights::of_load::OfLoad;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::solve::{Mixed, Penalised, not_definite};
 use crate::model::{Sign, Solver};
@@ -74,7 +75,7 @@ impl Sums {
         progress: Progress<'_>,
     ) -> Result<Vec<Self>> {
         let (regressor, experiment) = (&problem.regressor, &problem.experiment);
-        let columns: &[Vec<f64>] = match problem.options.offset {
+        let columns: &[OfLoad] = match problem.options.offset {
             Some(_) => &[],
             None => &experiment.offsets,
         };
@@ -99,7 +100,7 @@ impl Sums {
             })
             .collect();
         for z in columns {
-            let mixed = regressor.adjoints(experiment, z, count, own)?;
+            let mixed = regressor.adjoints(experiment, &z.values(), count, own)?;
             all.iter_mut()
                 .zip(mixed)
                 .for_each(|(own, m)| own.mixed.push(m));

@@ -38,8 +38,8 @@ impl Samples {
         let Experiment { input, output, .. } = Experiment::new(recordings, &options)?;
         let loads = recordings.iter().flat_map(|recording| &recording.load);
         Ok(Self {
-            input,
-            output,
+            input: input.into_owned(),
+            output: output.into_owned(),
             load: loads.flatten().copied().collect(),
         })
     }
