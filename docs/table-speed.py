@@ -17,6 +17,7 @@ import tempfile
 
 ROWS = 1_000_000
 ROUNDS = 5
+LEVELS = 20
 HEAD = """# CPU of tables
 
 This page is printed by
@@ -68,12 +69,13 @@ def cpu(command, out=None):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def main(program):
-    levels = 20
+def measure(program):
+    """Size of the CSV in MB, and the CPU seconds of ours, the peer and the limit by command and
+    format."""
     with tempfile.TemporaryDirectory() as folder:
         at = lambda name: os.path.join(folder, name)
         table(at("in.csv"))
-        model(at("model.json"), levels)
+        model(at("model.json"), LEVELS)
         import pyarrow.csv
         import pyarrow.parquet
         pyarrow.parquet.write_table(pyarrow.csv.read_csv(at("in.csv")), at("in.parquet"))
@@ -104,17 +106,24 @@ def main(program):
             files = [at("in.parquet"), at("peer.parquet")]
             keep("parquet", cpu([sys.executable, "-c", copy, *files]))
         size = os.path.getsize(at("in.csv")) / 1e6
-        print(HEAD.format(rows=ROWS, levels=levels, rounds=ROUNDS, csv=size))
-        print("| command | ours, s | peer, s | limit, s | ours / peer | ours / limit |")
-        print("| --- | ---: | ---: | ---: | ---: | ---: |")
-        for command, kind in ours:
-            own, limit = least[command, kind], least[command, kind, "limit"]
-            peer = least[kind] - (least["start"] if kind == "parquet" else 0.0)
-            name = "CSV" if kind == "csv" else "Parquet"
-            print(
-                f"| `{command}`, {name} | {own:.3f} | {peer:.3f} | {limit:.3f} "
-                f"| {own / peer:.2f} | {own / limit:.1f} |"
-            )
+        peer = {"csv": least["csv"], "parquet": least["parquet"] - least["start"]}
+        return size, {
+            (command, kind): (least[command, kind], peer[kind], least[command, kind, "limit"])
+            for command, kind in ours
+        }
+
+
+def main(program):
+    size, found = measure(program)
+    print(HEAD.format(rows=ROWS, levels=LEVELS, rounds=ROUNDS, csv=size))
+    print("| command | ours, s | peer, s | limit, s | ours / peer | ours / limit |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: |")
+    for (command, kind), (own, peer, limit) in found.items():
+        name = "CSV" if kind == "csv" else "Parquet"
+        print(
+            f"| `{command}`, {name} | {own:.3f} | {peer:.3f} | {limit:.3f} "
+            f"| {own / peer:.2f} | {own / limit:.1f} |"
+        )
 
 
 if __name__ == "__main__":
