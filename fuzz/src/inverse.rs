@@ -102,6 +102,7 @@ fn follow((model, state): &mut Owned, target: Target, heading: Option<bool>, tol
             };
             assert!(short <= 0.0, "{reached:e} lies before {target:e}");
         }
+        Status::Limited => panic!("operators alone have no limits"),
         Status::Ok => {
             let off = (reached - target).abs();
             assert!(
