@@ -2,7 +2,7 @@
 //! change, and runs.
 
 use crate::worded;
-use hysteron::{Model, Sample};
+use hysteron::{Model, Sample, Target, Wanted};
 
 pub fn read(text: &str) {
     match Model::from_json(text) {
@@ -17,16 +17,14 @@ fn runs(model: &Model) {
     assert_eq!(again.to_json(), text);
     let plane = model.plane();
     let mut state = model.start();
+    let dt = Some(1.0);
+    let load = model.load.as_ref().map(|load| load.range().0);
     for input in [
         plane.max(),
         plane.min(),
         0.5 * plane.min() + 0.5 * plane.max(),
     ] {
-        let sample = Sample {
-            input,
-            dt: Some(1.0),
-            load: model.load.as_ref().map(|load| load.range().0),
-        };
+        let sample = Sample { input, dt, load };
         let output = model
             .step(&mut state, sample)
             .expect("a finite input")
@@ -35,8 +33,12 @@ fn runs(model: &Model) {
     }
     if let Ok(inverse) = model.inverse() {
         let (low, high) = model.output_range();
-        let target = hysteron::Target::new(0.5 * low + 0.5 * high);
-        let solution = inverse.step(&mut state, target);
+        let wanted = Wanted {
+            dt,
+            load,
+            ..Target::new(0.5 * low + 0.5 * high).into()
+        };
+        let solution = inverse.step(&mut state, wanted);
         assert!(solution.expect("a finite target").input.is_finite());
     }
 }
