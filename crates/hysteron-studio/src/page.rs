@@ -87,8 +87,8 @@ const HEAD: &str = concat!(
     "\">\n<meta name=\"hysteron-session\" content=\"local\">"
 );
 
-/// plotly.js, which the crate `plotly` carries. It gives its scripts as elements of a page, this one
-/// first.
+/// plotly.js, which the crate `plotly` carries. It gives its scripts as elements of a page, this
+/// one first.
 static PLOTLY: LazyLock<String> = LazyLock::new(|| {
     const ELEMENT: &str = "<script type=\"text/javascript\">";
     let all = plotly::Plot::offline_js_sources();

@@ -344,7 +344,7 @@ fn matlab(vectors: &[(&str, &[f64])]) -> Vec<u8> {
     file.extend([0, 1, b'I', b'M']);
     for (name, vector) in vectors {
         let words = |all: [u32; 2]| all.map(u32::to_le_bytes).concat();
-        // mxDOUBLE_CLASS is 6, and the types are 6 for uint32, 5 for int32, 1 for int8, 9 for double.
+        // mxDOUBLE_CLASS is 6. Types are 6 for uint32, 5 for int32, 1 for int8, 9 for double.
         let size = [u32::try_from(vector.len()).unwrap(), 1];
         let numbers: Vec<u8> = vector.iter().flat_map(|x| x.to_le_bytes()).collect();
         let parts = [

@@ -94,9 +94,12 @@ proptest! {
 
     /// Bytes that are no job, or a job that is cut or changed, are refused or run: nothing panics.
     #[test]
-    fn other_bytes_are_refused(at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<bool>()) {
+    fn other_bytes_are_refused(
+        at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<bool>(),
+    ) {
         let mut near = session(&[table(1, 0.1)]);
-        let request = json!({"request": "fit", "options": {"levels": "3", "bootstrap": "0"}, "hold_out": "nothing"});
+        let options = json!({"levels": "3", "bootstrap": "0"});
+        let request = json!({"request": "fit", "options": options, "hold_out": "nothing"});
         let whole = job(&mut near, &request).unwrap();
         let mut bytes = whole.to_bytes();
         let at = at.index(bytes.len());
