@@ -230,20 +230,45 @@ pub fn c_sampled<'a>(
     sampling: &CSampling,
 ) -> Result<CExport> {
     let target = target.into();
+    let (mut export, texts) = c_texts(model, options, sampling)?;
+    for file in &mut export.files {
+        *file = target.path().join(&*file);
+        refuse_other_type(file, options.real)?;
+    }
+    let mut folder = AtomicFolder::create(target, Some(Own::Marked(seal::is_whole)))?;
+    for (path, text) in export.files.iter().zip(texts) {
+        let name = path.file_name().unwrap_or_default();
+        folder.file(name, |path| {
+            AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(text.as_bytes())
+        })?;
+    }
+    folder.commit()?;
+    Ok(export)
+}
+
+/// As [`c_sampled`], in memory: the texts of the files, in the order of [`CExport::files`], which
+/// are then names without a folder.
+///
+/// # Errors
+/// As [`c_sampled`], but for files.
+pub fn c_texts(
+    model: &Model,
+    options: &COptions<'_>,
+    sampling: &CSampling,
+) -> Result<(CExport, Vec<String>)> {
     let name = name::choose(options.name, options.source)?;
     match options.real {
-        CReal::Float => write::<f32>(model, target, options, name, sampling),
-        CReal::Double => write::<f64>(model, target, options, name, sampling),
+        CReal::Float => texts::<f32>(model, options, name, sampling),
+        CReal::Double => texts::<f64>(model, options, name, sampling),
     }
 }
 
-fn write<T: Number>(
+fn texts<T: Number>(
     model: &Model,
-    target: Destination<'_>,
     options: &COptions<'_>,
     name: String,
     sampling: &CSampling,
-) -> Result<CExport> {
+) -> Result<(CExport, Vec<String>)> {
     let constants = Constants::<T>::of(model, sampling)?;
     if options.adaptation && constants.stages.is_some() {
         let what = "a model with stages cannot learn on the target";
@@ -266,7 +291,7 @@ fn write<T: Number>(
     let files = algorithm.iter().map(|(file, _)| *file);
     let files = files.chain(own.iter().map(String::as_str));
     let export = CExport {
-        files: files.map(|file| target.path().join(file)).collect(),
+        files: files.map(PathBuf::from).collect(),
         name,
         real: options.real,
         levels,
@@ -288,18 +313,8 @@ fn write<T: Number>(
     let mut texts: Vec<String> = texts.collect();
     texts.push(text::header(&export, &constants, model, options.source));
     texts.push(text::source(&export, &constants));
-    for path in &export.files {
-        refuse_other_type(path, options.real)?;
-    }
-    let mut folder = AtomicFolder::create(target, Some(Own::Marked(seal::is_whole)))?;
-    for (path, text) in export.files.iter().zip(texts) {
-        let name = path.file_name().unwrap_or_default();
-        folder.file(name, |path| {
-            AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(seal::sealed(&text).as_bytes())
-        })?;
-    }
-    folder.commit()?;
-    Ok(export)
+    let sealed = texts.iter().map(|text| seal::sealed(text)).collect();
+    Ok((export, sealed))
 }
 
 /// Refuses to replace the algorithm that models of the other number type in the folder need.

@@ -93,10 +93,6 @@ pub fn fmu<'a>(
 ) -> Result<Fmu> {
     let target = target.into();
     let path = target.path();
-    staged::check(model)?;
-    if options.inverse {
-        model.inverse()?;
-    }
     if path
         .extension()
         .is_none_or(|end| !end.eq_ignore_ascii_case("fmu"))
@@ -105,6 +101,20 @@ pub fn fmu<'a>(
         return Err(Error::Export(format!(
             "{path}: tools know an FMU by the end of its name: let it end with .fmu"
         )));
+    }
+    let (made, bytes) = fmu_bytes(model, options)?;
+    AtomicFile::create(target, Own::Marked(package::is_ours))?.commit_with(&bytes)?;
+    Ok(made)
+}
+
+/// As [`fmu`], in memory: the bytes of the file.
+///
+/// # Errors
+/// As [`fmu`], but for its path.
+pub fn fmu_bytes(model: &Model, options: &FmuOptions) -> Result<(Fmu, Vec<u8>)> {
+    staged::check(model)?;
+    if options.inverse {
+        model.inverse()?;
     }
     let name = match (&options.name, options.inverse) {
         (Some(name), _) => identifier(name)?,
@@ -121,19 +131,19 @@ pub fn fmu<'a>(
         model_json: model.to_json(),
     };
     let bytes = package::zip(&files, name, options.fmi)?;
-    AtomicFile::create(target, Own::Marked(package::is_ours))?.commit_with(&bytes)?;
     let names = |causality| {
         let named = variables.iter().filter(|v| v.causality == causality);
         named.map(|v| v.name.clone()).collect()
     };
-    Ok(Fmu {
+    let made = Fmu {
         name: name.into(),
         token,
         bytes: bytes.len(),
         inputs: names("input"),
         outputs: names("output"),
         parameters: names("parameter"),
-    })
+    };
+    Ok((made, bytes))
 }
 
 /// A UUID that follows from the content (version 8 of RFC 9562).

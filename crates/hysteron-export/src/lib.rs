@@ -6,5 +6,5 @@ mod c;
 mod device;
 mod fmu;
 
-pub use c::{CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_sampled};
-pub use fmu::{Fmi, Fmu, FmuOptions, fmu};
+pub use c::{CExport, CMemory, COptions, CReal, CSampling, CWorstCase, c, c_sampled, c_texts};
+pub use fmu::{Fmi, Fmu, FmuOptions, fmu, fmu_bytes};

@@ -63,27 +63,37 @@ pub(crate) trait Figures {
     /// Writes each figure that there is as SVG and PNG, and the page `index.html`, into the folder
     /// `within` the one that is being written. Returns the paths, the page first.
     fn write(&self, folder: &mut AtomicFolder, within: &Path) -> Result<Vec<PathBuf>, ReportError> {
-        let mut drawn = Vec::new();
+        let drawn = self.drawn();
         let mut names = vec![within.join("index.html")];
-        for &figure in Self::ALL {
-            // Names come from anywhere; XML allows no control characters.
-            let Some(svg) = self.svg(figure).map(|svg| printable(&svg).into_owned()) else {
-                continue;
-            };
-            let stem = Self::stem(figure);
+        for (figure, svg) in &drawn {
+            let stem = Self::stem(*figure);
             let [svg_name, png_name] =
                 ["svg", "png"].map(|extension| within.join(format!("{stem}.{extension}")));
             write_file(folder, &svg_name, svg.as_bytes())?;
-            let pixels = png::of_svg(&svg).map_err(|reason| ReportError::Raster {
+            let pixels = png::of_svg(svg).map_err(|reason| ReportError::Raster {
                 path: folder.path().join(&png_name),
                 reason,
             })?;
             write_file(folder, &png_name, &pixels)?;
             names.extend([svg_name, png_name]);
-            drawn.push((figure, svg));
         }
-        write_file(folder, &names[0], printable(&self.page(&drawn)).as_bytes())?;
+        write_file(folder, &names[0], self.whole_page(&drawn).as_bytes())?;
         Ok(names.iter().map(|name| folder.path().join(name)).collect())
+    }
+
+    /// Each figure that there is, as SVG.
+    fn drawn(&self) -> Vec<(Self::Figure, String)> {
+        // Names come from anywhere; XML allows no control characters.
+        let svg = |figure| Some(printable(&self.svg(figure)?).into_owned());
+        let figures = Self::ALL.iter();
+        figures
+            .filter_map(|&figure| Some((figure, svg(figure)?)))
+            .collect()
+    }
+
+    /// The page around the figures in `drawn`, as it is written.
+    fn whole_page(&self, drawn: &[(Self::Figure, String)]) -> String {
+        printable(&self.page(drawn)).into_owned()
     }
 }
 

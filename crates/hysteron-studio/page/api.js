@@ -1,4 +1,4 @@
-// The calls to the session.
+// The calls to the session, whichever way they go: to the command, or to a worker of this browser.
 
 /** @typedef {{code: number, problem: string, remedy: string | null}} Fault */
 /** @typedef {{input: string|null, output: string|null, time: string|null, load: string|null}} Roles */
@@ -12,6 +12,11 @@
 /** @typedef {{fit: number|null, raw: boolean, x: (number|null)[], y: (number|null)[]}} Line */
 /** @typedef {{picture: string, x: string, y: string, lines: Line[], samples: number, span: [number, number]|null, marked: [number, number]|null}} Curves */
 
+const way = document.querySelector('meta[name="hysteron-session"]') ? await import("./local.js") : await import("./http.js");
+
+/** Which way it is, in words. */
+export const about = way.about;
+
 /** @type {(fault: Fault) => void} */
 let onFault = () => {};
 
@@ -22,24 +27,22 @@ export function whenRefused(listener) {
 
 /**
  * @param {string} path
- * @param {BodyInit} [body]
- * @param {Record<string, string>} [headers]
+ * @param {string | Blob} [body]
  * @returns {Promise<any>}
  */
-async function call(path, body, headers) {
+async function call(path, body) {
   let answer;
   try {
-    answer = await fetch(`api/${path}`, { method: "POST", body, headers });
+    answer = await way.call(path, body);
   } catch {
-    throw refused({ code: 0, problem: "the studio does not answer", remedy: "is the command still running? Start it again and open the new address" });
+    throw refused({ code: 0, problem: "the studio does not answer", remedy: about.gone });
   }
-  if (answer.ok) return answer.json();
-  const text = await answer.text();
+  if (answer.ok) return JSON.parse(answer.text);
   let fault;
   try {
-    fault = JSON.parse(text);
+    fault = JSON.parse(answer.text);
   } catch {
-    fault = { code: answer.status, problem: text, remedy: null };
+    fault = { code: answer.code, problem: answer.text, remedy: null };
   }
   throw refused(fault);
 }
@@ -56,7 +59,7 @@ function refused(fault) {
  * @param {object} [more]
  */
 export const ask = (request, more = {}) =>
-  call("session", JSON.stringify({ request, ...more }), { "content-type": "application/json" });
+  call("session", JSON.stringify({ request, ...more }));
 
 /**
  * Opens a file.
@@ -77,7 +80,4 @@ export async function take(take) {
 }
 
 /** @param {(told: {changes: number, jobs: JobView[], failed: Fault|null, named: number}) => void} told */
-export function listen(told) {
-  const events = new EventSource("api/events");
-  events.onmessage = (event) => told(JSON.parse(event.data));
-}
+export const listen = (told) => way.listen((text) => told(JSON.parse(text)));

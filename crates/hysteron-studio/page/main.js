@@ -1,6 +1,6 @@
 // The page: shows what the session has, whenever it changes.
 
-import { ask, listen, reload, whenRefused } from "./api.js";
+import { about, ask, listen, reload, whenRefused } from "./api.js";
 import { by, el, fill } from "./dom.js";
 import * as opening from "./open.js";
 import * as fitting from "./fit.js";
@@ -21,6 +21,7 @@ let seen = "";
 
 /** @param {import("./api.js").Overview} found */
 async function show(found) {
+  by("files-stay").textContent = about.files;
   overview = found;
   seen = JSON.stringify(found);
   const ids = new Set(found.fits.map((fit) => fit.id));
@@ -59,6 +60,12 @@ by("theme").addEventListener("click", () => {
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => overview && show(overview));
 by("reload").addEventListener("click", () => reload().then(show, () => {}));
+
+by("where").textContent = about.where;
+document.body.dataset.session = about.name;
+addEventListener("beforeunload", (event) => {
+  if (!about.stays && overview?.files.length) event.preventDefault();
+});
 
 let changes = -1;
 /** @type {string | null} */

@@ -2,19 +2,24 @@
 //! hand and takes them home.
 //!
 //! [`Session`] is what is open: recordings, fits, models that are driven. It takes a [`Request`] and
-//! gives a [`Response`], knows no transport, and touches no file but in the temporary folder of an
-//! export. [`Server`] (feature `server`) is one transport: a page and its calls on 127.0.0.1.
+//! gives a [`Response`], knows no transport, and touches no file. [`Server`] (feature `server`) is one transport: a page and its calls on 127.0.0.1. The crate
+//! `hysteron-studio-wasm` is the other: the session in a worker of the browser. Both show the same
+//! page; [`static_page`] has its files for the latter.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "page")]
+mod page;
 #[cfg(feature = "server")]
 mod server;
 mod session;
 
+#[cfg(feature = "page")]
+pub use page::{PageFile, STATIC_SESSION, static_page};
 #[cfg(feature = "server")]
 pub use server::Server;
 pub use session::{
     Answer, Area, ColumnView, Curves, DesignView, Download, DriveView, Fault, FileView, Finished,
     FitView, Held, Id, Job, JobView, Line, Overview, Part, Picture, PlaneKind, PlaneView, Pull,
-    Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps, Take, View,
-    Wish,
+    Purpose, RepairView, Request, Response, RivalView, SampleView, Session, Steps, Take, Told,
+    View, Wish,
 };

@@ -6,12 +6,22 @@
 #[path = "common/chromium.rs"]
 mod chromium;
 mod common;
+#[path = "common/folder.rs"]
+mod folder;
+#[path = "common/place.rs"]
+mod place;
 #[path = "../../hysteron/tests/common/mod.rs"]
 #[allow(dead_code)]
 mod recordings;
 
 use chromium::{Chromium, Tab, browser, keep};
 use common::Studio;
+use place::{Way, both_ways};
+
+/// The name of this test, for what it builds.
+const NAME: &str = "views";
+
+both_ways!(every_view_answers_the_hand);
 
 /// Loops of a play that shrink, with a spike.
 fn table() -> String {
@@ -38,10 +48,12 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
     browser.wait(tab, "document.querySelector('#plot-drive .scatterlayer')");
 }
 
-#[test]
-fn every_view_answers_the_hand() {
+fn every_view_answers_the_hand(way: Way) {
+    let name = way.name();
     let Some(mut browser) = browser() else { return };
-    let studio = Studio::start(1 << 28, &[]);
+    let Some(studio) = way.start(1 << 28) else {
+        return;
+    };
     let tab = browser.open(&studio.address, 1280, 900);
     browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "play.csv", &table());
@@ -67,7 +79,7 @@ fn every_view_answers_the_hand() {
     let most = "document.querySelector('#plot-input').data.map(d => Math.max(...d.y))";
     assert_eq!(browser.value(&tab, most)[0], 300.0);
     assert!(browser.value(&tab, most)[1].as_f64().unwrap() < 100.0);
-    keep(&mut browser, &tab, "prepared");
+    keep(&mut browser, &tab, &format!("{name}-prepared"));
     browser.value(&tab, "document.querySelector('[data-key=as-read]').click()");
     browser.wait(
         &tab,
@@ -87,7 +99,7 @@ fn every_view_answers_the_hand() {
     browser.wait(&tab, &format!("{samples} < 1500 && {samples} > 10"));
     let gaps = "document.querySelector('#plot-output').data.every(d => d.y.includes(null))";
     browser.wait(&tab, gaps);
-    keep(&mut browser, &tab, "zoom-loop");
+    keep(&mut browser, &tab, &format!("{name}-zoom-loop"));
     browser.value(&tab, "document.querySelector('[data-key=all]').click()");
     browser.wait(&tab, &format!("{samples} === 1500"));
 
@@ -192,12 +204,14 @@ fn every_view_answers_the_hand() {
             browser.size(&tab, width, 900);
             browser.value(&tab, &format!("document.documentElement.dataset.theme === '{theme}' || (document.documentElement.dataset.theme = '{theme}' === 'dark' ? 'light' : 'dark', document.querySelector('#theme').click())"));
             std::thread::sleep(std::time::Duration::from_millis(4000));
-            keep(&mut browser, &tab, &format!("views-{theme}-{width}"));
+            keep(&mut browser, &tab, &format!("{name}-views-{theme}-{width}"));
         }
     }
     studio.end();
 }
 
+/// Only a server keeps a session on the disk. In a folder the user takes it home, which the test of
+/// the whole way does; there is no file on the disk to be read again either.
 #[test]
 fn a_studio_that_was_killed_goes_on() {
     let Some(mut browser) = browser() else { return };
@@ -235,12 +249,24 @@ fn a_studio_that_was_killed_goes_on() {
     again.end();
 }
 
-/// Prints how long the page takes with a million samples.
 #[test]
 #[ignore = "a measurement; run it alone"]
 fn a_million_samples() {
+    million_samples(Way::Server);
+}
+
+#[test]
+#[ignore = "a measurement; run it alone"]
+fn a_million_samples_in_a_folder() {
+    million_samples(Way::Folder);
+}
+
+/// Prints how long the page takes with a million samples.
+fn million_samples(way: Way) {
     let Some(mut browser) = browser() else { return };
-    let studio = Studio::start(1 << 30, &[]);
+    let Some(studio) = way.start(1 << 30) else {
+        return;
+    };
     let tab = browser.open(&studio.address, 1280, 900);
     browser.wait(&tab, "document.querySelector('#drop.empty')");
     let code = "(() => { const rows = ['time [s],temperature [degC],displacement [mm]']; let y = 20;
@@ -257,7 +283,7 @@ fn a_million_samples() {
         for (const picture of ['output', 'input', 'loop']) for (const window of [null, [300, 320]]) { const begin = performance.now();
             const { lines } = await ask('curves', { file: files[0].id, picture, window, pixels: [1200, 400] }); found[picture + (window ? ' part' : ' all')] = [Math.round(performance.now() - begin), lines[0].x.length]; }
         return found; })()";
-    println!("server: {}", browser.value(&tab, asked));
+    println!("session: {}", browser.value(&tab, asked));
     let zoom = "(async () => { const times = []; for (let n = 0; n < 8; n++) { const begin = performance.now(); const was = document.querySelector('#plot-loop').layout.meta.samples;
         document.querySelector('[data-key=zoom-in]').click();
         while (document.querySelector('#plot-loop').layout.meta.samples === was) await new Promise(r => setTimeout(r, 2));

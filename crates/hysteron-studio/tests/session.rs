@@ -2,7 +2,9 @@
 //! requests.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)]
 
-use hysteron_studio::{Answer, DriveView, Fault, Id, Overview, Request, Response, Session};
+use hysteron_studio::{
+    Answer, DriveView, Fault, Finished, Id, Job, Overview, Request, Response, Session,
+};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -403,12 +405,18 @@ proptest! {
 
     /// No order of requests panics, and a refusal has a code and words.
     #[test]
-    fn any_order_of_requests_is_answered(events in proptest::collection::vec(event(), 1..60)) {
+    fn any_order_of_requests_is_answered(
+        events in proptest::collection::vec(event(), 1..60), carried in any::<bool>(),
+    ) {
         let mut session = Session::new(1 << 22);
         for event in events {
             let fault = match event {
                 Event::Open(name, bytes) => session.open(name, bytes).err(),
                 Event::Ask(request) => match ask(&mut session, request) {
+                    Ok(Answer { job: Some(job), .. }) if carried => {
+                        let found = Job::from_bytes(&job.to_bytes()).unwrap().run().to_bytes();
+                        session.finish(Finished::from_bytes(&found).unwrap()).err()
+                    }
                     Ok(Answer { job: Some(job), .. }) => session.finish(job.run()).err(),
                     Ok(answer) => {
                         // What is not finite would be null, and the page takes that for a gap.

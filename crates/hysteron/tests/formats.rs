@@ -226,3 +226,43 @@ fn rows_are_written_with_commas_and_points() {
         assert!(table.bytes_read() > 0);
     }
 }
+
+/// Cells of any kind: numbers, words, nothing, quotes.
+fn cell(n: u64) -> String {
+    let n = n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+    match n % 5 {
+        0 => String::new(),
+        1 => format!("a,\"b\" {n}"),
+        2 => format!("{}", f64::from(u32::try_from(n).unwrap()) * 1e-3),
+        3 => format!("00{n}"),
+        _ => n.to_string(),
+    }
+}
+
+#[test]
+fn a_table_in_memory_has_the_bytes_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.csv", "a", "a.parquet", "a.PARQUET"] {
+        // From an empty table to one of several blocks.
+        for rows in [0, 1, 7, 20_000] {
+            let path = folder.path().join(name);
+            let mut file = TableWriter::plain(Some((&path).into())).unwrap();
+            let mut memory = TableWriter::in_memory(name).unwrap();
+            for table in [&mut file, &mut memory] {
+                table.row(["u", "y [mm]", "number"]).unwrap();
+                for n in 0..rows {
+                    let cells = [cell(2 * n), cell(2 * n + 1), format!("{n}.5")];
+                    table.row(cells).unwrap();
+                }
+            }
+            file.finish().unwrap();
+            let bytes = memory.into_bytes().unwrap();
+            assert!(fs::read(&path).unwrap() == bytes, "{name}, {rows} rows");
+            fs::remove_file(&path).unwrap();
+        }
+    }
+    assert!(TableWriter::in_memory("a.xlsx").is_err());
+    let mut twice = TableWriter::in_memory("a.parquet").unwrap();
+    twice.row(["u", "u"]).unwrap();
+    assert!(twice.into_bytes().is_err());
+}

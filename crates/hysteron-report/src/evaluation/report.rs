@@ -56,6 +56,16 @@ impl Report<'_> {
         self.view()?.write(folder, within)
     }
 
+    /// The page alone, `index.html` of [`Report::write`]. It needs nothing beside it.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Length`] where the evaluation belongs to another recording.
+    pub fn page(&self) -> Result<String, ReportError> {
+        let view = self.view()?;
+        Ok(view.whole_page(&view.drawn()))
+    }
+
     /// A single figure as an SVG document; `None` where the evaluation has nothing to show in it.
     ///
     /// # Errors

@@ -157,6 +157,7 @@ fn a_report_has_every_figure_twice_and_one_page() {
         written.len() + 1
     );
     let page = std::fs::read_to_string(&written[0]).unwrap();
+    assert_eq!(page, report(&fixture, "a spring").page().unwrap());
     assert_eq!(page.matches("<svg").count(), PLAIN);
     for load in [
         "src=\"http",

@@ -2,15 +2,16 @@
 
 use super::Shared;
 use super::guard::Guard;
-use crate::{Fault, Request, Response as Found};
+use crate::page;
+use crate::{Fault, Request, Response as Found, Told};
 use axum::Json;
 use axum::body::Body;
 use axum::extract::rejection::JsonRejection;
 use axum::extract::{Path, State};
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::header::{self, CONTENT_TYPE};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, Sse};
-use axum::response::{IntoResponse, Response};
-use serde::Serialize;
+use axum::response::{Html, IntoResponse, Response};
 use std::convert::Infallible;
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
@@ -18,6 +19,18 @@ use tokio_stream::wrappers::IntervalStream;
 use tokio_stream::{Stream, StreamExt};
 
 pub(super) type Parts = (Arc<Guard>, Arc<Shared>);
+
+pub(super) async fn index() -> Html<&'static str> {
+    Html(page::index())
+}
+
+/// A file of the page.
+pub(super) async fn file(Path((_, name)): Path<(String, String)>) -> Response {
+    match page::served(&name) {
+        Some(file) => ([(CONTENT_TYPE, file.media)], file.text).into_response(),
+        None => super::guard::nothing().await,
+    }
+}
 
 /// A request to the session, and its response or fault, as JSON.
 pub(super) async fn session(
@@ -29,17 +42,7 @@ pub(super) async fn session(
             "the page asked for what the session does not know",
         ));
     };
-    let changes = !matches!(
-        request,
-        Request::Overview
-            | Request::Curves(_)
-            | Request::Plane { .. }
-            | Request::Sample { .. }
-            | Request::Design(_)
-            | Request::Pull(_)
-            | Request::Take(_)
-            | Request::Drive { .. }
-    );
+    let changes = request.changes();
     let done = tokio::task::spawn_blocking(move || {
         let mut answer = shared.session().handle(request)?;
         if let Some(job) = answer.job.take() {
@@ -68,14 +71,11 @@ pub(super) async fn open(
     headers: HeaderMap,
     body: Body,
 ) -> Response {
-    // A session holds its recordings as text, which takes a third more.
-    let room = shared.session().room();
-    let most = room.saturating_add(room / 2).saturating_add(1 << 20);
     let length = headers.get(header::CONTENT_LENGTH);
     let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    let too_large = || refused(&Fault::too_large("the file", room));
-    if length.is_some_and(|length| length > most) {
-        return too_large();
+    let admitted = |length: u64| shared.session().admits(length);
+    if let Err(fault) = admitted(length.unwrap_or(0)) {
+        return refused(&fault);
     }
     let mut bytes = Vec::new();
     let mut parts = body.into_data_stream();
@@ -83,8 +83,8 @@ pub(super) async fn open(
         let Ok(part) = part else {
             return refused(&Fault::missing("the file was cut off", "drop it again"));
         };
-        if (bytes.len() + part.len()) as u64 > most {
-            return too_large();
+        if let Err(fault) = admitted((bytes.len() + part.len()) as u64) {
+            return refused(&fault);
         }
         bytes.extend_from_slice(&part);
     }
@@ -110,17 +110,6 @@ pub(super) async fn reload(State((_, shared)): State<Parts>) -> Response {
         Ok(shared.session().handle(Request::Overview)?.response)
     });
     answered(done.await)
-}
-
-/// What a page is told while it is open.
-#[derive(Serialize)]
-struct Told {
-    /// Goes up with every change of the session.
-    changes: u64,
-    jobs: Vec<crate::JobView>,
-    failed: Option<Fault>,
-    /// Whether files were named on the command line.
-    named: usize,
 }
 
 /// Progress and changes as server-sent events.

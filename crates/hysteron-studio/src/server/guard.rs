@@ -5,6 +5,7 @@
 //! - `Origin`, and `Sec-Fetch-Site` where the browser sends it, have to be this page's.
 //! - The first part of every path is the secret.
 
+use crate::page::POLICY;
 use axum::extract::{Query, Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode};
@@ -66,12 +67,6 @@ fn only<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     let value = values.next()?;
     values.next().is_none().then(|| value.to_str().ok())?
 }
-
-/// Nothing but what this server sends, and nothing sent elsewhere. Plotly writes its style into the
-/// page, so that styles are allowed there.
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
-                      img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; \
-                      form-action 'none'; frame-ancestors 'none'";
 
 /// Checks a call, and says to the browser what a page of ours may do.
 pub(super) async fn check(

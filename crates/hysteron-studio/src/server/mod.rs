@@ -1,11 +1,10 @@
 //! The session over HTTP: a page, its calls, and the progress of the work as events.
 //!
 //! Only this machine and only this user: bound to 127.0.0.1, with a secret in every address.
-//! `guard` checks each call, `page` has the page, `calls` answers.
+//! `guard` checks each call, `calls` answers.
 
 mod calls;
 mod guard;
-mod page;
 
 use crate::{Fault, Session};
 use axum::Router;
@@ -205,8 +204,8 @@ fn app(guard: Guard, shared: Arc<Shared>) -> Router {
     let guard = Arc::new(guard);
     Router::new()
         .route("/", get(guard::enter))
-        .route("/{token}/", get(page::index))
-        .route("/{token}/{file}", get(page::file))
+        .route("/{token}/", get(calls::index))
+        .route("/{token}/{file}", get(calls::file))
         .route("/{token}/api/session", post(calls::session))
         .route("/{token}/api/open/{name}", post(calls::open))
         .route("/{token}/api/reload", post(calls::reload))

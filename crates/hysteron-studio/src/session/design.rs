@@ -4,7 +4,7 @@ use super::Session;
 use super::fault::Fault;
 use super::look::{cells, thinned};
 use super::request::Id;
-use hysteron::{Design, DesignOptions, Excitation, Plane, Rates, TableWriter, design};
+use hysteron::{Design, DesignOptions, Excitation, Plane, Rates, design};
 use serde::{Deserialize, Serialize};
 
 /// What an experiment has to keep to.
@@ -137,8 +137,6 @@ impl Session {
                 "ask for a profile of the whole plane",
             ));
         }
-        super::take_home::written("profile.csv", |path| {
-            Ok(found.write_to(TableWriter::plain(Some(path.into()))?)?)
-        })
+        Ok(found.to_csv()?)
     }
 }

@@ -1,7 +1,7 @@
 //! What is wrong with a request.
 
 use hysteron::{Error, Setting, SettingValue};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Why a request was refused.
 ///
@@ -14,7 +14,7 @@ use serde::Serialize;
 /// | 103 | the work was cancelled |
 /// | 104 | a defect of the studio |
 /// | 105 | a session file that cannot be read |
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{problem}")]
 pub struct Fault {
     /// The kind; it never changes.
@@ -44,7 +44,7 @@ impl Fault {
     pub(crate) fn too_large(name: &str, left: u64) -> Self {
         let mib = left / (1 << 20);
         let problem = format!("{name} takes more memory than the {mib} MiB that are left");
-        let remedy = "close other files, or start the studio with a larger --max-memory";
+        let remedy = "close other files, or give `hysteron studio` a larger --max-memory";
         Self {
             remedy: Some(remedy.into()),
             ..Self::new(101, problem)
@@ -62,7 +62,9 @@ impl Fault {
         Self::new(103, "the fit was cancelled".into())
     }
 
-    pub(crate) fn defect(what: &str) -> Self {
+    /// A defect of the studio, with what is known of it.
+    #[must_use]
+    pub fn defect(what: &str) -> Self {
         Self::new(104, format!("a defect of the studio: {what}"))
     }
 

@@ -8,6 +8,7 @@ use hysteron::{
     fit_holding_out,
 };
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,13 +35,13 @@ pub enum Held {
 pub struct Job {
     /// Its number.
     pub id: Id,
-    fitted: Vec<Id>,
-    recordings: Vec<Recording>,
-    options: BTreeMap<String, String>,
-    hold_out: Option<HoldOut>,
-    words: String,
-    validated: Vec<Id>,
-    watch: Arc<Watch>,
+    pub(super) fitted: Vec<Id>,
+    pub(super) recordings: Vec<Recording>,
+    pub(super) options: BTreeMap<String, String>,
+    pub(super) hold_out: Option<HoldOut>,
+    pub(super) words: String,
+    pub(super) validated: Vec<Id>,
+    pub(super) watch: Arc<Watch>,
 }
 
 impl std::fmt::Debug for Job {
@@ -52,15 +53,24 @@ impl std::fmt::Debug for Job {
 /// A job that has ended, for [`Session::finish`].
 #[derive(Debug)]
 pub struct Finished {
-    id: Id,
-    found: Result<Box<Fitted>, Fault>,
+    pub(super) id: Id,
+    pub(super) found: Result<Box<Fitted>, Fault>,
+}
+
+impl Finished {
+    /// A job that was ended from outside before it found anything.
+    #[must_use]
+    pub fn without(job: Id, why: Fault) -> Self {
+        let found = Err(why);
+        Self { id: job, found }
+    }
 }
 
 /// How far a job is, and whether it shall end.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     cancelled: AtomicBool,
-    stage: Mutex<(&'static str, f64)>,
+    stage: Mutex<(Cow<'static, str>, f64)>,
 }
 
 /// A job as the page shows it.
@@ -69,7 +79,7 @@ pub struct JobView {
     /// Its number.
     pub id: Id,
     /// What it does now.
-    pub stage: &'static str,
+    pub stage: Cow<'static, str>,
     /// The share of that which is done, 0 to 1; `None` where it is not known.
     pub share: Option<f64>,
 }
@@ -79,8 +89,16 @@ impl Watch {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
     pub(super) fn view(&self, id: Id) -> JobView {
-        let (stage, share) = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        let (stage, share) = self
+            .stage
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
         JobView {
             id,
             stage,
@@ -88,9 +106,13 @@ impl Watch {
         }
     }
 
-    fn tell(&self, stage: &'static str, share: f64) -> hysteron::Result<()> {
+    pub(super) fn at(&self, stage: Cow<'static, str>, share: f64) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = (stage, share);
-        match self.cancelled.load(Ordering::Relaxed) {
+    }
+
+    fn tell(&self, stage: &'static str, share: f64) -> hysteron::Result<()> {
+        self.at(stage.into(), share);
+        match self.is_cancelled() {
             true => Err(hysteron::Error::Fit("cancelled".into())),
             false => Ok(()),
         }
@@ -243,7 +265,10 @@ impl Session {
     /// # Errors
     /// [`Fault`] why there is none; 103 if it was cancelled.
     pub fn finish(&mut self, finished: Finished) -> Result<Id, Fault> {
-        self.running.remove(&finished.id);
+        let watch = self.running.remove(&finished.id);
+        if watch.is_some_and(|watch| watch.is_cancelled()) {
+            return Err(Fault::cancelled());
+        }
         let fitted = finished.found?;
         self.fits.push(*fitted);
         Ok(finished.id)
@@ -263,21 +288,31 @@ impl Job {
     /// Does the work. This takes seconds to minutes.
     #[must_use]
     pub fn run(self) -> Finished {
+        self.run_telling(&|_, _| ())
+    }
+
+    /// As [`Job::run`]. `told` gets each stage, and the share of it that is done; not a number where
+    /// that is not known.
+    #[must_use]
+    pub fn run_telling(self, told: &(dyn Fn(&'static str, f64) + Sync)) -> Finished {
         let id = self.id;
         let watch = self.watch.clone();
-        let found = catch_unwind(AssertUnwindSafe(|| self.fit()));
+        let found = catch_unwind(AssertUnwindSafe(|| self.fit(told)));
         let found = found.unwrap_or_else(|_| Err(Fault::defect("a fit ended in a panic")));
-        let found = match watch.cancelled.load(Ordering::Relaxed) {
+        let found = match watch.is_cancelled() {
             true => Err(Fault::cancelled()),
             false => found.map(Box::new),
         };
         Finished { id, found }
     }
 
-    fn fit(self) -> Result<Fitted, Fault> {
+    fn fit(self, tell: &(dyn Fn(&'static str, f64) + Sync)) -> Result<Fitted, Fault> {
         // One that was cancelled while it waited does nothing.
         self.watch.tell("beginning", f64::NAN)?;
-        let told = |stage, share| self.watch.tell(stage, share);
+        let told = |stage, share| {
+            tell(stage, share);
+            self.watch.tell(stage, share)
+        };
         let fit = build(&self.options)?.progress(Progress::new(&told));
         let (model, held_out) = match &self.hold_out {
             None => (fit.run(&self.recordings)?, None),

@@ -2,9 +2,10 @@
 //!
 //! `request` defines both, `fault` what is wrong. `opened` is a file, `prepare` its
 //! preparation, `design` the experiment that is missing, `fitting` a fit while it runs
-//! and afterwards, `look` the pictures, `drive` a model moved by hand, `take_home` what can be taken
+//! and afterwards, `carried` the same as bytes, `look` the pictures, `drive` a model moved by hand, `take_home` what can be taken
 //! away, `commands` the same work as text, `saved` the session as a file.
 
+mod carried;
 mod commands;
 mod design;
 mod drive;
@@ -24,7 +25,7 @@ pub use fitting::{Finished, FitView, Held, Job, JobView};
 pub use look::{Area, Curves, Line, Picture, PlaneKind, PlaneView, SampleView, View};
 pub use opened::{ColumnView, FileView, Part, RepairView};
 pub use prepare::Steps;
-pub use request::{Id, Overview, Purpose, Request, Response};
+pub use request::{Id, Overview, Purpose, Request, Response, Told};
 pub use take_home::{Download, Take};
 
 use drive::Drive;
@@ -129,6 +130,19 @@ impl Session {
         self.budget.saturating_sub(taken)
     }
 
+    /// Refuses a file of so many bytes, before they are there, if it cannot have room.
+    ///
+    /// # Errors
+    /// [`Fault`] 101.
+    pub fn admits(&self, bytes: u64) -> Result<(), Fault> {
+        let room = self.room();
+        // A session holds its recordings as text, which takes a third more.
+        match bytes > room.saturating_add(room / 2).saturating_add(1 << 20) {
+            true => Err(Fault::too_large("the file", room)),
+            false => Ok(()),
+        }
+    }
+
     /// Answers a request.
     ///
     /// # Errors
@@ -208,6 +222,13 @@ impl Session {
     pub fn jobs(&self) -> Vec<JobView> {
         let jobs = self.running.iter();
         jobs.map(|(id, watch)| watch.view(*id)).collect()
+    }
+
+    /// Says how far a job is that runs elsewhere. One that is not there is passed over.
+    pub fn told(&self, job: Id, stage: String, share: f64) {
+        if let Some(watch) = self.running.get(&job) {
+            watch.at(stage.into(), share);
+        }
     }
 
     /// Cancels all work. Its threads end at their next report.

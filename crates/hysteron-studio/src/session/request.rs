@@ -2,6 +2,7 @@
 
 use super::design::{DesignView, Wish};
 use super::drive::{DriveView, Pull};
+use super::fault::Fault;
 use super::fitting::{FitView, Held, JobView};
 use super::look::{Curves, PlaneKind, PlaneView, SampleView, View};
 use super::opened::{FileView, Part};
@@ -135,6 +136,37 @@ pub enum Request {
     Design(Wish),
     /// Something to take home.
     Take(Take),
+}
+
+impl Request {
+    /// Whether the session may be another one afterwards, so that its pages are to look again.
+    #[must_use]
+    pub fn changes(&self) -> bool {
+        !matches!(
+            self,
+            Self::Overview
+                | Self::Curves(_)
+                | Self::Plane { .. }
+                | Self::Sample { .. }
+                | Self::Design(_)
+                | Self::Pull(_)
+                | Self::Take(_)
+                | Self::Drive { .. }
+        )
+    }
+}
+
+/// What a page is told while it is open.
+#[derive(Debug, Clone, Serialize)]
+pub struct Told {
+    /// Goes up with every change of the session.
+    pub changes: u64,
+    /// Work under way.
+    pub jobs: Vec<JobView>,
+    /// Why the last work ended without a fit; `None` if it did not.
+    pub failed: Option<Fault>,
+    /// Number of files that can be read again from the disk.
+    pub named: usize,
 }
 
 /// What a session answers.

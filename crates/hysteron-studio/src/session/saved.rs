@@ -43,7 +43,7 @@ struct SavedFile {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedFit {
+pub(super) struct SavedFit {
     id: Id,
     files: Vec<Id>,
     validated: Vec<Id>,
@@ -54,6 +54,43 @@ struct SavedFit {
     output: (f64, f64),
     dt: Option<f64>,
     model: Value,
+}
+
+impl SavedFit {
+    pub(super) fn of(fit: &Fitted) -> Option<Self> {
+        Some(Self {
+            id: fit.id,
+            files: fit.files.clone(),
+            validated: fit.validated.clone(),
+            options: fit.options.clone(),
+            hold_out: fit.words.clone(),
+            advice: fit.advice.clone(),
+            input: fit.input,
+            output: fit.output,
+            dt: fit.dt,
+            model: serde_json::from_str(&fit.model.to_json()).ok()?,
+        })
+    }
+
+    pub(super) fn fitted(self) -> Result<Fitted, Fault> {
+        let model = Model::from_json(&self.model.to_string())?;
+        let record = model.fit.as_ref().and_then(|fit| fit.other.get("hold_out"));
+        Ok(Fitted {
+            id: self.id,
+            held_out: record.and_then(HeldOut::from_record),
+            model: Arc::new(model),
+            files: self.files,
+            validated: self.validated,
+            options: self.options,
+            words: self.hold_out,
+            advice: self.advice,
+            input: self.input,
+            output: self.output,
+            dt: self.dt,
+            courses: BTreeMap::new(),
+            reached: None,
+        })
+    }
 }
 
 /// Whether bytes begin as a session file does.
@@ -73,25 +110,11 @@ impl Session {
             marked: file.marked,
             bytes: STANDARD.encode(&file.bytes),
         };
-        let fit = |fit: &Fitted| {
-            Some(SavedFit {
-                id: fit.id,
-                files: fit.files.clone(),
-                validated: fit.validated.clone(),
-                options: fit.options.clone(),
-                hold_out: fit.words.clone(),
-                advice: fit.advice.clone(),
-                input: fit.input,
-                output: fit.output,
-                dt: fit.dt,
-                model: serde_json::from_str(&fit.model.to_json()).ok()?,
-            })
-        };
         let saved = File {
             format: FORMAT.into(),
             version: VERSION,
             files: self.files.iter().map(file).collect(),
-            fits: self.fits.iter().filter_map(fit).collect(),
+            fits: self.fits.iter().filter_map(SavedFit::of).collect(),
         };
         serde_json::to_string(&saved).unwrap_or_default()
     }
@@ -126,23 +149,7 @@ impl Session {
             new.files.push(opened);
         }
         for fit in saved.fits {
-            let model = Model::from_json(&fit.model.to_string())?;
-            let record = model.fit.as_ref().and_then(|fit| fit.other.get("hold_out"));
-            new.fits.push(Fitted {
-                id: fit.id,
-                held_out: record.and_then(HeldOut::from_record),
-                model: Arc::new(model),
-                files: fit.files,
-                validated: fit.validated,
-                options: fit.options,
-                words: fit.hold_out,
-                advice: fit.advice,
-                input: fit.input,
-                output: fit.output,
-                dt: fit.dt,
-                courses: BTreeMap::new(),
-                reached: None,
-            });
+            new.fits.push(fit.fitted()?);
         }
         let ids = new.files.iter().map(|file| file.id);
         let mut ids: Vec<Id> = ids.chain(new.fits.iter().map(|fit| fit.id)).collect();

@@ -138,8 +138,6 @@ impl Session {
 
     fn c(&self, fit: Id) -> Result<Download, Fault> {
         let fitted = self.fitted(fit)?;
-        let folder = tempfile::tempdir().map_err(no_folder)?;
-        let target = folder.path().join("c");
         let options = COptions {
             real: CReal::Float,
             name: Some("model"),
@@ -150,14 +148,12 @@ impl Session {
             dt: fitted.dt.filter(|_| fitted.model.is_timed()),
             drive: None,
         };
-        let made = hysteron_export::c_sampled(&fitted.model, &target, &options, &sampling)?;
+        let (made, texts) = hysteron_export::c_texts(&fitted.model, &options, &sampling)?;
         let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-        for file in made.files {
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            let bytes = std::fs::read(&file).map_err(no_folder)?;
+        for (file, text) in made.files.iter().zip(texts) {
             let stored = zip::write::SimpleFileOptions::default();
-            zip.start_file(format!("model-c/{name}"), stored)
-                .and_then(|()| Ok(zip.write_all(&bytes)?))
+            zip.start_file(format!("model-c/{}", file.display()), stored)
+                .and_then(|()| Ok(zip.write_all(text.as_bytes())?))
                 .map_err(|error| Fault::defect(&error.to_string()))?;
         }
         let zip = zip
@@ -173,17 +169,14 @@ impl Session {
     fn fmu(&self, fit: Id, inverse: bool) -> Result<Download, Fault> {
         let model = &self.fitted(fit)?.model;
         let name = if inverse { "inverse.fmu" } else { "model.fmu" };
-        let folder = tempfile::tempdir().map_err(no_folder)?;
-        let target = folder.path().join(name);
         let options = FmuOptions {
             inverse,
             ..FmuOptions::default()
         };
-        hysteron_export::fmu(model, &options, &target)?;
         Ok(Download {
             name: name.into(),
             media: "application/octet-stream",
-            bytes: std::fs::read(&target).map_err(no_folder)?,
+            bytes: hysteron_export::fmu_bytes(model, &options)?.1,
         })
     }
 
@@ -200,13 +193,12 @@ impl Session {
             recording: seen,
             evaluation: &evaluation,
         };
-        let folder = tempfile::tempdir().map_err(no_folder)?;
-        let written = report.write(&folder.path().join("report"));
-        let written = written.map_err(|error| Fault::defect(&error.to_string()))?;
+        let page = report.page();
+        let page = page.map_err(|error| Fault::defect(&error.to_string()))?;
         Ok(Download {
             name: "report.html".into(),
             media: "text/html",
-            bytes: std::fs::read(&written[0]).map_err(no_folder)?,
+            bytes: page.into_bytes(),
         })
     }
 
@@ -234,20 +226,18 @@ impl Session {
         }
         let rows = rows(&recording, view.window);
         let rows = rows.filter(|n| view.area.has(&recording, *n));
-        written(name, |path| {
-            let mut table = TableWriter::plain(Some(path.into()))?;
-            table.row(&names)?;
-            for n in rows {
-                let mut cells: Vec<f64> = recording.time.iter().map(|time| time[n]).collect();
-                cells.extend([recording.input[n], recording.output[n]]);
-                cells.extend(recording.load.iter().map(|load| load[n]));
-                for (_, course) in &courses {
-                    cells.extend([course[n], recording.output[n] - course[n]]);
-                }
-                table.row(cells.iter().map(f64::to_string))?;
+        let mut table = TableWriter::in_memory(name)?;
+        table.row(&names)?;
+        for n in rows {
+            let mut cells: Vec<f64> = recording.time.iter().map(|time| time[n]).collect();
+            cells.extend([recording.input[n], recording.output[n]]);
+            cells.extend(recording.load.iter().map(|load| load[n]));
+            for (_, course) in &courses {
+                cells.extend([course[n], recording.output[n] - course[n]]);
             }
-            Ok(table.finish()?)
-        })
+            table.row(cells.iter().map(f64::to_string))?;
+        }
+        Ok(table.into_bytes()?)
     }
 
     fn csv(&mut self, view: &View) -> Result<String, Fault> {
@@ -266,22 +256,4 @@ impl Session {
         }
         Ok(text)
     }
-}
-
-/// The bytes of a file that is written under this name in a folder of its own.
-pub(super) fn written(
-    name: &str,
-    write: impl FnOnce(&Path) -> Result<(), Fault>,
-) -> Result<Vec<u8>, Fault> {
-    let folder = tempfile::tempdir().map_err(no_folder)?;
-    let path = folder.path().join(name);
-    write(&path)?;
-    std::fs::read(&path).map_err(no_folder)
-}
-
-fn no_folder(error: std::io::Error) -> Fault {
-    Fault::missing(
-        &format!("a temporary folder cannot be used: {error}"),
-        "make room on the disk",
-    )
 }

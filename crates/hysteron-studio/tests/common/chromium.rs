@@ -162,9 +162,18 @@ impl Chromium {
 
     /// Drops a file on the page, as a hand does.
     pub fn drop_file(&mut self, tab: &Tab, name: &str, text: &str) {
-        let (name, text) = (json!(name), json!(text));
+        self.drop_made(tab, name, &json!(text).to_string());
+    }
+
+    /// The same with a file that is no text.
+    pub fn drop_bytes(&mut self, tab: &Tab, name: &str, bytes: &[u8]) {
+        self.drop_made(tab, name, &format!("new Uint8Array({})", json!(bytes)));
+    }
+
+    fn drop_made(&mut self, tab: &Tab, name: &str, content: &str) {
+        let name = json!(name);
         let code = format!(
-            "(() => {{ const data = new DataTransfer(); data.items.add(new File([{text}], {name}));
+            "(() => {{ const data = new DataTransfer(); data.items.add(new File([{content}], {name}));
              document.querySelector('#drop').dispatchEvent(new DragEvent('drop',
              {{dataTransfer: data, bubbles: true, cancelable: true}})); }})()"
         );

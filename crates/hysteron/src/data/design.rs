@@ -20,10 +20,25 @@ impl Design {
     /// # Errors
     /// [`Error::File`](crate::Error::File).
     pub fn write_to(&self, mut table: TableWriter) -> Result<()> {
+        self.fill(&mut table)?;
+        table.finish()
+    }
+
+    /// The bytes that [`Design::write_csv`] writes.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File).
+    pub fn to_csv(&self) -> Result<Vec<u8>> {
+        let mut table = TableWriter::in_memory("profile.csv")?;
+        self.fill(&mut table)?;
+        table.into_bytes()
+    }
+
+    fn fill(&self, table: &mut TableWriter) -> Result<()> {
         table.row(["time [s]", "input"])?;
         for (time, input) in self.time.iter().zip(&self.input) {
             table.row([time.to_string(), input.to_string()])?;
         }
-        table.finish()
+        Ok(())
     }
 }

@@ -1,10 +1,9 @@
 //! Copies a Parquet file and adds columns. The stored columns of the source are copied as bytes,
 //! whatever their type.
 
-use super::AtomicFile;
 use super::parquet::{Cells, Kind, field, io_error, properties};
 use super::spool::distinct;
-use super::table::{Added, Cell};
+use super::table::{Added, Cell, Sink};
 use crate::data::table::caught;
 use parquet::column::writer::ColumnCloseResult;
 use parquet::errors::ParquetError;
@@ -54,14 +53,14 @@ impl Original {
 /// The copy while it is written, with the new cells of the current row group.
 pub(super) struct Splice {
     original: Original,
-    writer: SerializedFileWriter<AtomicFile>,
+    writer: SerializedFileWriter<Sink>,
     added: Vec<Cells>,
     group: usize,
     rows: u64,
 }
 
 impl Splice {
-    pub(super) fn start(original: Original, out: AtomicFile, added: &[Added]) -> io::Result<Self> {
+    pub(super) fn start(original: Original, out: Sink, added: &[Added]) -> io::Result<Self> {
         let about = original.about.file_metadata();
         let root = about.schema_descr().root_schema();
         let there = root.get_fields().iter();
@@ -147,7 +146,7 @@ impl Splice {
     }
 
     /// Ends the copy, after the last row.
-    pub(super) fn finish(self) -> io::Result<AtomicFile> {
+    pub(super) fn finish(self) -> io::Result<Sink> {
         match self.original.rows(self.group) {
             None => self.writer.into_inner().map_err(io_error),
             Some(_) => Err(io::Error::other(

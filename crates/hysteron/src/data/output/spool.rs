@@ -2,12 +2,11 @@
 //!
 //! The type of a column is known only after its last cell. So the rows are stored in a file without
 //! a name, which the system removes when the program ends. Memory does not grow with the number of
-//! rows.
+//! rows. The rows of a table in memory are stored in memory.
 
-use super::AtomicFile;
 use super::csv::Csv;
 use super::parquet::{Cells, Kind, field, io_error, properties};
-use super::table::Cell;
+use super::table::{Cell, Sink};
 use super::unfinished::bare;
 use crate::data::cells::push_row;
 use crate::data::table::Splitter;
@@ -17,7 +16,7 @@ use parquet::schema::types::Type;
 use std::collections::HashSet;
 use std::fs::File;
 use std::hash::Hash;
-use std::io::{self, BufReader, Seek};
+use std::io::{self, BufReader, Cursor, Read, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,23 +25,66 @@ const GROUP: usize = 1 << 24;
 
 /// The stored rows. The first one is the header.
 pub(super) struct Spool {
-    rows: Csv<File>,
+    rows: Csv<Store>,
     header: Option<Vec<String>>,
     kinds: Vec<Kind>,
     row: Vec<u8>,
     splitter: Splitter,
 }
 
+enum Store {
+    File(File),
+    Memory(Vec<u8>),
+}
+
+impl Store {
+    /// The rows, from the first one on.
+    fn read(self) -> io::Result<Box<dyn Read>> {
+        Ok(match self {
+            Store::File(mut file) => {
+                file.rewind()?;
+                Box::new(BufReader::new(file))
+            }
+            Store::Memory(bytes) => Box::new(Cursor::new(bytes)),
+        })
+    }
+}
+
+impl Write for Store {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Store::File(file) => file.write(bytes),
+            Store::Memory(held) => held.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Store::File(file) => file.flush(),
+            Store::Memory(_) => Ok(()),
+        }
+    }
+}
+
 impl Spool {
     /// Creates the store in a folder that has enough space.
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
-        Ok(Self {
-            rows: Csv::new(tempfile::tempfile_in(folder).map_err(bare)?),
+        let file = tempfile::tempfile_in(folder).map_err(bare)?;
+        Ok(Self::of(Store::File(file)))
+    }
+
+    pub(super) fn in_memory() -> Self {
+        Self::of(Store::Memory(Vec::new()))
+    }
+
+    fn of(store: Store) -> Self {
+        Self {
+            rows: Csv::new(store),
             header: None,
             kinds: Vec::new(),
             row: Vec::new(),
             splitter: Splitter::default(),
-        })
+        }
     }
 
     pub(super) fn row<C: AsRef<[u8]>>(
@@ -82,11 +124,10 @@ impl Spool {
     }
 
     /// Writes all rows as Parquet.
-    pub(super) fn finish(self, out: AtomicFile) -> io::Result<AtomicFile> {
-        let Some(mut file) = self.rows.finish()? else {
+    pub(super) fn finish(self, out: Sink) -> io::Result<Sink> {
+        let Some(stored) = self.rows.finish()? else {
             return Ok(out);
         };
-        file.rewind()?;
         let header = self.header.unwrap_or_default();
         distinct(header.iter())?;
         let fields = header.iter().zip(&self.kinds);
@@ -98,18 +139,18 @@ impl Spool {
         });
         let schema = Arc::new(schema.map_err(io_error)?);
         let writer = SerializedFileWriter::new(out, schema, properties(&[])).map_err(io_error)?;
-        write(writer, &self.kinds, file)
+        write(writer, &self.kinds, stored.read()?)
     }
 }
 
 fn write(
-    mut writer: SerializedFileWriter<AtomicFile>,
+    mut writer: SerializedFileWriter<Sink>,
     kinds: &[Kind],
-    rows: File,
-) -> io::Result<AtomicFile> {
+    rows: impl Read,
+) -> io::Result<Sink> {
     let mut rows = csv::ReaderBuilder::new()
         .has_headers(false)
-        .from_reader(BufReader::new(rows));
+        .from_reader(rows);
     let mut columns: Vec<Cells> = kinds.iter().map(|kind| Cells::new(*kind)).collect();
     let (mut row, mut bytes) = (csv::ByteRecord::new(), 0);
     while rows.read_byte_record(&mut row)? {
@@ -133,7 +174,7 @@ fn write(
 }
 
 fn write_group(
-    writer: &mut SerializedFileWriter<AtomicFile>,
+    writer: &mut SerializedFileWriter<Sink>,
     columns: &mut [Cells],
 ) -> Result<(), ParquetError> {
     let mut group = writer.next_row_group()?;

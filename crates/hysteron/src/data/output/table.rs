@@ -1,4 +1,4 @@
-//! Writes tables row by row, as CSV or Parquet.
+//! Writes tables row by row, as CSV or Parquet, to a file, to standard output or to memory.
 
 use super::csv::Csv;
 use super::destination::folder_of;
@@ -60,13 +60,14 @@ pub struct TableWriter {
 
 enum Format {
     Csv(Csv<Sink>),
-    Parquet(Spool, AtomicFile),
+    Parquet(Spool, Sink),
     Spliced(Box<Splice>),
 }
 
-enum Sink {
+pub(super) enum Sink {
     Stdout(io::Stdout),
     File(AtomicFile),
+    Memory(Vec<u8>),
 }
 
 impl Write for Sink {
@@ -74,6 +75,7 @@ impl Write for Sink {
         match self {
             Sink::Stdout(out) => out.write(bytes),
             Sink::File(out) => out.write(bytes),
+            Sink::Memory(out) => out.write(bytes),
         }
     }
 
@@ -81,19 +83,25 @@ impl Write for Sink {
         match self {
             Sink::Stdout(out) => out.flush(),
             Sink::File(out) => out.flush(),
+            Sink::Memory(_) => Ok(()),
         }
     }
 }
 
 /// Whether a table with this name is Parquet.
 fn is_parquet(path: &Path) -> io::Result<bool> {
+    // The name of a pipe or of `/dev/null` does not decide the format.
+    match path.metadata().is_ok_and(|there| !there.is_file()) {
+        true => Ok(by_ending(path).unwrap_or(false)),
+        false => by_ending(path),
+    }
+}
+
+/// Whether the ending of a name is that of Parquet.
+fn by_ending(path: &Path) -> io::Result<bool> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
-    // The name of a pipe or of `/dev/null` does not decide the format.
-    if path.metadata().is_ok_and(|there| !there.is_file()) {
-        return Ok(ending.as_deref() == Some("parquet"));
-    }
     match ending.as_deref() {
         None | Some("csv" | "txt" | "dat") => Ok(false),
         Some("parquet") => Ok(true),
@@ -138,7 +146,37 @@ impl TableWriter {
         let file = AtomicFile::create(target, own)?;
         let to = match parquet {
             false => Format::Csv(Csv::new(Sink::File(file))),
-            true => Format::Parquet(Spool::create_in(folder_of(&path)).map_err(failed)?, file),
+            true => {
+                let spool = Spool::create_in(folder_of(&path)).map_err(failed)?;
+                Format::Parquet(spool, Sink::File(file))
+            }
+        };
+        Ok(Self { path, to })
+    }
+
+    /// A table in memory, in the format that the ending of `name` decides. No file is touched.
+    ///
+    /// ```
+    /// use hysteron::TableWriter;
+    /// let mut table = TableWriter::in_memory("run.csv")?;
+    /// table.row(["temperature [degC]", "lift"])?;
+    /// table.row(["20", "0.5"])?;
+    /// assert_eq!(table.into_bytes()?, b"temperature [degC],lift\n20,0.5\n");
+    /// # Ok::<(), hysteron::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::File`] for a name with the ending of a format that cannot be written.
+    pub fn in_memory(name: &str) -> Result<Self> {
+        let path = PathBuf::from(name);
+        let parquet = by_ending(&path).map_err(|source| Error::File {
+            path: path.clone(),
+            source,
+        })?;
+        let memory = Sink::Memory(Vec::new());
+        let to = match parquet {
+            false => Format::Csv(Csv::new(memory)),
+            true => Format::Parquet(Spool::in_memory(), memory),
         };
         Ok(Self { path, to })
     }
@@ -230,19 +268,30 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub fn finish(self) -> Result<()> {
+        match self.end()? {
+            Some(Sink::File(file)) => file.commit(),
+            Some(Sink::Stdout(_) | Sink::Memory(_)) | None => Ok(()),
+        }
+    }
+
+    /// Ends a table in memory; empty for any other.
+    ///
+    /// # Errors
+    /// [`Error::File`], as for two columns of one name in Parquet.
+    pub fn into_bytes(self) -> Result<Vec<u8>> {
+        match self.end()? {
+            Some(Sink::Memory(bytes)) => Ok(bytes),
+            Some(Sink::Stdout(_) | Sink::File(_)) | None => Ok(Vec::new()),
+        }
+    }
+
+    fn end(self) -> Result<Option<Sink>> {
         let path = self.path;
         let ended = match self.to {
-            Format::Csv(csv) => csv.finish().map(|sink| match sink {
-                Some(Sink::File(file)) => Some(file),
-                Some(Sink::Stdout(_)) | None => None,
-            }),
-            Format::Parquet(spool, file) => spool.finish(file).map(Some),
+            Format::Csv(csv) => csv.finish(),
+            Format::Parquet(spool, to) => spool.finish(to).map(Some),
             Format::Spliced(splice) => splice.finish().map(Some),
         };
-        match ended {
-            Ok(Some(file)) => file.commit(),
-            Ok(None) => Ok(()),
-            Err(source) => Err(Error::File { path, source }),
-        }
+        ended.map_err(|source| Error::File { path, source })
     }
 }

@@ -72,6 +72,7 @@ pub(super) struct Workshop {
 impl Workshop {
     pub(super) fn create_in(folder: &Path) -> io::Result<Self> {
         sweep(folder);
+        #[cfg_attr(not(unix), expect(unused_mut))]
         let mut builder = builder();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
