@@ -109,7 +109,10 @@ impl Series {
 
 /// The states, to compare: a state that has not seen a load has a NaN, which equals nothing.
 fn shown<'a>(states: impl IntoIterator<Item = &'a State>) -> Vec<String> {
-    states.into_iter().map(|state| format!("{state:?}")).collect()
+    states
+        .into_iter()
+        .map(|state| format!("{state:?}"))
+        .collect()
 }
 
 fn states(batch: &BatchModel) -> Vec<String> {
