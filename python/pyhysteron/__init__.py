@@ -9,7 +9,7 @@ that changes.
 
 Submodules: `pyhysteron.control` and `track` for control loops, `pyhysteron.plot` for figures,
 `pyhysteron.sklearn` for a regressor, `pyhysteron.blocks` for blocks of python-control,
-`pyhysteron.fleet` for many actuators at once, `pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
+`pyhysteron.fleet` for fits of many actuators, `BatchModel` to run many models at once, `pyhysteron.results` for what functions return, `pyhysteron.errors` for exceptions. Those with an
 extra package are imported when they are first used.
 """
 
@@ -23,6 +23,7 @@ from ._hysteron import (
     Adapted,
     Adaptive,
     AdaptiveLoad,
+    BatchModel,
     Comparison,
     Design,
     Inverse,
@@ -76,6 +77,7 @@ __all__ = [
     "Adapted",
     "Adaptive",
     "AdaptiveLoad",
+    "BatchModel",
     "Comparison",
     "Design",
     "Inverse",

@@ -41,6 +41,7 @@ __all__ = [
     "Adapted",
     "Adaptive",
     "AdaptiveLoad",
+    "BatchModel",
     "Comparison",
     "Controller",
     "Design",
@@ -258,6 +259,30 @@ class AdaptiveLoad:
     def step(self, input: float, measured: float, *, dt: float | None = None) -> Learning: ...
     def __copy__(self) -> AdaptiveLoad: ...
     def __deepcopy__(self, _memo: object) -> AdaptiveLoad: ...
+
+@final
+class BatchModel:
+    def __new__(cls, models: Model | Sequence[Model], count: int | None = None) -> BatchModel: ...
+    @property
+    def models(self) -> list[Model]: ...
+    @property
+    def states(self) -> list[State]: ...
+    def reset(self) -> None: ...
+    def run(
+        self,
+        inputs: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
+    ) -> _Array: ...
+    def step(
+        self,
+        inputs: ArrayLike,
+        *,
+        dt: float | None = None,
+        load: float | ArrayLike | None = None,
+    ) -> _Array: ...
+    def __len__(self) -> int: ...
 
 @final
 class Comparison:

@@ -70,6 +70,7 @@ def test_in_a_forked_process(name):
 MODEL = pyhysteron.Model([1.0, 2.0, 4.0], (0, 1))
 INVERSE, STATE = MODEL.inverse(), MODEL.start()
 STRANGE = pyhysteron.Model(np.ones(6), (0, 1)).start()  # of another model
+BATCH = pyhysteron.BatchModel(MODEL, 2)
 ADAPTIVE, PID = pyhysteron.Adaptive(MODEL), Pid(1.0, integral_s=1.0)
 CONTROLLER = Controller(0.1, (0, 1), model=MODEL, pid=PID)
 PLANT = pyhysteron.PreisachPlant(levels=60)
@@ -77,6 +78,8 @@ PLANT = pyhysteron.PreisachPlant(levels=60)
 COLLECTED = {
     "State.step": (lambda: STATE.step(0.5), lambda: STATE.step(np.nan)),
     "State.run": (lambda: STATE.run([0.5, 1.0]), lambda: STATE.run([0.5, np.nan])),
+    "BatchModel.run": (lambda: BATCH.run([[0.5], [1.0]]), lambda: BATCH.run([[0.5], [np.nan]])),
+    "BatchModel.step": (lambda: BATCH.step([0.5, 1.0]), lambda: BATCH.step([0.5, np.nan])),
     "Inverse.step": (lambda: INVERSE.step(STATE, 6.0), lambda: INVERSE.step(STRANGE, 6.0)),
     "Inverse.run": (lambda: INVERSE.run([6.0], state=STATE), lambda: INVERSE.run([6.0], state=STRANGE)),
     "Adaptive.step": (lambda: ADAPTIVE.step(0.5, 3.0), lambda: ADAPTIVE.step(0.5, np.nan)),
@@ -90,7 +93,7 @@ COLLECTED = {
 
 def look():
     """Uses all that the calls work with."""
-    return STATE.input, STRANGE.input, ADAPTIVE.input, CONTROLLER.interval_s, PLANT.truth(), PID.hold()
+    return STATE.input, STRANGE.input, BATCH.states, ADAPTIVE.input, CONTROLLER.interval_s, PLANT.truth(), PID.hold()
 
 
 def made(error, *text):

@@ -897,6 +897,78 @@ int32_t hysteron_adaptive_load_align(uint64_t adaptive_load);
 int32_t hysteron_adaptive_load_freeze(uint64_t adaptive_load, int32_t frozen);
 
 /**
+ * Makes a batch of `lanes` models with a state each, which move together. A lane is one of them
+ * with its state, as `hysteron_state_new` makes it. The same model may come more than once. The
+ * models may be freed before the batch. Free the handle with `hysteron_batch_free`.
+ *
+ * Each lane gives the same outputs as a state alone, to the last bit. Many samples are divided
+ * among all processors.
+ */
+int32_t hysteron_batch_new(const uint64_t *models, size_t lanes, uint64_t *batch);
+
+/**
+ * As `hysteron_batch_new`, with `lanes` states of one model.
+ */
+int32_t hysteron_batch_of(uint64_t model, size_t lanes, uint64_t *batch);
+
+/**
+ * Frees a batch. States of its lanes stay valid.
+ */
+int32_t hysteron_batch_free(uint64_t batch);
+
+/**
+ * Brings all lanes back to their start, as that of a new batch.
+ */
+int32_t hysteron_batch_reset(uint64_t batch);
+
+/**
+ * Moves every lane by one sample: `lanes` inputs, and as many outputs. The arrays must not
+ * overlap. After an error, whose text names the lane, all lanes stay as they are.
+ */
+int32_t hysteron_batch_step(uint64_t batch, const double *input, double *output, size_t lanes);
+
+/**
+ * As `hysteron_batch_step`, for any models. `dt` is the time since the sample before in seconds,
+ * 0 for the first one, or `NAN` for models that do not depend on time. `load` has the load of each
+ * lane, or is null. A lane that does not depend on one of them takes no notice of it.
+ */
+int32_t hysteron_batch_step_in(uint64_t batch,
+                               const double *input,
+                               double dt,
+                               const double *load,
+                               double *output,
+                               size_t lanes);
+
+/**
+ * Moves every lane through its inputs: `count` inputs, and as many outputs. They come row by row:
+ * first all samples of lane 0, then all of lane 1. `count` is a multiple of the number of lanes.
+ * The arrays must not overlap. After an error, whose text names the lane, all lanes stay as they
+ * are.
+ */
+int32_t hysteron_batch_run(uint64_t batch, const double *input, double *output, size_t count);
+
+/**
+ * As `hysteron_batch_run`, for any models. `time` has the time of each of the `samples` of a lane
+ * in seconds, or is null; it is the same for all lanes. `last_time` is the time of the sample
+ * before the first one, `NAN` for a new batch. `load` has `count` loads in the order of the
+ * inputs, or is null. A lane that does not depend on one of them takes no notice of it.
+ */
+int32_t hysteron_batch_run_in(uint64_t batch,
+                              const double *input,
+                              const double *time,
+                              size_t samples,
+                              double last_time,
+                              const double *load,
+                              double *output,
+                              size_t count);
+
+/**
+ * Makes a state of its own from that of a lane, counted from 0: a copy, for all functions of a
+ * state. Free it with `hysteron_state_free`.
+ */
+int32_t hysteron_batch_state(uint64_t batch, size_t lane, uint64_t *state);
+
+/**
  * Size in bytes of stages with these constants. 0 if there are no such stages. The memory has to
  * be aligned like a `uint64_t`.
  */

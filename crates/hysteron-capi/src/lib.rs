@@ -22,6 +22,8 @@ mod adaptive;
 #[cfg(feature = "handles")]
 mod adaptive_load;
 #[cfg(feature = "handles")]
+mod batch;
+#[cfg(feature = "handles")]
 mod chain;
 mod codes;
 #[cfg(feature = "handles")]
@@ -62,6 +64,8 @@ mod types;
 pub use adaptive::*;
 #[cfg(feature = "handles")]
 pub use adaptive_load::*;
+#[cfg(feature = "handles")]
+pub use batch::*;
 #[cfg(feature = "handles")]
 pub use chain::*;
 pub use codes::*;

@@ -19,6 +19,11 @@ pub(crate) struct Running {
 }
 
 impl Running {
+    pub(crate) fn new(model: Arc<Model>, state: State) -> Self {
+        let state = Mutex::new(state);
+        Self { model, state }
+    }
+
     pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -47,8 +52,8 @@ pub unsafe extern "C" fn hysteron_state_new(model: u64, state: *mut u64) -> i32 
         // SAFETY: the contract of the crate.
         let out = unsafe { Arguments::default().out(state, "state")? };
         let model = MODELS.get(model, "model")?;
-        let state = Mutex::new(model.start());
-        out.set(STATES.insert(Running { model, state })?);
+        let state = model.start();
+        out.set(STATES.insert(Running::new(model, state))?);
         Ok(())
     })
 }

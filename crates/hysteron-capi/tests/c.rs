@@ -14,11 +14,12 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 const SANITIZE: &str = "-fsanitize=address,undefined";
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 8] = [
     "main.c",
     "vector.c",
     "vector_stages.c",
     "handles.c",
+    "batch.c",
     "memory.c",
     "stages.c",
     "misuse.c",

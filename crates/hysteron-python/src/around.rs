@@ -1,6 +1,6 @@
 //! What goes with the samples of an input: time and load.
 
-use crate::array::{series, times};
+use crate::array::{rows, series, times};
 use crate::error::{finite, number};
 use hysteron::{Model, Surroundings};
 use pyo3::prelude::*;
@@ -38,10 +38,26 @@ impl Around {
     }
 }
 
-fn loads(value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<f64>> {
+/// The loads of a series. One number is the load of all of its `count` samples.
+pub(crate) fn loads(value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<f64>> {
+    match one_load(value)? {
+        Some(load) => Ok(vec![load; count]),
+        None => series(value, "load"),
+    }
+}
+
+/// As [`loads`], in rows.
+pub(crate) fn rows_of_loads(value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<f64>> {
+    match one_load(value)? {
+        Some(load) => Ok(vec![load; count]),
+        None => Ok(rows(value, "load")?.as_slice()?.to_vec()),
+    }
+}
+
+fn one_load(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     match (value.len(), value.extract()) {
-        (Err(_), Ok(load)) => Ok(vec![number("load", load)?; count]),
-        _ => series(value, "load"),
+        (Err(_), Ok(load)) => number("load", load).map(Some),
+        _ => Ok(None),
     }
 }
 

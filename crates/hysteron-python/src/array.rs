@@ -1,7 +1,11 @@
 //! Samples from Python: float64 arrays as they are in memory, everything else converted.
 
 use numpy::PyUntypedArrayMethods;
-use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray1, PyUntypedArray};
+use numpy::ndarray::Dimension;
+use numpy::{
+    PyArray, PyArray1, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArray,
+};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -15,6 +19,22 @@ pub(crate) fn samples<'py>(
     value: &Bound<'py, PyAny>,
     argument: &str,
 ) -> PyResult<PyReadonlyArray1<'py, f64>> {
+    numbers(value, argument, "one dimension is needed")
+}
+
+/// As [`samples`], in rows: each row is contiguous, and follows the one before it.
+pub(crate) fn rows<'py>(
+    value: &Bound<'py, PyAny>,
+    argument: &str,
+) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    numbers(value, argument, "two dimensions are needed")
+}
+
+fn numbers<'py, D: Dimension + 'py>(
+    value: &Bound<'py, PyAny>,
+    argument: &str,
+    needed: &str,
+) -> PyResult<PyReadonlyArray<'py, f64, D>> {
     // By its name: `recording.rs` builds on this file.
     if value.get_type().name()? == "Recording" && value.hasattr("input_name")? {
         let text =
@@ -23,12 +43,11 @@ pub(crate) fn samples<'py>(
     }
     let numpy = value.py().import("numpy")?;
     // A masked array is a subclass, and its mask counts.
-    if let Ok(array) = value.cast::<PyArray1<f64>>()
+    if let Ok(array) = value.cast::<PyArray<f64, D>>()
         && value.get_type().is(&numpy.getattr("ndarray")?)
     {
-        let array = array.try_readonly()?;
-        if array.as_slice().is_ok() {
-            return Ok(array);
+        if array.is_c_contiguous() {
+            return Ok(array.try_readonly()?);
         }
     }
     let array = array(value).map_err(|error| {
@@ -45,9 +64,9 @@ pub(crate) fn samples<'py>(
         let text = format!("`{argument}`: real numbers are needed, not {dtype}{remedy}");
         return Err(PyTypeError::new_err(text));
     }
-    if array.ndim() != 1 {
+    if D::NDIM != Some(array.ndim()) {
         let shape = array.shape();
-        let text = format!("`{argument}`: one dimension is needed, not the shape {shape:?}");
+        let text = format!("`{argument}`: {needed}, not the shape {shape:?}");
         return Err(PyValueError::new_err(text));
     }
     let converted = numpy
@@ -55,7 +74,7 @@ pub(crate) fn samples<'py>(
         .map_err(|error| {
             PyTypeError::new_err(format!("`{argument}`: not all are real numbers: {error}"))
         })?;
-    Ok(converted.cast::<PyArray1<f64>>()?.try_readonly()?)
+    Ok(converted.cast::<PyArray<f64, D>>()?.try_readonly()?)
 }
 
 /// An array of whatever `value` holds; masked entries are NaN.

@@ -54,7 +54,11 @@ fn not_finite(place: &str, value: f64) -> PyErr {
 
 fn exception(error: &Error) -> PyErr {
     let (error, remedy) = error.parts();
-    let class = match error {
+    let of_one = match error {
+        Error::Lane { error, .. } => error,
+        error => error,
+    };
+    let class = match of_one {
         Error::Core(_) => "CoreError",
         Error::File { path, source } => match source.raw_os_error() {
             Some(number) => {

@@ -6,6 +6,7 @@ mod adaptive;
 mod adaptive_load;
 mod around;
 mod array;
+mod batch;
 mod choices;
 mod compare;
 mod controller;
@@ -59,6 +60,8 @@ mod _hysteron {
     use crate::adaptive::Adaptive;
     #[pymodule_export]
     use crate::adaptive_load::AdaptiveLoad;
+    #[pymodule_export]
+    use crate::batch::BatchModel;
     #[pymodule_export]
     use crate::compare::compare;
     #[pymodule_export]

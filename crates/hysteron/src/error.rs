@@ -98,6 +98,14 @@ pub enum Error {
     /// A simulated plant was asked for something that it cannot do.
     #[error(transparent)]
     Plant(Box<dyn std::error::Error + Send + Sync>),
+    /// One lane of a batch refused its samples.
+    #[error("lane number {lane} (from 0): {error}")]
+    Lane {
+        /// Number of the lane, from 0.
+        lane: usize,
+        /// What is wrong in it.
+        error: Box<Error>,
+    },
     /// Another error, with a remedy for it. [`Error::parts`] separates the two.
     #[error("{error}: {remedy}")]
     Remedied {
@@ -109,7 +117,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// A number for each kind of error. It never changes. The codes of the core are below 20.
+    /// A number for each kind of error. It never changes. The codes of the core are below 20. A lane
+    /// of a batch has the code of its error.
     #[must_use]
     pub fn code(&self) -> i32 {
         match self {
@@ -126,7 +135,7 @@ impl Error {
             Error::Scenario { .. } => 29,
             Error::Control(_) => 30,
             Error::Export(_) => 31,
-            Error::Remedied { error, .. } => error.code(),
+            Error::Lane { error, .. } | Error::Remedied { error, .. } => error.code(),
         }
     }
 
@@ -144,6 +153,19 @@ impl Error {
     pub fn remedied(self, remedy: Remedy) -> Self {
         let error = Box::new(self);
         Error::Remedied { error, remedy }
+    }
+}
+
+impl Error {
+    /// This error as that of a lane. A remedy stays outermost.
+    pub(crate) fn in_lane(self, lane: usize) -> Self {
+        match self {
+            Error::Remedied { error, remedy } => error.in_lane(lane).remedied(remedy),
+            error => Error::Lane {
+                lane,
+                error: Box::new(error),
+            },
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! - Clean a noisy recording with [`prepare()`].
 //! - Identify a model with [`Fit`].
 //! - Simulate a whole input with [`Model::simulate`], or one sample at a time with [`Model::step`].
+//! - Run many actuators or many inputs at once with [`BatchModel`].
 //! - Compensate the hysteresis with [`Model::inverse`].
 //! - Measure the errors with [`evaluate`], and on samples that were not fitted with
 //!   [`fit_holding_out`], beside simple predictors ([`Rival`]).
@@ -22,6 +23,7 @@
 #![forbid(unsafe_code)]
 
 mod adapt;
+mod batch;
 pub mod control;
 #[cfg(feature = "data")]
 mod data;
@@ -47,6 +49,7 @@ pub use adapt::{
     AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
     Learner, OutcomeCounts, Refit, ShiftFound, Window, adapt,
 };
+pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts,

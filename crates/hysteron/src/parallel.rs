@@ -19,3 +19,25 @@ pub(crate) fn map<T: Send>(
 pub(crate) fn map<T>(count: usize, work: impl Fn(usize) -> Result<T>) -> Result<Vec<T>> {
     (0..count).map(work).collect()
 }
+
+/// The results of `work` for each of `items`, in order. A thread takes `least` items or more, so
+/// that little work stays on the present one.
+#[cfg(feature = "parallel")]
+pub(crate) fn map_mut<I: Send, T: Send>(
+    items: &mut [I],
+    least: usize,
+    work: impl Fn(&mut I) -> T + Sync + Send,
+) -> Vec<T> {
+    use rayon::prelude::*;
+    if items.len() <= least {
+        return items.iter_mut().map(work).collect();
+    }
+    let items = items.par_iter_mut().with_min_len(least);
+    items.map(work).collect()
+}
+
+/// The results of `work` for each of `items`, in order.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn map_mut<I, T>(items: &mut [I], _least: usize, work: impl Fn(&mut I) -> T) -> Vec<T> {
+    items.iter_mut().map(work).collect()
+}

@@ -30,6 +30,7 @@ static inline void *room(size_t bytes) {
 void vector_run(const char *model_file, const char *run_file);
 void vector_stages(const char *model_file, FILE *file);
 void handles(void);
+void batches(void);
 void memory_form(void);
 void stages(void);
 void misuse(void);

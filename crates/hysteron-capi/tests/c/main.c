@@ -6,6 +6,7 @@ int main(int count, char **arguments) {
         vector_run(arguments[1], arguments[2]);
     } else {
         handles();
+        batches();
         memory_form();
         stages();
         misuse();

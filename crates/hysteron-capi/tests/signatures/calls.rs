@@ -2,7 +2,7 @@
 
 use super::Argument::{
     Characters, Constants, Doubles, Estimator, Found, Integers, Json, Learning, Limits, Memory,
-    Model, Options, Path, Shift, ShiftOptions, StageState, Stages, State, Word,
+    Model, ModelHandle, Options, Path, Shift, ShiftOptions, StageState, Stages, State, Word,
 };
 use super::{
     Call, LEVELS, WEIGHTS, estimator_size, model_size, shift_size, stages_size, state_size,
@@ -44,6 +44,16 @@ calls! {
         (h.model, f64::NAN, options.cast(), adaptive_load.cast());
     hysteron_adaptive_new(options: Options, adaptive: Word) |h|
         (h.model, options.cast(), adaptive.cast());
+    hysteron_batch_new(models: ModelHandle, batch: Word) |_h|
+        (models.cast(), 1, batch.cast());
+    hysteron_batch_run(input: SERIES, output: SERIES) |h|
+        (h.plain_batch, input.cast(), output.cast(), 3);
+    hysteron_batch_run_in(input: SERIES, time: ONE, load: LOADS, output: SERIES) |h|
+        (h.batch, input.cast(), time.cast(), 1, f64::NAN, load.cast(), output.cast(), 3);
+    hysteron_batch_step(input: SERIES, output: SERIES) |h|
+        (h.plain_batch, input.cast(), output.cast(), 3);
+    hysteron_batch_step_in(input: SERIES, load: LOADS, output: SERIES) |h|
+        (h.batch, input.cast(), 0.1, load.cast(), output.cast(), 3);
     hysteron_core_estimator_init(
         model: Model, options: Options, weights: SPRING, memory: Memory(estimator_size), estimator: Word
     ) |_h| (

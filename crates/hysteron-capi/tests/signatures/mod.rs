@@ -33,6 +33,8 @@ pub enum Argument {
     Characters(usize),
     /// A handle, a size or a pointer.
     Word,
+    /// The handle of a model, to read.
+    ModelHandle,
     Options,
     Learning,
     /// Limits of the inverse, what stages remember, and constants of stages without arrays.
@@ -62,6 +64,8 @@ pub struct Handles {
     pub loaded: u64,
     pub adaptive: u64,
     pub follower: u64,
+    pub batch: u64,
+    pub plain_batch: u64,
 }
 
 impl Handles {
@@ -70,6 +74,7 @@ impl Handles {
         std::fs::write(folder.path().join("model.json"), MODEL_TEXT).unwrap();
         let (mut model, mut state, mut adaptive) = (0, 0, 0);
         let (mut other, mut loaded, mut follower) = (0, 0, 0);
+        let (mut batch, mut plain_batch) = (0, 0);
         let count = WEIGHTS.len();
         // SAFETY: live memory of the sizes given.
         let made = unsafe {
@@ -90,9 +95,11 @@ impl Handles {
                 hysteron_model_parse(LOADED_TEXT.as_ptr(), &mut other),
                 hysteron_state_new(other, &mut loaded),
                 hysteron_adaptive_load_new(model, f64::NAN, std::ptr::null(), &mut follower),
+                hysteron_batch_of(other, 3, &mut batch),
+                hysteron_batch_of(model, 3, &mut plain_batch),
             ]
         };
-        assert_eq!(made, [HYSTERON_OK; 6]);
+        assert_eq!(made, [HYSTERON_OK; 8]);
         Self {
             folder,
             model,
@@ -100,6 +107,8 @@ impl Handles {
             loaded,
             adaptive,
             follower,
+            batch,
+            plain_batch,
         }
     }
 
@@ -175,7 +184,7 @@ impl Argument {
             Self::Doubles(values) => size_of_val(values),
             Self::Integers(count) => count * size_of::<i32>(),
             Self::Characters(count) => count,
-            Self::Word => size_of::<u64>(),
+            Self::Word | Self::ModelHandle => size_of::<u64>(),
             Self::Options => size_of::<HysteronAdaptation>(),
             Self::Learning => size_of::<HysteronLearning>(),
             Self::Limits => size_of::<HysteronLimits>(),
@@ -228,6 +237,8 @@ impl Argument {
             Self::Doubles(values) => unsafe {
                 place.cast::<f64>().copy_from(values.as_ptr(), values.len());
             },
+            // SAFETY: the place has room for it.
+            Self::ModelHandle => unsafe { place.cast::<u64>().write(handles.model) },
             // SAFETY: the place has room for it.
             Self::Options => unsafe { place.cast::<HysteronAdaptation>().write(options()) },
             // SAFETY: the place has room for it.
