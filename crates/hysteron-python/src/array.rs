@@ -45,10 +45,9 @@ fn numbers<'py, D: Dimension + 'py>(
     // A masked array is a subclass, and its mask counts.
     if let Ok(array) = value.cast::<PyArray<f64, D>>()
         && value.get_type().is(&numpy.getattr("ndarray")?)
+        && array.is_c_contiguous()
     {
-        if array.is_c_contiguous() {
-            return Ok(array.try_readonly()?);
-        }
+        return Ok(array.try_readonly()?);
     }
     let array = array(value).map_err(|error| {
         PyTypeError::new_err(format!("`{argument}`: no array of numbers: {error}"))

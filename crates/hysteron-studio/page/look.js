@@ -66,7 +66,7 @@ function tools(files, changed) {
     el("button", { "data-key": "earlier", "aria-label": "Earlier", onclick: () => zoom(1, -0.25) }, "◀"),
     el("button", { "data-key": "later", "aria-label": "Later", onclick: () => zoom(1, 0.25) }, "▶"),
     el("button", { "data-key": "all", onclick: () => (Object.assign(now, { window: null, area: ALL }), redraw()) }, "Show all"),
-    el("button", { "data-key": "mark", "aria-pressed": String(now.marking), onclick: () => ((now.marking = !now.marking), again()) }, now.marking ? "Drag over the output to mark…" : "Mark a span for validation"),
+    el("button", { "data-key": "mark", "aria-pressed": String(now.marking), onclick: () => ((now.marking = !now.marking), again()) }, now.marking ? "Drag over the output to mark…" : file?.marked.length ? "Mark another span for validation" : "Mark a span for validation"),
     file?.steps ? el("button", { "data-key": "as-read", "aria-pressed": String(now.raw), onclick: () => ((now.raw = !now.raw), again()) }, "As read, too") : null,
     file && now.marking
       ? el("form", { class: "row", onsubmit: (/** @type {any} */ e) => {
@@ -120,8 +120,8 @@ async function picture([band, id], mine) {
   }
   const range = overTime ? now.window ?? curves.span : band === "histogram" ? null : now.area.input;
   const height = band === "loop" ? now.area.output : null;
-  const shapes = overTime && curves.marked
-    ? [{ type: "rect", xref: "x", yref: "paper", x0: curves.marked[0], x1: curves.marked[1], y0: 0, y1: 1, fillcolor: "rgba(230,159,0,.22)", line: { width: 0 }, label: { text: band === "output" ? "validation" : "", textposition: "top left" } }]
+  const shapes = overTime
+    ? curves.marked.map(([x0, x1]) => ({ type: "rect", xref: "x", yref: "paper", x0, x1, y0: 0, y1: 1, fillcolor: "rgba(230,159,0,.22)", line: { width: 0 }, label: { text: band === "output" ? "validation" : "", textposition: "top left" } }))
     : [];
   await draw(node, traces, {
     x: curves.x, y: curves.y, shapes: [...shapes, ...play.shapes(id)], barmode: "overlay", bargap: 0,

@@ -76,8 +76,8 @@ function card(file, changed) {
       { class: "row" },
       el("label", {}, "This file is ", purpose),
       mend,
-      file.marked && el("span", { class: "quiet" }, `Rows ${file.marked[0]} to ${file.marked[1]} are for validation.`),
-      file.marked && el("button", { onclick: () => send("mark", { rows: null }) }, "Fit them again"),
+      file.marked.length > 0 && el("span", { class: "quiet" }, `Rows ${file.marked.map(([a, b]) => `${a} to ${b}`).join(", ")} are for validation.`),
+      file.marked.length > 0 && el("button", { onclick: () => send("mark", { rows: null }) }, "Fit them again"),
       el("button", { "aria-label": `Close ${file.name}`, onclick: () => send("close") }, "Close"),
     ),
   );

@@ -183,7 +183,21 @@ fn files_and_rows_for_validation_test_a_fit() {
     let first = session.open("a.csv", table().into()).unwrap();
     let span = json!({"request": "mark_span", "file": first, "from": 40.0, "to": 60.0});
     ask(&mut session, span).unwrap();
-    assert_eq!(overview(&mut session).files[0].marked, Some((401, 600)));
+    assert_eq!(overview(&mut session).files[0].marked, [(401, 600)]);
+    // Spans are kept in order, and joined where they meet. Some rows are always left.
+    let mut mark = |a: usize, b: usize| {
+        ask(
+            &mut session,
+            json!({"request": "mark", "file": first, "rows": [a, b]}),
+        )
+        .is_ok()
+    };
+    assert!(mark(1, 30) && mark(31, 50) && mark(550, 590));
+    assert!(!mark(51, 400) && !mark(9, 3) && !mark(0, 5) && !mark(590, 601));
+    assert_eq!(
+        overview(&mut session).files[0].marked,
+        [(1, 50), (401, 600)]
+    );
     let options = json!({"levels": "8", "bootstrap": "0"});
     fit(&mut session, json!({"request": "fit", "options": options}));
     let second = session.open("b.csv", table().into()).unwrap();
@@ -197,9 +211,9 @@ fn files_and_rows_for_validation_test_a_fit() {
     let fits = overview(&mut session).fits;
     assert_eq!(
         (fits[0].hold_out.as_str(), fits[1].hold_out.as_str()),
-        ("rows:401-600", "files")
+        ("rows:1-50,401-600", "files")
     );
-    assert_eq!(fits[0].held_out.as_ref().unwrap().model.samples, 200);
+    assert_eq!(fits[0].held_out.as_ref().unwrap().model.samples, 250);
     assert_eq!(fits[1].held_out.as_ref().unwrap().model.samples, 600);
     let command = taken(&mut session, json!({"what": "command", "fit": fits[1].id}));
     assert!(

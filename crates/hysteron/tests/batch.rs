@@ -57,7 +57,7 @@ fn model(rng: &mut Rng, kind: Kind) -> Model {
 /// Models of their own, or one for all.
 fn models(rng: &mut Rng, count: usize, kind: Kind) -> Vec<Arc<Model>> {
     match rng.random_bool(0.3) {
-        true => vec![Arc::new(model(rng, kind)); count],
+        true => std::iter::repeat_n(Arc::new(model(rng, kind)), count).collect(),
         false => (0..count).map(|_| Arc::new(model(rng, kind))).collect(),
     }
 }

@@ -214,24 +214,28 @@ impl Session {
                 "open a file, and choose its columns",
             ));
         }
-        let marked: Vec<_> = of(Purpose::Fit).filter_map(|file| file.marked).collect();
+        let marked: Vec<_> = of(Purpose::Fit)
+            .flat_map(|file| file.marked.clone())
+            .collect();
         let mut others = Vec::new();
         for file in of(Purpose::Validate) {
             others.push(Recording::clone(file.recording()?));
         }
         let mut validated = Vec::new();
-        let (hold_out, words) = match (held, marked.first()) {
+        let (hold_out, words) = match (held, marked.is_empty()) {
             (Held::Nothing, _) => (None, String::new()),
             (Held::Words(words), _) => (Some(words.parse::<HoldOut>()?), words),
             (Held::Usual, _) if !others.is_empty() => {
                 validated = of(Purpose::Validate).map(|file| file.id).collect();
                 (Some(HoldOut::Recordings(others)), "files".into())
             }
-            (Held::Usual, Some((first, last))) => {
-                let rows = HoldOut::Rows(vec![*first..=*last]);
-                (Some(rows), format!("rows:{first}-{last}"))
+            (Held::Usual, false) => {
+                let rows = marked.iter().map(|(first, last)| *first..=*last).collect();
+                let spans = marked.iter().map(|(first, last)| format!("{first}-{last}"));
+                let words = format!("rows:{}", spans.collect::<Vec<_>>().join(","));
+                (Some(HoldOut::Rows(rows)), words)
             }
-            (Held::Usual, None) => {
+            (Held::Usual, true) => {
                 let fifth = HoldOut::Branches(0.2);
                 match recordings.iter().all(|r| r.split(&fifth).is_ok()) {
                     true => (Some(fifth), "branches:20%".into()),

@@ -94,8 +94,8 @@ pub struct Curves {
     pub samples: usize,
     /// The time of the first and of the last of them.
     pub span: Option<(f64, f64)>,
-    /// The part of the time marked for validation.
-    pub marked: Option<(f64, f64)>,
+    /// The spans of the time marked for validation.
+    pub marked: Vec<(f64, f64)>,
 }
 
 /// A line. A gap has `None` in both.
@@ -188,7 +188,7 @@ impl Session {
 
     pub(super) fn curves(&mut self, view: &View) -> Result<Curves, Fault> {
         let recording = self.file(view.file)?.recording()?.clone();
-        let marked = self.file(view.file)?.marked;
+        let marked = self.file(view.file)?.marked.clone();
         let mut courses = Vec::new();
         for &fit in &view.fits {
             courses.push((fit, self.course(fit, view.file)?));
@@ -270,7 +270,10 @@ impl Session {
                 let last = kept().next_back().unwrap_or(n);
                 (when(&recording, n), when(&recording, last))
             }),
-            marked: marked.map(|(a, b)| (when(&recording, a - 1), when(&recording, b - 1))),
+            marked: marked
+                .iter()
+                .map(|(a, b)| (when(&recording, a - 1), when(&recording, b - 1)))
+                .collect(),
         })
     }
 

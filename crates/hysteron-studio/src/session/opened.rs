@@ -40,7 +40,7 @@ pub(super) struct Opened {
     pub(super) roles: Part,
     pub(super) mend: bool,
     pub(super) purpose: Purpose,
-    pub(super) marked: Option<(usize, usize)>,
+    pub(super) marked: Vec<(usize, usize)>,
     pub(super) steps: Option<Steps>,
     /// As it was read.
     raw: Option<Arc<Recording>>,
@@ -105,8 +105,8 @@ pub struct FileView {
     pub mend: bool,
     /// What it is for.
     pub purpose: Purpose,
-    /// Rows marked for validation, counted from 1.
-    pub marked: Option<(usize, usize)>,
+    /// Spans of rows marked for validation, in order, counted from 1.
+    pub marked: Vec<(usize, usize)>,
     /// Samples of the recording.
     pub samples: usize,
     /// Branches of its input.
@@ -139,7 +139,7 @@ impl Opened {
             },
             mend: false,
             purpose: Purpose::Fit,
-            marked: None,
+            marked: Vec::new(),
             steps: None,
             raw: None,
             recording: Err(Fault::defect("not read yet")),
@@ -155,7 +155,7 @@ impl Opened {
     /// The file in a new version.
     pub(super) fn again(&self, bytes: Vec<u8>, memory: u64) -> Result<Self, Fault> {
         let mut new = Self::new(self.id, self.name.clone(), bytes, memory)?;
-        (new.mend, new.purpose, new.marked) = (self.mend, self.purpose, self.marked);
+        (new.mend, new.purpose, new.marked) = (self.mend, self.purpose, self.marked.clone());
         let same = |columns: &TablePreview| {
             let names = columns.table.columns.iter();
             names.map(|column| column.name.clone()).collect::<Vec<_>>()
@@ -196,17 +196,31 @@ impl Opened {
         self.raw.as_ref().filter(|_| self.steps.is_some())
     }
 
+    /// Marks one span of rows more, or none at all.
     pub(super) fn mark(&mut self, rows: Option<(usize, usize)>) -> Result<(), Fault> {
-        if let Some((first, last)) = rows {
-            let count = self.recording()?.len();
-            if first < 1 || last < first || last > count || last - first + 1 == count {
-                return Err(Fault::missing(
-                    &format!("rows {first} to {last} of {count} cannot be marked"),
-                    "mark a part of the recording",
-                ));
+        let Some((first, last)) = rows else {
+            self.marked.clear();
+            return Ok(());
+        };
+        let count = self.recording()?.len();
+        let mut spans = self.marked.clone();
+        spans.push((first, last));
+        spans.sort_unstable();
+        // Spans that meet are one.
+        let mut joined: Vec<(usize, usize)> = Vec::new();
+        for (first, last) in spans {
+            match joined.last_mut() {
+                Some((_, end)) if first <= end.saturating_add(1) => *end = last.max(*end),
+                _ => joined.push((first, last)),
             }
         }
-        self.marked = rows;
+        if first < 1 || last < first || last > count || joined == [(1, count)] {
+            return Err(Fault::missing(
+                &format!("rows {first} to {last} of {count} cannot be marked"),
+                "mark parts of the recording, and leave some",
+            ));
+        }
+        self.marked = joined;
         Ok(())
     }
 
@@ -275,7 +289,11 @@ impl Opened {
             .recording
             .as_ref()
             .map_or(0, |recording| recording.len());
-        self.marked = self.marked.filter(|(_, last)| *last <= count);
+        self.marked.retain(|(_, last)| *last <= count);
+        // Of a recording that is shorter now, all may be marked.
+        if self.marked == [(1, count)] {
+            self.marked.clear();
+        }
     }
 
     fn try_read(&self, memory: u64, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
@@ -333,7 +351,7 @@ impl Opened {
             preparation: self.preparation.clone(),
             mend: self.mend,
             purpose: self.purpose,
-            marked: self.marked,
+            marked: self.marked.clone(),
             samples: recording.map_or(0, |recording| recording.len()),
             branches: self.branches,
             input: shown(|recording| &recording.input_quantity),

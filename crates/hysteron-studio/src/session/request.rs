@@ -68,14 +68,14 @@ pub enum Request {
         /// What it is for.
         purpose: Purpose,
     },
-    /// Marks rows for validation.
+    /// Marks a span of rows for validation, besides those that are marked.
     Mark {
         /// The file.
         file: Id,
-        /// The first and the last row, counted from 1; `None` for no rows.
+        /// The first and the last row, counted from 1; `None` for no rows at all.
         rows: Option<(usize, usize)>,
     },
-    /// Marks the rows in a span of the time for validation.
+    /// Marks the rows in a span of the time for validation, besides those that are marked.
     MarkSpan {
         /// The file.
         file: Id,

@@ -36,7 +36,7 @@ struct SavedFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     steps: Option<Steps>,
     purpose: Purpose,
-    marked: Option<(usize, usize)>,
+    marked: Vec<(usize, usize)>,
     /// The bytes of the file in base64.
     bytes: String,
 }
@@ -107,7 +107,7 @@ impl Session {
             mend: file.mend,
             steps: file.steps.clone(),
             purpose: file.purpose,
-            marked: file.marked,
+            marked: file.marked.clone(),
             bytes: STANDARD.encode(&file.bytes),
         };
         let saved = File {
@@ -143,8 +143,8 @@ impl Session {
             (opened.mend, opened.purpose) = (file.mend, file.purpose);
             opened.steps = file.steps;
             opened.set_roles(file.roles, left);
-            if file.marked.is_some() {
-                opened.mark(file.marked)?;
+            for span in file.marked {
+                opened.mark(Some(span))?;
             }
             new.files.push(opened);
         }
