@@ -33,7 +33,7 @@ const MOST_LANES: usize = 1 << 24;
 /// assert_eq!(outputs, [11.0, 14.0, 13.0, 14.0, 13.0, 14.0]);
 ///
 /// batch.step(&[80.0, 20.0], &mut outputs[..2])?; // one input for each lane
-/// assert_eq!(outputs[..2], [14.0, 11.0]);
+/// assert_eq!(outputs[..2], [14.0, 11.5]);
 /// # Ok::<(), hysteron::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +59,7 @@ impl<M: Into<Arc<Model>>> FromIterator<M> for BatchModel {
     /// let mut batch: BatchModel = [model(1.0)?, model(2.0)?].into_iter().collect();
     /// let mut outputs = [0.0; 2];
     /// batch.step(&[1.0, 1.0], &mut outputs)?;
-    /// assert_eq!(outputs, [3.0, 1.5]);
+    /// assert_eq!(outputs, [3.0, 2.0]);
     /// # Ok::<(), hysteron::Error>(())
     /// ```
     fn from_iter<I: IntoIterator<Item = M>>(models: I) -> Self {
