@@ -45,9 +45,12 @@ fn numbers<'py, D: Dimension + 'py>(
     // A masked array is a subclass, and its mask counts.
     if let Ok(array) = value.cast::<PyArray<f64, D>>()
         && value.get_type().is(&numpy.getattr("ndarray")?)
-        && array.is_c_contiguous()
     {
-        return Ok(array.try_readonly()?);
+        let array = array.try_readonly()?;
+        // There is a slice in the order of Fortran too, and none where it is not aligned.
+        if array.is_c_contiguous() && array.as_slice().is_ok() {
+            return Ok(array);
+        }
     }
     let array = array(value).map_err(|error| {
         PyTypeError::new_err(format!("`{argument}`: no array of numbers: {error}"))
