@@ -265,4 +265,5 @@ def main():
         counts(program, folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -43,6 +43,12 @@ pub struct StagedRun {
 pub fn all(vectors: &Path) -> (Vec<StagedModel>, Vec<StagedRun>) {
     let (mut models, mut runs) = (Vec::new(), Vec::new());
     for (name, file) in files(vectors, 2) {
+        // Weights that depend on the load are mixed in memory of the caller, which the runners do
+        // not have. The tests of the export compare them on the host.
+        let parts = file["model"]["load"]["parts"].as_array();
+        if parts.is_some_and(|parts| parts.len() > 1) {
+            continue;
+        }
         let before = runs.len();
         let all = file["runs"].as_array().expect("runs").iter();
         let mut dt = None;
