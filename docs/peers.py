@@ -122,7 +122,8 @@ def actuators(path):
 def fleet(program, folder):
     data, out = (os.path.join(folder, name) for name in ("fleet.parquet", "models.parquet"))
     x, y = actuators(data)
-    options = ["--input", "x", "--output", "y", "--levels", "20", "--bootstrap", "0", "--force"]
+    options = ["--input", "x", "--output", "y", "--levels", "20", *FITS["PLAIN"], "--force"]
+    options += "--bootstrap 0 --robust off --start off".split()
     command = [program, "fleet", "fit", data, "--by", "id", *options, "-o", out]
     (wall, used), *_ = sorted(cpu(command) for _ in range(2))
     one, model = (os.path.join(folder, name) for name in ("one.csv", "one.json"))
@@ -138,7 +139,7 @@ def fleet(program, folder):
     each *= ACTUATORS / len(some)
     read = "import pyarrow.parquet as p, sys; p.read_table(sys.argv[1])"
     limit = cpu([sys.executable, "-c", read, data])[1]
-    row(f"`fleet fit`, {ACTUATORS:,} recordings of {ROWS} rows, K = 20", f"{used:.1f} s",
+    row(f"`fleet fit`, {ACTUATORS:,} recordings of {ROWS} rows, K = 20, no choice", f"{used:.1f} s",
         f"a process each (of {len(some)}): {each:.0f} s", f"PyArrow reads: {limit:.2f} s",
         used / each, 1)
     cores = os.cpu_count()
