@@ -1,10 +1,11 @@
 //! The studio: a local page in which one sees a recording and its loop, fits models, drives them by
 //! hand and takes them home.
 //!
-//! [`Session`] is what is open: recordings, fits, models that are driven. It takes a [`Request`] and
-//! gives a [`Response`], knows no transport, and touches no file. [`Server`] (feature `server`) is one transport: a page and its calls on 127.0.0.1. The crate
-//! `hysteron-studio-wasm` is the other: the session in a worker of the browser. Both show the same
-//! page; [`static_page`] has its files for the latter.
+//! [`Session`] is what is open: recordings, fits, models that are driven. It takes a [`Request`]
+//! and gives a [`Response`], knows no transport, and touches no file. [`Server`] (feature `server`)
+//! is one transport: a page and its calls on 127.0.0.1. The crate `hysteron-studio-wasm` is the
+//! other: the session in a worker of the browser. Both show the same page; [`static_page`] has its
+//! files for the latter.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "page")]
