@@ -2,6 +2,16 @@
 #ifndef BENCH_STAGES_H
 #define BENCH_STAGES_H
 
+/* Memory for weights at a load, of a state and of another one. */
+#define MOST_ENTRIES ((MOST + 1) * (MOST + 2) / 2)
+static hys_mixed mixed[2];
+static hys_real tables[2][MOST_ENTRIES];
+
+static void staged_start(const staged_run *r, hys_actuator_state *state, hys_turn *memory, int which) {
+    must(hys_actuator_start_mixed(r->actuator, state, memory, 4 * r->levels + 8, &mixed[which], tables[which],
+                                  MOST_ENTRIES));
+}
+
 static inline __attribute__((always_inline)) uint32_t staged_step(
     const staged_run *r, hys_actuator_state *state, size_t n, hys_real *result, int *status) {
     uint32_t before, after;
@@ -30,7 +40,7 @@ static void staged_restored(
     size_t held;
     must(hys_save(&state->operators, points, sizeof points / sizeof *points, &held, &input));
     must(hys_actuator_save(state, numbers));
-    must(hys_actuator_start(r->actuator, &other, other_turns, 4 * r->levels + 8));
+    staged_start(r, &other, other_turns, 1);
     must(hys_restore(&other.operators, points, held, input));
     must(hys_actuator_restore(&other, numbers));
     staged_step(r, &other, n, result, status);
@@ -40,7 +50,7 @@ static void one_staged(const staged_run *r) {
     hys_actuator_state state;
     tally tallies[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
     size_t n;
-    must(hys_actuator_start(r->actuator, &state, turns, 4 * r->levels + 8));
+    staged_start(r, &state, turns, 0);
     printf("%s %s\n", TYPE, r->name);
     for (n = 0; n < r->count; n++) {
         hys_real result, other;
@@ -57,15 +67,17 @@ static void one_staged(const staged_run *r) {
 /* Again without printing, for the stack. */
 static __attribute__((noinline)) void staged_stack(const staged_run *r) {
     hys_actuator_state state;
-    size_t n;
+    size_t n, stages = sizeof state - sizeof state.operators;
     hys_real result;
     int status;
-    must(hys_actuator_start(r->actuator, &state, turns, 4 * r->levels + 8));
+    staged_start(r, &state, turns, 0);
     stack_paint();
     for (n = 0; n < r->count; n++)
         staged_step(r, &state, n, &result, &status);
     NOTE("stack\t%s\t%s\t%lu\n", TYPE, r->name, stack_used());
-    NOTE("ram\t%s\t%s\t%lu\t%lu\n", TYPE, r->name, (unsigned long)(sizeof state - sizeof state.operators),
+    if (state.mixed != NULL)
+        stages += sizeof(hys_mixed) + (r->levels + 1) * (r->levels + 2) / 2 * sizeof(hys_real);
+    NOTE("ram\t%s\t%s\t%lu\t%lu\n", TYPE, r->name, (unsigned long)stages,
          (unsigned long)(sizeof state.operators + (4 * r->levels + 8) * sizeof(hys_turn)));
 }
 

@@ -1,5 +1,5 @@
 /* The image whose size is measured: an endless loop over nothing (WHAT 0), a forward step (1), or a
- * forward and an inverse step (2). */
+ * forward and an inverse step (2). MIXED: the weights depend on the load. */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 
@@ -39,7 +39,13 @@ int main(void) {
 #elif defined(STAGE)
     static hys_actuator_state state;
     static hys_turn turns[4 * LEVELS + 8];
+#ifdef MIXED
+    static hys_mixed mixed;
+    static hys_real table[(LEVELS + 1) * (LEVELS + 2) / 2];
+    hys_actuator_start_mixed(&STAGE, &state, turns, 4 * LEVELS + 8, &mixed, table, sizeof table / sizeof *table);
+#else
     hys_actuator_start(&STAGE, &state, turns, 4 * LEVELS + 8);
+#endif
 #else
     static hys_state state;
     static hys_turn turns[4 * LEVELS + 8];

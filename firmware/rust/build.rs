@@ -36,10 +36,14 @@ fn main() {
     text.push_str("pub static STAGED: &[Staged] = &[\n");
     for m in &staged_models {
         let [loads, shifts, scales, gains, offsets] = &m.curves;
+        let parts = m.parts.iter();
+        let parts: String = parts
+            .map(|(offset, weights)| format!("({offset:?}, &{weights:?}), "))
+            .collect();
         writeln!(
             text,
-            "Staged {{ model: {}, body: {:?}, curves: [&{loads:?}, &{shifts:?}, &{scales:?}, &{gains:?}, &{offsets:?}], spacing: &{:?}, creep: [&{:?}, &{:?}], lag: {:?}, drive: {:?}, dt: {:?} }},",
-            literal(&m.model), m.body, m.spacing, m.creep[0], m.creep[1], m.lag, m.drive, m.dt
+            "Staged {{ model: {}, body: {:?}, curves: [&{loads:?}, &{shifts:?}, &{scales:?}, &{gains:?}, &{offsets:?}], parts: &[{parts}], range: {:?}, spacing: &{:?}, creep: [&{:?}, &{:?}], lag: {:?}, drive: {:?}, dt: {:?} }},",
+            literal(&m.model), m.body, m.range, m.spacing, m.creep[0], m.creep[1], m.lag, m.drive, m.dt
         )
         .expect("text");
     }

@@ -8,7 +8,9 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// The stages that are measured, each alone, and all of them.
-pub const MEASURED: [&str; 6] = ["body", "load", "spacing", "creep", "lag", "all"];
+pub const MEASURED: [&str; 7] = [
+    "body", "load", "weights", "spacing", "creep", "lag", "all",
+];
 /// The levels of the models that are measured.
 pub const STAGED_LEVELS: usize = 20;
 /// The time step of the runs that are measured, in seconds.
@@ -20,6 +22,9 @@ pub struct StagedModel {
     pub body: Option<[f64; 4]>,
     /// Loads, shifts, scales, gains, offsets.
     pub curves: [Vec<f64>; 5],
+    /// Offset and weights of each part and the range of the load, where the weights depend on it.
+    pub parts: Vec<(f64, Vec<f64>)>,
+    pub range: (f64, f64),
     pub spacing: Vec<f64>,
     /// Coefficients and time constants.
     pub creep: [Vec<f64>; 2],
@@ -43,12 +48,6 @@ pub struct StagedRun {
 pub fn all(vectors: &Path) -> (Vec<StagedModel>, Vec<StagedRun>) {
     let (mut models, mut runs) = (Vec::new(), Vec::new());
     for (name, file) in files(vectors, 2) {
-        // Weights that depend on the load are mixed in memory of the caller, which the runners do
-        // not have. The tests of the export compare them on the host.
-        let parts = file["model"]["load"]["parts"].as_array();
-        if parts.is_some_and(|parts| parts.len() > 1) {
-            continue;
-        }
         let before = runs.len();
         let all = file["runs"].as_array().expect("runs").iter();
         let mut dt = None;
@@ -82,7 +81,13 @@ fn fixed(run: &Value) -> Option<f64> {
 fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
     let thermal = &json["thermal"];
     let body = ["ambient", "gain", "tau_heating", "tau_cooling"];
-    let curves = &json["load"]["curves"];
+    let load = &json["load"];
+    let curves = &load["curves"];
+    let parts = load["parts"].as_array().into_iter().flatten();
+    let parts: Vec<_> = parts
+        .map(|part| (number(&part["offset"]), numbers(&part["weights"])))
+        .collect();
+    let varies = parts.len() > 1;
     let terms: Vec<&Value> = json["creep"].as_array().into_iter().flatten().collect();
     let creep = ["coefficient", "tau"];
     let lag = json["lag"].as_f64().unwrap_or(0.0);
@@ -92,6 +97,11 @@ fn staged(name: &str, json: Value, dt: Option<f64>) -> StagedModel {
         body: (!thermal.is_null()).then(|| body.map(|what| number(&thermal[what]))),
         curves: ["loads", "shifts", "scales", "gains", "offsets"]
             .map(|curve| numbers(&curves[curve])),
+        range: match varies {
+            true => (number(&load["min"]), number(&load["max"])),
+            false => (0.0, 0.0),
+        },
+        parts: if varies { parts } else { Vec::new() },
         spacing: numbers(&json["spacing"]),
         creep: creep.map(|what| terms.iter().map(|term| number(&term[what])).collect()),
         lag,
@@ -145,16 +155,25 @@ fn measured(what: &str) -> StagedModel {
         });
         json["drive"] = json!({"min": 0.0, "max": 1.0});
     }
+    let curves = json!({
+        "loads": [0.0, 50.0, 100.0, 200.0], "shifts": [0.0, 4.0, 6.0, 12.0],
+        "scales": [1.0, 1.0625, 1.0625, 1.0], "gains": [1.0, 1.25, 1.5, 1.5],
+        "offsets": [0.0, 0.5, 0.25, 0.0],
+    });
+    // Three parts: weights that are a parabola of the load.
+    let part = |offset: f64, gain: f64| {
+        let weights: Vec<f64> = plain.weights.iter().map(|weight| gain * weight).collect();
+        json!({"offset": offset, "weights": weights})
+    };
+    let parts = match there("weights") {
+        true => json!([part(0.0, 1.0), part(0.5, 1.25), part(0.25, 0.875)]),
+        false => json!([part(0.0, 1.0)]),
+    };
+    if there("load") || there("weights") {
+        json["load"] = json!({"name": "stress", "min": 0.0, "max": 200.0, "parts": parts});
+    }
     if there("load") {
-        json["load"] = json!({
-            "name": "stress", "min": 0.0, "max": 200.0,
-            "parts": [{"offset": 0.0, "weights": plain.weights}],
-            "curves": {
-                "loads": [0.0, 50.0, 100.0, 200.0], "shifts": [0.0, 4.0, 6.0, 12.0],
-                "scales": [1.0, 1.0625, 1.0625, 1.0], "gains": [1.0, 1.25, 1.5, 1.5],
-                "offsets": [0.0, 0.5, 0.25, 0.0],
-            },
-        });
+        json["load"]["curves"] = curves;
     }
     if there("spacing") {
         let corner = |k: usize| {
