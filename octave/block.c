@@ -147,14 +147,16 @@ static void close_all(void) {
 }
 
 /* Numbers begin anew when the function is cleared and loaded again. They begin elsewhere then: an
- * old block must not be taken for a new one. */
+ * old block must not be taken for a new one. Those of the inverse are odd, the others even: a block
+ * of one function must not be taken for one of the other. */
 static uint64_t next_id(void) {
     static uint64_t last;
     if (last == 0) {
         last = ((uint64_t)time(NULL) << 24) ^ ((uint64_t)(size_t)&last & 0xfff000u);
+        last += is_inverse;
         mexAtExit(close_all);
     }
-    return ++last;
+    return last += 2;
 }
 
 static int32_t start_of(const mxArray *value, const char *usual) {

@@ -14,6 +14,9 @@ struct block {
     struct block *next;
 };
 
+/* 1 in sf_Inverse_MKP, 0 in sf_MKP. */
+extern const uint64_t is_inverse;
+
 /* Runs a call whose first argument is a command (`open`, `reset`, `save`, `restore`, `info`,
  * `temperature`, `close`). Returns whether it was one. `function` is the name for messages. */
 int command(const char *function, mxArray *plhs[], int nrhs, const mxArray *prhs[]);

@@ -2,6 +2,8 @@
 #include "block.h"
 #include <string.h>
 
+const uint64_t is_inverse = 1;
+
 enum { POLICY, TOLERANCE, HEADING, TIME, LOAD, START, DRIVE_RANGE, HORIZON, COUNT };
 
 static const char *const NAMES[COUNT] = {"policy", "tolerance", "heading",     "time",

@@ -1,6 +1,8 @@
 /* The block sf_MKP: temperature to displacement. What it does says sf_MKP.m. */
 #include "block.h"
 
+const uint64_t is_inverse = 0;
+
 enum { TIME, LOAD, START, COUNT };
 
 static const char *const NAMES[COUNT] = {"time", "load", "start"};

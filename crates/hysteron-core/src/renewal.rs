@@ -57,10 +57,12 @@ impl<T: Real, C: Memory<T>> Model<T, C> {
     pub(crate) fn blend<P: AsRef<[T]>>(&mut self, parts: &[P], factors: &[T]) {
         let len = everett::table_len(self.plane().levels());
         let base = self.base;
-        for (n, entry) in self.table.as_mut()[base..base + len].iter_mut().enumerate() {
-            *entry = T::ZERO;
-            for (part, &factor) in parts.iter().zip(factors) {
-                *entry = *entry + factor * part.as_ref()[n];
+        let table = &mut self.table.as_mut()[base..base + len];
+        table.fill(T::ZERO);
+        // Part by part, so that the compiler can vectorise it. Each entry has the same sum.
+        for (part, &factor) in parts.iter().zip(factors) {
+            for (entry, &own) in table.iter_mut().zip(part.as_ref()) {
+                *entry = *entry + factor * own;
             }
         }
         self.changed();

@@ -50,22 +50,25 @@ static void bernstein(hys_real s, size_t count, hys_real *values)
     }
 }
 
-/* The model at a load: its table is the sum of those of the parts, entry by entry. */
+/* The model at a load: its table is the sum of those of the parts. */
 static void mix(const hys_parts *parts, hys_mixed *mixed, hys_real load)
 {
     hys_model *model = &mixed->model;
+    const hys_real *part = parts->tables;
+    hys_real *table = mixed->table;
     size_t entries = table_index(model->levels + 1u, 0u), n, k;
     hys_real factors[HYS_MOST_PARTS];
     bernstein(hys_clamp((load - parts->min) / (parts->max - parts->min), ZERO, ONE), parts->count,
               factors);
     for (n = 0u; n < entries; n++) { /* (K + 1)(K + 2)/2 iterations */
-        hys_real entry = ZERO;
-        for (k = 0u; k < parts->count; k++) { /* at most HYS_MOST_PARTS iterations */
-            entry = entry + factors[k] * parts->tables[k * entries + n];
-        }
-        mixed->table[n] = entry;
+        table[n] = ZERO;
     }
-    model->total = mixed->table[table_index(model->levels, 0u)];
+    for (k = 0u; k < parts->count; k++, part += entries) { /* at most HYS_MOST_PARTS iterations */
+        for (n = 0u; n < entries; n++) { /* (K + 1)(K + 2)/2 iterations */
+            table[n] = table[n] + factors[k] * part[n];
+        }
+    }
+    model->total = table[table_index(model->levels, 0u)];
     model->rounding = (hys_real)4 * HYS_EPSILON * model->total;
     mixed->offset = ZERO;
     for (k = 0u; k < parts->count; k++) {
