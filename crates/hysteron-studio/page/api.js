@@ -69,6 +69,9 @@ export const open = (file) => call(`open/${encodeURIComponent(file.name)}`, file
 
 export const reload = () => call("reload");
 
+/** Forgets the session and begins an empty one; null where the page cannot. */
+export const anew = way.anew;
+
 /**
  * Saves what the session gives.
  * @param {object} take

@@ -19,6 +19,9 @@ export async function call(path, body) {
   return { ok: answer.ok, code: answer.status, text: await answer.text() };
 }
 
+/** The command ends a session. */
+export const anew = null;
+
 /** @param {(told: string) => void} told */
 export function listen(told) {
   const events = new EventSource("api/events");

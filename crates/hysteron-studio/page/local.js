@@ -3,7 +3,10 @@
 export const about = {
   name: "browser",
   files: "The files stay in this browser.",
-  where: "Static page: everything runs in this browser, and no file leaves it. The session ends with the page: take it home to go on later.",
+  get where() {
+    const kept = this.stays ? "The browser keeps the session until you begin anew." : "The session ends with the page: take it home to go on later.";
+    return `Static page: everything runs in this browser, and no file leaves it. ${kept}`;
+  },
   gone: "take a look at the console of the browser, and open the page again",
   /** Whether the session outlives the page. */
   stays: false,
@@ -20,6 +23,8 @@ let gone = null;
 
 const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
 worker.onmessage = (/** @type {MessageEvent} */ { data }) => {
+  if (data.stays !== undefined) return void (about.stays = data.stays);
+  if (data.forgotten) return location.reload();
   if (data.told !== undefined) {
     told = data.told;
     for (const listener of listeners) listener(told);
@@ -60,6 +65,9 @@ export function call(path, body) {
     worker.postMessage({ id: last, path, body });
   });
 }
+
+/** Forgets the session, and opens an empty page. */
+export const anew = () => worker.postMessage({ forget: true });
 
 /** @param {(told: string) => void} listener */
 export function listen(listener) {

@@ -1,6 +1,6 @@
 // The page: shows what the session has, whenever it changes.
 
-import { about, ask, listen, reload, whenRefused } from "./api.js";
+import { about, anew, ask, listen, reload, whenRefused } from "./api.js";
 import { by, el, fill } from "./dom.js";
 import * as opening from "./open.js";
 import * as fitting from "./fit.js";
@@ -22,6 +22,8 @@ let seen = "";
 /** @param {import("./api.js").Overview} found */
 async function show(found) {
   by("files-stay").textContent = about.files;
+  by("where").textContent = about.where;
+  by("anew").hidden = !anew || !about.stays || found.files.length === 0;
   overview = found;
   seen = JSON.stringify(found);
   const ids = new Set(found.fits.map((fit) => fit.id));
@@ -60,8 +62,8 @@ by("theme").addEventListener("click", () => {
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => overview && show(overview));
 by("reload").addEventListener("click", () => reload().then(show, () => {}));
+by("anew").addEventListener("click", () => confirm("Forget files, fits and marks?") && anew?.());
 
-by("where").textContent = about.where;
 document.body.dataset.session = about.name;
 addEventListener("beforeunload", (event) => {
   if (!about.stays && overview?.files.length) event.preventDefault();

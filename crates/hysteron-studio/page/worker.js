@@ -1,9 +1,10 @@
 // A worker with the session, in the place of the server. A fit runs in a worker of its own, so that
 // the session answers meanwhile, and a fit that is cancelled ends at once.
 
+import { Kept } from "./kept.js";
 import { NoMemory, decode, encode, instance } from "./wasm.js";
 
-/** @typedef {{name: string, bytes: Uint8Array} | {name: "open", label: string, file: Blob}} Step */
+/** @typedef {import("./kept.js").Step} Step */
 
 const page = /** @type {any} */ (self);
 /** @type {WebAssembly.Module} */
@@ -12,12 +13,16 @@ let module;
 let session;
 /** What made the session what it is. A panic ends its instance; a new one takes the same steps. @type {Step[]} */
 let steps = [];
+/** The same, beyond the page; null where the browser does not keep it. @type {Kept | null} */
+let kept = null;
 /** Fits that wait. @type {{job: number, bytes: Uint8Array}[]} */
 let waiting = [];
 /** The fit that runs. @type {{job: number, worker: Worker} | null} */
 let running = null;
 /** What the page was told last. */
 let told = "";
+/** What became of the session that was kept, where it is lost. @type {object | null} */
+let lost = null;
 
 /** Gives the module that the page has compiled. @type {(module: WebAssembly.Module) => void} */
 let begin = () => {};
@@ -25,21 +30,59 @@ let begin = () => {};
 let turn = /** @type {Promise<WebAssembly.Module>} */ (new Promise((resolve) => (begin = resolve)))
   .then(async (given) => {
     module = given;
-    session = await instance(module);
+    await begun();
     tell();
   })
   .catch((error) => page.postMessage({ gone: error.message }));
 const inTurn = (/** @type {() => any} */ work) => void (turn = turn.then(work).catch((error) => console.error(error)));
 
+/** The session as it was when the page was closed, or an empty one. */
+async function begun() {
+  try {
+    kept = await Kept.open();
+    steps = await kept.steps();
+  } catch (error) {
+    console.info("the browser does not keep the session:", error);
+    kept = null;
+  }
+  page.postMessage({ stays: kept !== null });
+  try {
+    const asked = await replay();
+    // Fits that were under way begin anew.
+    const { jobs } = JSON.parse(decode(session.call("request", [encode('{"request":"overview"}')]).output));
+    const due = new Set(jobs.map((/** @type {{id: number}} */ { id }) => id));
+    waiting = [...asked].filter(([job]) => due.has(job)).map(([job, bytes]) => ({ job, bytes }));
+    next();
+  } catch (error) {
+    await lose(error);
+    lost = { code: 104, problem: "the session that this browser kept cannot be opened", remedy: "open the files again" };
+  }
+}
+
+/** The session takes a step. @param {Step} step */
+function took(step) {
+  steps.push(step);
+  kept?.add(step).catch((error) => {
+    // Half a session is none.
+    console.warn("the browser does not keep the session any more:", error);
+    forget();
+    kept = null;
+    page.postMessage({ stays: false });
+  });
+}
+
+const forget = () => kept?.clear().catch((error) => console.error(error));
+
 page.onmessage = (/** @type {{data: any}} */ { data }) => {
   if (data.module) return begin(data.module);
+  if (data.forget) return inTurn(() => forget()?.then(() => page.postMessage({ forgotten: true })));
   inTurn(() => serve(data).then(tell));
 };
 
 /** @param {{id: number, path: string, body: any}} call */
 async function serve({ id, path, body }) {
   try {
-    const { value, output } = path.startsWith("open/") ? await open(decodeURIComponent(path.slice(5)), body) : ask(body);
+    const { value, output } = path.startsWith("open/") ? await opened(decodeURIComponent(path.slice(5)), body) : ask(body);
     page.postMessage({ id, ok: value > 0, code: value, text: decode(output) });
   } catch (error) {
     if (error instanceof NoMemory) return page.postMessage({ id, ok: false, code: 101, text: fault(101, error.message, "close other files") });
@@ -65,8 +108,16 @@ async function open(label, file) {
     return { value: 0, output: encode(fault(102, `${label} cannot be read any more`, "drop it again")) };
   }
   const name = encode(label);
-  const answer = session.call("open", [bytes, name], name.length);
-  if (answer.value) steps.push({ name: "open", label, file });
+  return session.call("open", [bytes, name], name.length);
+}
+
+/**
+ * @param {string} label
+ * @param {Blob} file
+ */
+async function opened(label, file) {
+  const answer = await open(label, file);
+  if (answer.value) took({ name: "open", label, file });
   return answer;
 }
 
@@ -76,7 +127,7 @@ function ask(text) {
   const bytes = encode(text);
   const answer = session.call("request", [bytes]);
   // A drive is no change for others, but takes a number.
-  if (answer.value === 2 || (answer.value && request === "drive")) steps.push({ name: "request", bytes });
+  if (answer.value === 2 || (answer.value && request === "drive")) took({ name: "request", bytes });
   if (answer.value && request === "fit") {
     const made = session.call("job");
     waiting.push({ job: made.value, bytes: made.output });
@@ -118,7 +169,7 @@ async function end(name, bytes) {
   running?.worker.terminate();
   running = null;
   await step(name, bytes);
-  steps.push({ name, bytes });
+  took({ name, bytes });
   next();
 }
 
@@ -132,7 +183,7 @@ function stop(job) {
   waiting = waiting.filter((other) => other.job !== job);
   inTurn(async () => {
     await step("ended", bytes);
-    steps.push({ name: "ended", bytes });
+    took({ name: "ended", bytes });
     tell();
   });
 }
@@ -151,35 +202,46 @@ async function step(name, bytes) {
   }
 }
 
-/** A new instance, brought to where the old one was. Returns what the user may do. */
-async function restart() {
-  const before = steps;
-  steps = [];
-  try {
-    session = await instance(module);
-    for (const taken of before) {
-      if ("file" in taken) {
-        if (!(await open(taken.label, taken.file)).value) throw new Error("a file is gone");
-      } else {
-        session.call(taken.name, [taken.bytes]);
-        // A fit that it asks for is made already, or under way.
-        if (taken.name === "request") session.call("job");
-        steps.push(taken);
-      }
+/** A new instance, brought to where the old one was. Returns the fits that were asked for. */
+async function replay() {
+  /** @type {Map<number, Uint8Array>} */
+  const asked = new Map();
+  session = await instance(module);
+  for (const taken of steps) {
+    if ("file" in taken) {
+      if (!(await open(taken.label, taken.file)).value) throw new Error("a file is gone");
+      continue;
     }
+    session.call(taken.name, [taken.bytes]);
+    const job = taken.name === "request" ? session.call("job") : null;
+    if (job?.value) asked.set(job.value, job.output);
+  }
+  return asked;
+}
+
+/** After a defect. Returns what the user may do. */
+async function restart() {
+  try {
+    await replay();
     return "the session is as it was before; take it home, and tell us what you did";
-  } catch {
-    session = await instance(module);
-    steps = [];
-    waiting = [];
-    running?.worker.terminate();
-    running = null;
+  } catch (error) {
+    await lose(error);
     return "the session is lost; open the files again";
   }
 }
 
+/** @param {any} why */
+async function lose(why) {
+  console.error(why);
+  running?.worker.terminate();
+  [steps, waiting, running] = [[], [], null];
+  session = await instance(module);
+  forget();
+}
+
 /** Tells the page what is new. */
 function tell() {
-  const now = decode(session.call("told").output);
+  const news = decode(session.call("told").output);
+  const now = lost ? JSON.stringify({ ...JSON.parse(news), failed: lost }) : news;
   if (now !== told) page.postMessage({ told: (told = now) });
 }

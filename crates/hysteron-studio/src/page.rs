@@ -54,6 +54,7 @@ const SERVED: &[File] = files!["http.js" as SCRIPT];
 const STATIC: &[File] = files![
     "local.js" as SCRIPT,
     "worker.js" as SCRIPT,
+    "kept.js" as SCRIPT,
     "fitter.js" as SCRIPT,
     "wasm.js" as SCRIPT,
 ];

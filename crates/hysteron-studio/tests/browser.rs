@@ -446,6 +446,54 @@ fn a_call_that_fails_leaves_the_session_as_it_was(way: Way) {
     studio.end();
 }
 
+/// The browser keeps the session of a folder. One page has it; another one has a session of its own.
+#[test]
+fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
+    let Some(mut browser) = browser() else { return };
+    let Some(studio) = Way::Folder.start(1 << 26) else {
+        return;
+    };
+    let tab = browser.open(&studio.address, 900, 700);
+    browser.wait(&tab, "document.querySelector('#drop.empty')");
+    browser.drop_file(&tab, "play.csv", &play());
+    browser.wait(
+        &tab,
+        "document.querySelector('#plot-loop .scatterlayer path')",
+    );
+    fit(&mut browser, &tab);
+    let seen = browser.value(&tab, OVERVIEW);
+    let again = "{ window.before = true; location.reload(); }";
+    browser.value(&tab, again);
+    browser.wait(&tab, "!window.before && document.querySelector('#fits .badge')");
+    assert_eq!(browser.value(&tab, OVERVIEW), seen);
+    // A fit that is under way when the page goes begins anew.
+    browser.value(&tab, "document.querySelector('#begin').click()");
+    browser.wait(&tab, "document.querySelector('#jobs').children.length > 0");
+    browser.value(&tab, again);
+    let fits = "import('./api.js').then(({ ask }) => ask('overview')).then(({ fits }) => fits.length === 2)";
+    browser.wait(&tab, &format!("!window.before && {fits}"));
+
+    let other = browser.open(&studio.address, 900, 700);
+    browser.wait(&other, "document.querySelector('#drop.empty')");
+    browser.wait(
+        &other,
+        "document.querySelector('#where').textContent.includes('ends with the page')",
+    );
+
+    let anew = "{ window.before = true; window.confirm = () => true; document.querySelector('#anew').click(); }";
+    browser.value(&tab, anew);
+    browser.wait(
+        &tab,
+        "!window.before && document.querySelector('#drop.empty')",
+    );
+    browser.value(&tab, again);
+    browser.wait(
+        &tab,
+        "!window.before && document.querySelector('#drop.empty')",
+    );
+    studio.end();
+}
+
 /// Pages of one server share its session. In a folder each page has a session of its own, and no
 /// server can go away.
 #[test]
