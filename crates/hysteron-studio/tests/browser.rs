@@ -14,7 +14,7 @@ mod recordings;
 
 use chromium::{Chromium, Tab, browser, keep};
 use common::Studio;
-use place::{Way, both_ways};
+use place::{EMPTY, Way, both_ways};
 
 /// The name of this test, for what it builds.
 const NAME: &str = "browser";
@@ -30,12 +30,9 @@ both_ways! {
 }
 
 fn whole_way(way: Way, name: &str, text: &str, pictures: &str) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 28) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 28, (1280, 900)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 1280, 900);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     // The page says which it is.
     let says = browser.value(&tab, "document.querySelector('#where').textContent");
     let (says, expected) = (says.as_str().unwrap(), way.says());
@@ -158,12 +155,9 @@ fn play() -> String {
 }
 
 fn names_from_files_are_text_only(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 24) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 24, (800, 600)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 800, 600);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     let evil = "<img src=x onerror=window.hit=1>";
     let text = format!("{evil},<b>b</b> [<i onmouseover=window.hit=1>]\n1,2\n2,3\n3,4\n2,2\n1,1\n");
     browser.drop_file(&tab, &format!("{evil}.csv"), &text);
@@ -190,12 +184,9 @@ fn wave() -> String {
 }
 
 fn a_fit_is_cancelled_and_the_page_goes_on(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 26) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 26, (900, 700)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "wave.csv", &wave());
     browser.wait(
         &tab,
@@ -263,12 +254,9 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
 const OVERVIEW: &str = "import('./api.js').then(({ ask }) => ask('overview')).then(JSON.stringify)";
 
 fn a_session_that_was_taken_home_goes_on(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 26) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 26, (900, 700)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "play.csv", &play());
     browser.wait(
         &tab,
@@ -286,7 +274,7 @@ fn a_session_that_was_taken_home_goes_on(way: Way) {
         return;
     };
     let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
+    browser.wait(&tab, EMPTY);
     browser.drop_file(&tab, "mine.session.json", taken.as_str().unwrap());
     browser.wait(&tab, "document.querySelector('#fits .badge')");
     assert_eq!(browser.value(&tab, OVERVIEW), seen);
@@ -294,12 +282,9 @@ fn a_session_that_was_taken_home_goes_on(way: Way) {
 }
 
 fn matlab_files_are_read(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 26) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 26, (900, 700)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     let (mut input, mut output) = (Vec::new(), Vec::new());
     for n in 0..300 {
         let t = 50.0 - 30.0 * (f64::from(n) * 0.1).cos();
@@ -369,7 +354,7 @@ fn both_ways_give_the_same_to_take_home() {
             return;
         };
         let tab = browser.open(&studio.address, 900, 700);
-        browser.wait(&tab, "document.querySelector('#drop.empty')");
+        browser.wait(&tab, EMPTY);
         if kept.is_empty() {
             browser.drop_file(&tab, "play.csv", &play());
             browser.wait(
@@ -406,12 +391,9 @@ fn both_ways_give_the_same_to_take_home() {
 
 /// In the browser a panic ends the instance of the session; a new one takes the same steps.
 fn a_call_that_fails_leaves_the_session_as_it_was(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 26) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 26, (900, 700)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "wave.csv", &wave());
     browser.wait(
         &tab,
@@ -449,12 +431,9 @@ fn a_call_that_fails_leaves_the_session_as_it_was(way: Way) {
 /// The browser keeps the session of a folder. One page has it; another one has a session of its own.
 #[test]
 fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = Way::Folder.start(1 << 26) else {
+    let Some((mut browser, studio, tab)) = Way::Folder.open(1 << 26, (900, 700)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 900, 700);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "play.csv", &play());
     browser.wait(
         &tab,
@@ -464,7 +443,10 @@ fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
     let seen = browser.value(&tab, OVERVIEW);
     let again = "{ window.before = true; location.reload(); }";
     browser.value(&tab, again);
-    browser.wait(&tab, "!window.before && document.querySelector('#fits .badge')");
+    browser.wait(
+        &tab,
+        "!window.before && document.querySelector('#fits .badge')",
+    );
     assert_eq!(browser.value(&tab, OVERVIEW), seen);
     // A fit that is under way when the page goes begins anew.
     browser.value(&tab, "document.querySelector('#begin').click()");
@@ -474,7 +456,7 @@ fn a_page_of_a_folder_that_is_loaded_again_goes_on() {
     browser.wait(&tab, &format!("!window.before && {fits}"));
 
     let other = browser.open(&studio.address, 900, 700);
-    browser.wait(&other, "document.querySelector('#drop.empty')");
+    browser.wait(&other, EMPTY);
     browser.wait(
         &other,
         "document.querySelector('#where').textContent.includes('ends with the page')",
@@ -503,7 +485,7 @@ fn two_pages_show_the_same_and_a_fit_is_cancelled() {
     let one = browser.open(&studio.address, 900, 700);
     let two = browser.open(&studio.address, 900, 700);
     for tab in [&one, &two] {
-        browser.wait(tab, "document.querySelector('#drop.empty')");
+        browser.wait(tab, EMPTY);
     }
     browser.drop_file(&one, "wave.csv", &wave());
     browser.wait(

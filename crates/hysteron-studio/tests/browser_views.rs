@@ -16,7 +16,7 @@ mod recordings;
 
 use chromium::{Chromium, Tab, browser, keep};
 use common::Studio;
-use place::{Way, both_ways};
+use place::{EMPTY, Way, both_ways};
 
 /// The name of this test, for what it builds.
 const NAME: &str = "views";
@@ -50,12 +50,9 @@ fn fit(browser: &mut Chromium, tab: &Tab) {
 
 fn every_view_answers_the_hand(way: Way) {
     let name = way.name();
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 28) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 28, (1280, 900)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 1280, 900);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     browser.drop_file(&tab, "play.csv", &table());
     browser.wait(
         &tab,
@@ -219,7 +216,7 @@ fn a_studio_that_was_killed_goes_on() {
     let kept = folder.path().join("kept.session.json");
     let studio = Studio::keeping(1 << 28, &[], Some(&kept));
     let tab = browser.open(&studio.address, 1280, 900);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
+    browser.wait(&tab, EMPTY);
     browser.drop_file(&tab, "play.csv", &table());
     browser.wait(
         &tab,
@@ -263,12 +260,9 @@ fn a_million_samples_in_a_folder() {
 
 /// Prints how long the page takes with a million samples.
 fn million_samples(way: Way) {
-    let Some(mut browser) = browser() else { return };
-    let Some(studio) = way.start(1 << 30) else {
+    let Some((mut browser, studio, tab)) = way.open(1 << 30, (1280, 900)) else {
         return;
     };
-    let tab = browser.open(&studio.address, 1280, 900);
-    browser.wait(&tab, "document.querySelector('#drop.empty')");
     let code = "(() => { const rows = ['time [s],temperature [degC],displacement [mm]']; let y = 20;
         for (let n = 0; n < 1e6; n++) { const t = 50 - 30 * Math.cos(n * 2e-4) * (1 - n / 2e6);
             y = Math.min(t + 4, Math.max(t - 4, y)); rows.push((n * 0.001).toFixed(3) + ',' + t.toFixed(5) + ',' + (0.2 * y).toFixed(5)); }

@@ -2,8 +2,12 @@
 //! run the same tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
+use crate::chromium::{Chromium, Tab, browser};
 use crate::common::Studio;
 use crate::folder::{Files, folder};
+
+/// That a page has begun and has no file yet.
+pub const EMPTY: &str = "document.querySelector('#drop.empty')";
 
 /// A test for each way to the session.
 macro_rules! both_ways {
@@ -68,6 +72,16 @@ impl Way {
             }
         };
         Some(Place { address, from })
+    }
+
+    /// A browser with an empty page of so many pixels, of a session with so many bytes of memory.
+    /// `None` where there is none; a line says why.
+    pub fn open(self, budget: u64, (width, height): (u32, u32)) -> Option<(Chromium, Place, Tab)> {
+        let mut browser = browser()?;
+        let place = self.start(budget)?;
+        let tab = browser.open(&place.address, width, height);
+        browser.wait(&tab, EMPTY);
+        Some((browser, place, tab))
     }
 }
 
