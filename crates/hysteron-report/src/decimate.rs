@@ -4,6 +4,7 @@
 //! unbroken pieces.
 
 use std::collections::HashSet;
+use std::f64::consts::{PI, TAU};
 
 /// A point in pixels.
 pub type Point = [f64; 2];
@@ -108,13 +109,32 @@ fn merge(stretches: &mut Vec<[f64; 2]>) {
 }
 
 /// For curves that are no function of x: drop points closer than half a pixel to the last one kept,
-/// except the extremes.
+/// except the extremes, and points on the straight way between others.
 pub fn loops(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
-    let thinned: Vec<Vec<Point>> = pieces(points).iter().map(|piece| thin(piece)).collect();
+    let thinned = pieces(points).into_iter();
+    let thinned: Vec<Vec<Point>> = thinned.map(|piece| straight(&thin(&piece))).collect();
     if thinned.iter().map(Vec::len).sum::<usize>() <= DENSE {
         return thinned;
     }
     uncovered(&thinned)
+}
+
+/// For points without a line: of those on one pixel the first.
+pub fn dots(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
+    let mut drawn: HashSet<(i32, i32)> = HashSet::new();
+    let mut last = None;
+    let is_new = |point: &Point| {
+        let pixel = (point[0].floor() as i32, point[1].floor() as i32);
+        // Mostly it is the pixel of the point before.
+        last.replace(pixel) != Some(pixel) && drawn.insert(pixel)
+    };
+    let finite = points.filter(|point| point.iter().all(|coordinate| coordinate.is_finite()));
+    let kept: Vec<Point> = finite.filter(is_new).collect();
+    if kept.is_empty() {
+        Vec::new()
+    } else {
+        vec![kept]
+    }
 }
 
 fn thin(piece: &[Point]) -> Vec<Point> {
@@ -139,6 +159,57 @@ fn thin(piece: &[Point]) -> Vec<Point> {
             kept.push(point);
             last = Some(point);
         }
+    }
+    kept
+}
+
+/// The cone of all directions.
+const ALL_AROUND: [f64; 2] = [-PI, PI];
+
+/// How far a point may lie from the line that is drawn instead, in pixels.
+const STRAIGHT: f64 = 0.2;
+
+/// The line through fewer points: each point left out is closer than [`STRAIGHT`] to it.
+///
+/// Directions from the last point kept that pass every point since are a cone, which narrows from
+/// point to point (Sklansky and Gonzalez 1980). A point beside it, or closer than one before it,
+/// ends the line at the point before.
+fn straight(piece: &[Point]) -> Vec<Point> {
+    let Some((&first, rest)) = piece.split_first() else {
+        return Vec::new();
+    };
+    let mut kept = vec![first];
+    let (mut from, mut before) = (first, first);
+    let (mut farthest, mut middle) = (0.0, 0.0);
+    let mut cone = ALL_AROUND;
+    for &point in rest {
+        let mut away = distance(from, point);
+        let mut angle = (point[1] - from[1]).atan2(point[0] - from[0]);
+        let aside = |angle: f64, middle: f64| {
+            let turned = angle - middle;
+            turned - TAU * (turned / TAU).round()
+        };
+        let along = aside(angle, middle);
+        if !(cone[0]..=cone[1]).contains(&along) || away < farthest {
+            kept.push(before);
+            from = before;
+            away = distance(from, point);
+            angle = (point[1] - from[1]).atan2(point[0] - from[0]);
+            (farthest, cone) = (0.0, ALL_AROUND);
+        }
+        if cone == ALL_AROUND && away > STRAIGHT {
+            middle = angle;
+        }
+        if away > STRAIGHT {
+            let half = (STRAIGHT / away).asin();
+            let along = aside(angle, middle);
+            cone = [cone[0].max(along - half), cone[1].min(along + half)];
+        }
+        farthest = f64::max(farthest, away);
+        before = point;
+    }
+    if piece.len() > 1 {
+        kept.push(before);
     }
     kept
 }
@@ -270,6 +341,61 @@ mod tests {
             assert!((low(&drawn) - low(&all)).abs() < 0.5);
             assert!((high(&drawn) - high(&all)).abs() < 0.5);
         }
+    }
+
+    #[test]
+    fn a_line_through_fewer_points_passes_all_of_them() {
+        // Circles that shrink, a walk with jumps back, and a line that turns on itself.
+        let circles = (0..5000).map(|k| f64::from(k) * 0.05).map(|t| {
+            let (s, c) = t.sin_cos();
+            [300.0 + (200.0 - 0.5 * t) * c, 200.0 + (150.0 - 0.3 * t) * s]
+        });
+        let mut random: u64 = 7;
+        let mut step = || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (random >> 40) as f64 / f64::from(1 << 24) - 0.5
+        };
+        let mut at = [300.0, 200.0];
+        let walk = (0..5000).map(|n| {
+            let size = if n % 7 == 0 { 40.0 } else { 2.0 };
+            at = [at[0] + size * step(), at[1] + size * step()];
+            at
+        });
+        let back = (0_i32..900).map(|k| [f64::from((k % 60 - 30).abs()), 5.0]);
+        for all in [
+            circles.collect(),
+            walk.collect(),
+            back.collect::<Vec<Point>>(),
+        ] {
+            let drawn = straight(&all);
+            assert_eq!((drawn.first(), drawn.last()), (all.first(), all.last()));
+            let beside = |point: &Point, [a, b]: [Point; 2]| {
+                let (way, to) = (
+                    [b[0] - a[0], b[1] - a[1]],
+                    [point[0] - a[0], point[1] - a[1]],
+                );
+                let length = way[0] * way[0] + way[1] * way[1];
+                let share = (to[0] * way[0] + to[1] * way[1]) / length.max(f64::MIN_POSITIVE);
+                let share = share.clamp(0.0, 1.0);
+                distance(*point, [a[0] + share * way[0], a[1] + share * way[1]])
+            };
+            // In order: each point belongs to the segment between the points kept around it.
+            let mut segments = drawn.windows(2).peekable();
+            for point in &all {
+                while let Some(&&[a, b]) = segments.peek() {
+                    if beside(point, [a, b]) <= STRAIGHT * 1.0001 {
+                        break;
+                    }
+                    segments.next();
+                }
+                assert!(segments.peek().is_some(), "{point:?} is not on the line");
+            }
+        }
+        let circle = (0..100_000).map(|k| (f64::from(k) * 1e-4).sin_cos());
+        let circle: Vec<Point> = circle.map(|(s, c)| [200.0 * c, 200.0 * s]).collect();
+        assert!(straight(&circle).len() < 250, "{}", straight(&circle).len());
     }
 
     #[test]

@@ -273,6 +273,11 @@ fn million_samples(way: Way) {
         while (!document.querySelector('#plot-loop .scatterlayer path')) await new Promise(r => setTimeout(r, 5));
         return performance.now() - begin; })()";
     println!("first picture: {} ms", browser.value(&tab, first));
+    let calls = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('/api/')).map(({ name, startTime, responseStart, duration }) => [name.split('/').pop(), startTime, responseStart - startTime, duration].map((n) => typeof n === 'number' ? Math.round(n) : n))";
+    println!(
+        "calls, their begin, wait and time in ms: {}",
+        browser.value(&tab, calls)
+    );
     let asked = "(async () => { const { ask } = await import('./api.js'); const { files } = await ask('overview'); const found = {};
         for (const picture of ['output', 'input', 'loop']) for (const window of [null, [300, 320]]) { const begin = performance.now();
             const { lines } = await ask('curves', { file: files[0].id, picture, window, pixels: [1200, 400] }); found[picture + (window ? ' part' : ' all')] = [Math.round(performance.now() - begin), lines[0].x.length]; }

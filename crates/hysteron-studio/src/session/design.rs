@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::fault::Fault;
-use super::look::{cells, thinned};
+use super::look::{Shape, cells, thinned};
 use super::request::Id;
 use hysteron::{Design, DesignOptions, Excitation, Plane, Rates, design};
 use serde::{Deserialize, Serialize};
@@ -102,7 +102,7 @@ impl Session {
         let found = self.profile(wish)?;
         let count = found.plane.levels();
         let points = found.time.iter().zip(&found.input).map(|(t, u)| [*t, *u]);
-        let (time, input) = thinned(points, PIXELS, true);
+        let (time, input) = thinned(points, PIXELS, Shape::OverTime);
         let before = match &found.recorded {
             Some(recorded) => recorded.clone(),
             None => vec![Excitation::Never; found.excitation.len()],

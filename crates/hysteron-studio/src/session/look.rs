@@ -211,11 +211,15 @@ impl Session {
         let seen = |n: usize, value: f64| if shown[n - first] { value } else { f64::NAN };
         let over_time = |of: &dyn Fn(usize) -> f64| {
             let points = rows.clone().map(|n| [when(&recording, n), seen(n, of(n))]);
-            thinned(points, view.pixels, true)
+            thinned(points, view.pixels, Shape::OverTime)
         };
         let over_input = |of: &dyn Fn(usize) -> f64| {
             let points = rows.clone().map(|n| [recording.input[n], seen(n, of(n))]);
-            thinned(points, view.pixels, false)
+            let shape = match view.picture {
+                Picture::ResidualsOverInput => Shape::Dots,
+                _ => Shape::Loop,
+            };
+            thinned(points, view.pixels, shape)
         };
         let kept = || rows.clone().filter(|n| shown[n - first]);
         let measured = |n: usize| recording.output[n];
@@ -409,17 +413,17 @@ fn before(raw: &Recording, view: &View) -> Option<Line> {
         Picture::Input => thinned(
             rows.map(|n| [when(raw, n), raw.input[n]]),
             view.pixels,
-            true,
+            Shape::OverTime,
         ),
         Picture::Output => thinned(
             rows.map(|n| [when(raw, n), raw.output[n]]),
             view.pixels,
-            true,
+            Shape::OverTime,
         ),
         Picture::Loop => thinned(
             rows.map(|n| [raw.input[n], raw.output[n]]),
             view.pixels,
-            false,
+            Shape::Loop,
         ),
         Picture::Residuals | Picture::ResidualsOverInput | Picture::Histogram => return None,
     };
@@ -479,11 +483,22 @@ pub(super) fn rows(recording: &Recording, window: Option<(f64, f64)>) -> std::op
 
 type Points = (Vec<Option<f64>>, Vec<Option<f64>>);
 
+/// What is drawn through points.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Shape {
+    /// A line with one height at a time.
+    OverTime,
+    /// A line that may go back.
+    Loop,
+    /// No line.
+    Dots,
+}
+
 /// The points that a picture of so many pixels can show.
 pub(super) fn thinned(
     points: impl Iterator<Item = Point> + Clone,
     (width, height): (u32, u32),
-    is_function: bool,
+    shape: Shape,
 ) -> Points {
     let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for point in points.clone() {
@@ -499,9 +514,10 @@ pub(super) fn thinned(
     });
     let lowest = [ends[0][0], ends[1][0]];
     let scaled = points.map(|p| [0, 1].map(|axis| (p[axis] - lowest[axis]) / scale[axis]));
-    let pieces = match is_function {
-        true => decimate::columns(scaled),
-        false => decimate::loops(scaled),
+    let pieces = match shape {
+        Shape::OverTime => decimate::columns(scaled),
+        Shape::Loop => decimate::loops(scaled),
+        Shape::Dots => decimate::dots(scaled),
     };
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for piece in pieces {
