@@ -12,6 +12,24 @@ const ACROSS: std::ops::RangeInclusive<i32> = -10..=-5;
 /// A place on the grid: 0 is no smoothness, `n` the `n`-th decade.
 pub(super) type Place = (usize, usize);
 
+/// A way from a place to a neighbour.
+pub(super) type Step = (isize, isize);
+
+/// The neighbours on the axes.
+pub(super) const ALONG_AXES: [Step; 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+
+/// All neighbours.
+pub(super) const AROUND: [Step; 8] = [
+    (1, 0),
+    (-1, 0),
+    (0, 1),
+    (0, -1),
+    (1, 1),
+    (-1, -1),
+    (1, -1),
+    (-1, 1),
+];
+
 /// Every third place in each direction, where the first walk looks.
 const FIRST: [usize; 3] = [0, 3, 6];
 
@@ -27,9 +45,11 @@ pub(super) fn smooth_at(place: Place) -> Smooth {
 }
 
 /// Walks to a place where no neighbour has a smaller `value`, from the best of `from` (a coarse
-/// grid, if that is empty). Returns the values of all places it looked at.
+/// grid, if that is empty). `steps` lead to the neighbours. Returns the values of all places it
+/// looked at.
 pub(super) fn walk(
     from: &[Place],
+    steps: &[Step],
     mut value: impl FnMut(Place) -> Result<f64>,
 ) -> Result<BTreeMap<Place, f64>> {
     let most = |decades: std::ops::RangeInclusive<i32>| decades.count();
@@ -46,23 +66,13 @@ pub(super) fn walk(
         let Some(best) = best(&known) else {
             return Ok(known);
         };
-        let steps: [(isize, isize); 8] = [
-            (1, 0),
-            (-1, 0),
-            (0, 1),
-            (0, -1),
-            (1, 1),
-            (-1, -1),
-            (1, -1),
-            (-1, 1),
-        ];
-        let near = |(a, c): (isize, isize)| {
+        let near = |&(a, c): &Step| {
             let a = best.0.checked_add_signed(a)?;
             let c = best.1.checked_add_signed(c)?;
             (a <= along && c <= across).then_some((a, c))
         };
         let new: Vec<Place> = steps
-            .into_iter()
+            .iter()
             .filter_map(near)
             .filter(|place| !known.contains_key(place))
             .collect();
@@ -91,7 +101,10 @@ mod tests {
                 Ok((a as f64 - bottom.0 as f64).powi(2) + (c as f64 - bottom.1 as f64).powi(2))
             };
             for from in [vec![], vec![(0, 0)], vec![(8, 6), (1, 1)]] {
-                assert_eq!(best(&walk(&from, bowl)?), Some(bottom), "from {from:?}");
+                for steps in [&AROUND[..], &ALONG_AXES] {
+                    let found = best(&walk(&from, steps, bowl)?);
+                    assert_eq!(found, Some(bottom), "from {from:?}");
+                }
             }
         }
         Ok(())

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::identify::choose::Seen;
 use crate::identify::choose::criterion::Level;
 use crate::identify::choose::rivals;
-use crate::identify::choose::search::{Place, best, smooth_at, walk};
+use crate::identify::choose::search::{ALONG_AXES, AROUND, Place, Step, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
@@ -33,6 +33,10 @@ const FEWEST: usize = 28;
 /// More columns are not tried, because they would take long: 40 levels have 820, and those with an
 /// unknown start up to twice as many.
 const MOST_COLUMNS: usize = 900;
+
+/// With more columns than [`MOST_COLUMNS`], the smoothness is searched for with so many levels first.
+/// The strengths do not depend on the number of levels, so the best is not far from there.
+const COARSE: usize = 40;
 
 /// The candidates to choose from.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +68,9 @@ impl Candidates {
 /// evidence, see [`Criterion`]. At least 28 levels are tried, and more until two numbers in a row
 /// have not been better by 1 % (by 1 in the logarithm of the evidence). If the starts of several
 /// recordings are unknown, only two patterns of starts are tried: all off and all on.
+///
+/// For one given number of levels above 40, with more than 900 columns, the search for the
+/// smoothness begins with 40 levels, where a candidate takes little time.
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -174,7 +181,18 @@ pub(super) fn choose(
     };
 
     let mut scores: Vec<Score> = Vec::new();
-    let mut from: Vec<Place> = Vec::new();
+    let mut search = Search {
+        criterion,
+        smooth: candidates.smooth,
+        from: Vec::new(),
+        near: &AROUND,
+    };
+    let is_large = |problem: &Problem<'_>| problem.regressor.columns().len() > MOST_COLUMNS;
+    if candidates.smooth.is_none() && first > COARSE && is_large(&problem) {
+        let level = Level::new(at(COARSE, &options)?, sign, &folds.of, progress)?;
+        search.rate(&level, COARSE)?;
+        search.near = &ALONG_AXES;
+    }
     let mut best_value = f64::INFINITY;
     let mut no_better = 0;
     for (n, &levels) in candidates.levels.iter().enumerate() {
@@ -183,38 +201,14 @@ pub(super) fn choose(
             n as f64 / candidates.levels.len() as f64,
         )?;
         let problem = at(levels, &options)?;
-        if n > 0 && problem.regressor.columns().len() > MOST_COLUMNS {
+        if n > 0 && is_large(&problem) {
             break;
         }
         let level = Level::new(problem, sign, &folds.of, progress)?;
-        let mut starts = level.starts();
-        let mut rate = |smooth: Smooth| -> Result<f64> {
-            let mut score = Score {
-                levels,
-                smooth,
-                rmse: 0.0,
-                log_evidence: None,
-            };
-            match criterion {
-                Criterion::LeftOut => {
-                    score.rmse = level.left_out_rmse(smooth, &mut starts)?;
-                }
-                Criterion::Evidence => {
-                    score.log_evidence = Some(level.log_evidence(smooth, &mut starts)?);
-                    score.rmse = level.fitted(smooth, &starts)?;
-                }
-            }
-            scores.push(score);
-            Ok(criterion.value(&score))
-        };
-        let value = match candidates.smooth {
-            Some(smooth) => rate(smooth)?,
-            None => {
-                let known = walk(&from, |place| rate(smooth_at(place)))?;
-                from = best(&known).into_iter().collect();
-                known.values().copied().fold(f64::INFINITY, f64::min)
-            }
-        };
+        let found = search.rate(&level, levels)?;
+        let values = found.iter().map(|score| criterion.value(score));
+        let value = values.fold(f64::INFINITY, f64::min);
+        scores.extend(found);
         no_better = match criterion.is_worth(value, best_value, WORTH) {
             true => 0,
             false => no_better + 1,
@@ -238,4 +232,49 @@ pub(super) fn choose(
         chosen,
         scores,
     })
+}
+
+/// The search for the smoothness, from one number of levels to the next.
+struct Search {
+    criterion: Criterion,
+    /// The smoothness, where it is given.
+    smooth: Option<Smooth>,
+    /// Where the last walk ended.
+    from: Vec<Place>,
+    near: &'static [Step],
+}
+
+impl Search {
+    /// The candidates at one number of levels.
+    fn rate(&mut self, level: &Level<'_>, levels: usize) -> Result<Vec<Score>> {
+        let mut starts = level.starts();
+        let mut scores = Vec::new();
+        let mut rate = |smooth: Smooth| -> Result<f64> {
+            let mut score = Score {
+                levels,
+                smooth,
+                rmse: 0.0,
+                log_evidence: None,
+            };
+            match self.criterion {
+                Criterion::LeftOut => {
+                    score.rmse = level.left_out_rmse(smooth, &mut starts)?;
+                }
+                Criterion::Evidence => {
+                    score.log_evidence = Some(level.log_evidence(smooth, &mut starts)?);
+                    score.rmse = level.fitted(smooth, &starts)?;
+                }
+            }
+            scores.push(score);
+            Ok(self.criterion.value(&score))
+        };
+        match self.smooth {
+            Some(smooth) => _ = rate(smooth)?,
+            None => {
+                let known = walk(&self.from, self.near, |place| rate(smooth_at(place)))?;
+                self.from = best(&known).into_iter().collect();
+            }
+        }
+        Ok(scores)
+    }
 }
