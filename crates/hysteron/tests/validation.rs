@@ -103,6 +103,31 @@ fn strength_means_the_same_at_any_number_of_levels() {
     assert!(difference < 0.004, "{difference}");
 }
 
+/// Beyond 40 levels the search begins with fewer levels.
+#[test]
+fn many_levels_find_a_smoothness_that_is_as_good_as_any() {
+    let noisy = [recording(&material(), 0.02, 5)];
+    let options = FitOptions::default();
+    let rated = |smooth| {
+        let candidates = Candidates::new(Some(45), smooth);
+        let found = cross_validate(&noisy, &options, &candidates, Progress::NONE);
+        found.unwrap().1
+    };
+    let found = rated(None);
+    assert!(found.scores.iter().all(|score| score.levels == 45));
+    assert!(found.scores.len() < 12, "{:?}", found.scores);
+    for along in [0.0, 1e-9, 1e-7, 1e-5] {
+        for across in [0.0, 1e-8, 1e-6] {
+            let rmse = rated(Some((along, across).into())).rmse;
+            // Between two decades the error hardly changes.
+            assert!(
+                found.rmse < 1.01 * rmse,
+                "{found:?}, {rmse} at {along}, {across}"
+            );
+        }
+    }
+}
+
 #[test]
 fn samples_are_left_out_with_their_branch() {
     let material = material();
