@@ -2,8 +2,9 @@
 
 use super::Session;
 use super::fault::Fault;
-use super::look::{Shape, cells, thinned};
+use super::plane::cells;
 use super::request::Id;
+use super::thinned::{Shape, thinned};
 use hysteron::{Design, DesignOptions, Excitation, Plane, Rates, design};
 use serde::{Deserialize, Serialize};
 

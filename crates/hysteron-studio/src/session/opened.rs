@@ -1,9 +1,9 @@
 //! A file that is open: its bytes, its columns, and the recording that they make.
 
 use super::fault::Fault;
-use super::look::when;
 use super::prepare::Steps;
 use super::request::{Id, Purpose};
+use super::thinned::when;
 use bytes::Bytes;
 use hysteron::{
     ColumnSummary, Columns, Preparation, Progress, Quantity, ReadOptions, Recording, Repair,

@@ -3,8 +3,9 @@
 
 use super::design::Wish;
 use super::fault::Fault;
-use super::look::{View, rows};
+use super::look::View;
 use super::request::Id;
+use super::thinned::rows;
 use super::{Session, commands};
 use base64::Engine;
 use hysteron::{Recording, TableWriter, evaluate};
