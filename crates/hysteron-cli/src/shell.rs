@@ -22,13 +22,13 @@ pub(crate) fn man(args: &args::Man) -> Result<()> {
     let mut command = args::Cli::command();
     // Names of subcommands and what they inherit are filled in.
     command.build();
-    let mut written = AtomicFolder::create(args.force.target(&args.out, &[]), None)?;
+    let mut folder = AtomicFolder::create(args.force.target(&args.out, &[]), None)?;
     let mut count = 0;
     for command in with_subcommands(&command) {
         let source = concat!("hysteron ", env!("CARGO_PKG_VERSION"));
         let page = Man::new(command.clone()).source(source);
         let name = page.get_filename();
-        written.file(&name, |path| {
+        folder.file(&name, |path| {
             let mut text = Vec::new();
             let written = page
                 .render(&mut text)
@@ -40,7 +40,7 @@ pub(crate) fn man(args: &args::Man) -> Result<()> {
         })?;
         count += 1;
     }
-    written.commit()?;
+    folder.commit()?;
     let folder = args.out.display();
     print(&format!(
         "{count} pages in {folder}; read one with `man {folder}/hysteron.1`"

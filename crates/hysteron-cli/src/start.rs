@@ -4,7 +4,7 @@ use crate::terminal::{Result, print, say};
 use crate::{args, hold_out, progress, recording, remedy, text};
 use hysteron::{
     Columns, Fit, HeldOut, HoldOut, Model, Progress, Recording, RecordingSummary, Roles,
-    TableReader, fit_holding_out,
+    TableReader, fit_holding_out, shell_word,
 };
 use serde_json::json;
 
@@ -112,15 +112,15 @@ fn to_text(summary: &RecordingSummary, model: &Model, held_out: Option<&HeldOut>
 }
 
 fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<String> {
-    let file = quoted(&args.file.display().to_string());
+    let file = shell_word(&args.file.display().to_string());
     let mut named = format!(
         "--input {} --output {}",
-        quoted(columns.input),
-        quoted(columns.output)
+        shell_word(columns.input),
+        shell_word(columns.output)
     );
     for (name, column) in [("time", columns.time), ("load", columns.load)] {
         if let Some(column) = column {
-            named += &format!(" --{name} {}", quoted(column));
+            named += &format!(" --{name} {}", shell_word(column));
         }
     }
     let held_out = if held_out {
@@ -137,13 +137,4 @@ fn commands(args: &args::Begin, columns: Columns<'_>, held_out: bool) -> Vec<Str
         commands.insert(0, format!("hysteron studio {file}"));
     }
     commands
-}
-
-/// A word that a POSIX shell takes as it is.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
-    match !word.is_empty() && !word.starts_with('-') && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
 }

@@ -180,9 +180,9 @@ impl CWorstCase {
 /// keeps them.
 ///
 /// # Errors
-/// [`Error::Export`] for a model that depends on time, or has weights of more than the seventh order
-/// in a load, or does not fit the number type; for a name that cannot be one in C; for files in the folder that
-/// are of the other number type. [`Error::File`].
+/// [`Error::Export`] for a model that depends on time, or has weights of more than the seventh
+/// order in a load, or does not fit the number type; for a name that cannot be one in C; for files
+/// in the folder that are of the other number type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,
@@ -197,16 +197,17 @@ pub fn c<'a>(
 /// A model with stages has the algorithm of the stages too: `hysteron_mcu_stages.h`, `.c` and
 /// `hysteron_mcu_stages_inverse.c`. The C then gives the digits of
 /// [`hysteron_core::Stages::step_at`] and [`hysteron_core::Stages::invert_at`] in the same number
-/// type. The factors of the sample time are constants, so it needs no library either. The load is an
-/// argument of each step. Where the weights depend on it, a state has memory for the table of one
-/// load, which [`hysteron_core::mix`] makes of the parts' tables here and there.
+/// type. The factors of the sample time are constants, so it needs no library either. The load is
+/// an argument of each step. Where the weights depend on it, a state has memory for the table of
+/// one load, which [`hysteron_core::mix`] makes of the parts' tables here and there.
 ///
 /// ```
 /// use hysteron::{FirstOrder, Model, Operator, Plane, Sign};
 /// use hysteron_export::{COptions, CReal, CSampling, c_sampled};
 /// let plane = Plane::new(20.0, 80.0, 3)?;
 /// let mut model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
-/// model.thermal = Some(FirstOrder { tau_heating: 2.0, tau_cooling: 4.0, ..FirstOrder::default() });
+/// let body = FirstOrder { tau_heating: 2.0, tau_cooling: 4.0, ..FirstOrder::default() };
+/// model.thermal = Some(body);
 /// let folder = tempfile::tempdir()?;
 /// let options = COptions {
 ///     real: CReal::Float,
@@ -221,8 +222,8 @@ pub fn c<'a>(
 /// ```
 ///
 /// # Errors
-/// As [`c()`]; [`Error::Export`] too for a sample time that is missing or not needed, a range of the
-/// drive that is not in order, and for adaptation of a model with stages.
+/// As [`c()`]; [`Error::Export`] too for a sample time that is missing or not needed, a range of
+/// the drive that is not in order, and for adaptation of a model with stages.
 pub fn c_sampled<'a>(
     model: &Model,
     target: impl Into<Destination<'a>>,

@@ -64,8 +64,8 @@ use pyo3::types::{PyDict, PyString};
 /// spacing : {'auto', 'uniform'}
 ///     Where the levels are. 'auto': close together where the output moves, if that is better.
 /// creep : int, 'auto' or 'off'
-///     Terms of a creep after the operators, 0 to 4. 'auto' takes creep only where it predicts parts
-///     of the recording that were left out. Needs `time`.
+///     Terms of a creep after the operators, 0 to 4. 'auto' takes creep only where it predicts
+///     parts of the recording that were left out. Needs `time`.
 /// lag : float, 'auto' or 'off'
 ///     Time constant of a lag after the operators, s, from 0 on; 'auto' as for `creep`. Needs
 ///     `time`.
@@ -78,11 +78,12 @@ use pyo3::types::{PyDict, PyString};
 /// hold_out : str, Recording or list of Recording, optional
 ///     What takes no part in the fit, and tests it beside a straight line and interpolation:
 ///     ``'branches:20%'`` (a share up to 33 %, spread over the recording), ``'rows:100-200'``
-///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. `FitSummary.hold_out` has the errors there.
+///     or ``'rows:1-9,100-200'`` (counted from 1), or other recordings. `FitSummary.hold_out` has
+///     the errors there.
 /// thermal : {None, 'first-order', True, False}
 ///     Identify a thermal body in front of the operators, for an input that heats: 'first-order' or
-///     True. The input has to be proportional to the power, as a duty cycle is: give the square of a
-///     current or a voltage. Each sample of it was held since the sample before. Needs `time`.
+///     True. The input has to be proportional to the power, as a duty cycle is: give the square of
+///     a current or a voltage. Each sample of it was held since the sample before. Needs `time`.
 /// prior : WeightPrior, optional
 ///     What other actuators of the same kind tell; see `pyhysteron.fleet`. Plane, spacing, operator
 ///     and sign are then theirs, and there is neither smoothness nor a bootstrap.
@@ -112,7 +113,8 @@ use pyo3::types::{PyDict, PyString};
 /// >>> model.fit.nrmse_percent < 1
 /// True
 ///
-/// >>> tested = pyhysteron.fit(input, truth.simulate(input), levels=8, bootstrap=0, hold_out='branches:20%')
+/// >>> options = {'levels': 8, 'bootstrap': 0, 'hold_out': 'branches:20%'}
+/// >>> tested = pyhysteron.fit(input, truth.simulate(input), **options)
 /// >>> line = tested.fit.hold_out.rivals[0]
 /// >>> line.name, line.rmse > 5 * tested.fit.hold_out.model.rmse
 /// ('straight line', True)

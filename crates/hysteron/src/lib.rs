@@ -56,7 +56,7 @@ pub use data::{
     Destination, Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair,
     Roles, Row, STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
     discard_unfinished, inspect_table, invert_table, preview_table, printable, refuse_one_file,
-    simulate_table,
+    shell_word, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};

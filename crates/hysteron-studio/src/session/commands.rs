@@ -6,7 +6,7 @@ use super::fitting::Fitted;
 use super::opened::Opened;
 use super::prepare::Steps;
 use super::request::Id;
-use hysteron::{Operator, Plane};
+use hysteron::{Operator, Plane, shell_word};
 
 /// The files of a fit that are still open.
 fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {
@@ -29,20 +29,11 @@ fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
         .collect()
 }
 
-/// A word that a POSIX shell takes as it is.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
-    match !word.is_empty() && !word.starts_with('-') && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
-
 /// A file as an argument: one that begins with a hyphen is no option.
 fn path(name: &str) -> String {
     match name.starts_with('-') {
-        true => quoted(&format!("./{name}")),
-        false => quoted(name),
+        true => shell_word(&format!("./{name}")),
+        false => shell_word(name),
     }
 }
 
@@ -53,7 +44,7 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     let columns: Vec<String> = fitted.first().map_or(Vec::new(), |file| {
         let roles = roles(file).into_iter();
         roles
-            .map(|(name, column)| format!("--{name} {}", quoted(column)))
+            .map(|(name, column)| format!("--{name} {}", shell_word(column)))
             .collect()
     });
     words.extend(columns.iter().cloned());
@@ -69,8 +60,9 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
             .find_map(|file| file.steps.as_ref())
             .map(Steps::as_options),
     );
-    let option =
-        |(name, text): (&String, &String)| format!("--{} {}", name.replace('_', "-"), quoted(text));
+    let option = |(name, text): (&String, &String)| {
+        format!("--{} {}", name.replace('_', "-"), shell_word(text))
+    };
     words.extend(fit.options.iter().map(option));
     words.extend(match fit.words.as_str() {
         "" => Vec::new(),
@@ -120,7 +112,7 @@ pub(super) fn design(session: &Session, fit: &Fitted, plane: &Plane, wish: &Wish
                 .map(|file| format!("--from {}", path(&file.name))),
         );
         let input = file.roles.input.as_deref().unwrap_or_default();
-        words.push(format!("--input {}", quoted(input)));
+        words.push(format!("--input {}", shell_word(input)));
     }
     words.push("-o profile.csv".into());
     words.join(" \\\n    ") + "\n"

@@ -5,7 +5,7 @@
 //! `output` writes files so that they appear complete or not at all. `cells` writes cells as CSV.
 //! `run` simulates and inverts tables, a block of rows at a time. `model`, `design`, `adapted` and
 //! `trace` read and write what their names say. `columns` summarises a table, `guess` guesses the
-//! roles of its columns, and `printable` makes text safe to show.
+//! roles of its columns, and `printable` makes text safe to show and to paste.
 
 mod adapted;
 mod cells;
@@ -27,7 +27,7 @@ pub use output::{
     discard_unfinished, refuse_one_file,
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
-pub use printable::printable;
+pub use printable::{printable, shell_word};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
 pub(crate) use recording::{Group, Groups};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};

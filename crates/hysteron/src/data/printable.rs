@@ -1,4 +1,4 @@
-//! Makes text from files and names safe to show to people.
+//! Makes text from files and names safe to show to people, and to paste into a shell.
 
 use std::borrow::Cow;
 
@@ -26,6 +26,21 @@ pub fn printable(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(shown)
+}
+
+/// The text as one word of a POSIX shell.
+///
+/// ```
+/// assert_eq!(hysteron::shell_word("data.csv"), "data.csv");
+/// assert_eq!(hysteron::shell_word("my wire's.csv"), r"'my wire'\''s.csv'");
+/// ```
+#[must_use]
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
+    match !text.is_empty() && !text.starts_with('-') && text.chars().all(plain) {
+        true => text.to_owned(),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
 }
 
 /// Whether a character controls the display instead of being shown.

@@ -173,6 +173,11 @@ impl FitOptions {
         }
     }
 
+    /// Whether creep or a lag after the operators is asked for.
+    pub(crate) fn asks_after(&self) -> bool {
+        self.creep != Choice::Fixed(0) || self.lag != Choice::Fixed(0.0)
+    }
+
     /// Default number of bootstrap replicates: enough for standard errors of two digits, fewer for
     /// many levels. From 45 levels on there are none, because they would take long.
     #[must_use]

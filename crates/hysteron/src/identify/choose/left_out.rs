@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::identify::choose::validate::{Candidates, choose};
-use crate::identify::options::{Choice, FitOptions, Spacing};
+use crate::identify::options::{FitOptions, Spacing};
 use crate::identify::weights::problem::Problem;
 use crate::model::Smooth;
 use crate::progress::Progress;
@@ -47,10 +47,7 @@ pub fn left_out(
     candidates: Option<&Candidates>,
     progress: Progress<'_>,
 ) -> Result<LeftOut> {
-    let no_stages = options.spacing == Spacing::Uniform
-        && options.creep == Choice::Fixed(0)
-        && options.lag == Choice::Fixed(0.0);
-    if !no_stages {
+    if options.spacing != Spacing::Uniform || options.asks_after() {
         return Err(Error::Fit(
             "branches are left out of fits of the operators alone: without spacing, creep and lag"
                 .into(),

@@ -83,9 +83,7 @@ pub(crate) fn fit(
     if asked.auto_bootstrap {
         options.bootstrap = FitOptions::usual_bootstrap(options.levels);
     }
-    if options.creep != crate::identify::Choice::Fixed(0)
-        || options.lag != crate::identify::Choice::Fixed(0.0)
-    {
+    if options.asks_after() {
         let (after, report) = after::find(&seen, &options, progress)?;
         notes.insert("after".to_owned(), json!(report));
         seen = Cow::Owned(after::before(&after, &seen)?);
