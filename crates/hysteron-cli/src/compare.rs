@@ -1,5 +1,6 @@
 //! `hysteron compare`
 
+use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, remedy, text};
 use hysteron::{AtomicFolder, Columns, Forward, Model, Recording};
@@ -72,6 +73,7 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
 
 /// Writes a page for each recording; returns the first one.
 fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> Result<PathBuf> {
+    let typed = Typed::now();
     let mut pages = Vec::new();
     for (n, compared) in all.iter().enumerate() {
         let named = names.iter().zip(&compared.runs);
@@ -83,6 +85,7 @@ fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> R
             title: &title,
             recording: &compared.recording,
             models: &models,
+            made: typed.made(),
         };
         // A single recording has its page at the top.
         let within = match all.len() {

@@ -1,5 +1,6 @@
 //! `hysteron demo`
 
+use crate::made::Typed;
 use crate::terminal::{Result, print};
 use crate::{args, evaluate, text};
 use hysteron::{AtomicFolder, Errors, InverseRun};
@@ -23,11 +24,13 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
         written.file(prepared, |path| demo.prepared[n].write_csv(path))?;
     }
     written.file("model.json", |path| demo.model.write(path))?;
+    let typed = Typed::now();
     let report = Report {
         title: "MKP model of a simulated NiTi tension spring",
         model: &demo.model,
         recording: &demo.prepared[1],
         evaluation: &demo.evaluation,
+        made: typed.made(),
     };
     report.write_into(&mut written, Path::new("report"))?;
     written.commit()?;

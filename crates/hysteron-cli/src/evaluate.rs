@@ -1,5 +1,6 @@
 //! `hysteron evaluate`
 
+use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
@@ -26,11 +27,13 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
     if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());
+        let typed = Typed::now();
         let report = Report {
             title: &title,
             model: &model,
             recording: &*model.behind_body(&recording)?,
             evaluation: &evaluation,
+            made: typed.made(),
         };
         let paths = report.write_into(&mut folder, Path::new(""))?;
         folder.commit()?;

@@ -1,5 +1,6 @@
 //! `hysteron fleet`
 
+use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, fit, prepare, progress, remedy, text};
 use hysteron::{
@@ -154,10 +155,12 @@ fn report(args: &args::FleetReport) -> Result<()> {
     let mut folder = AtomicFolder::create(args.force.target(&args.out, &inputs), None)?;
     folder.claim(["index.html"])?;
     let rows = rows(&args.models)?;
+    let typed = Typed::now();
     let report = FleetReport {
         title: &format!("The fleet {}", args.models.display()),
         rows: &rows,
         norm: &Norm::of(&rows)?,
+        made: typed.made(),
     };
     let written = report.write_into(&mut folder, Path::new(""))?;
     folder.commit()?;

@@ -11,6 +11,7 @@ mod fit;
 mod fleet;
 mod hold_out;
 mod inspect;
+mod made;
 mod prepare;
 mod progress;
 mod recording;

@@ -1,5 +1,6 @@
 //! `hysteron track`
 
+use crate::made::Typed;
 use crate::terminal::{Result, print, say};
 use crate::{args, progress, text};
 use hysteron::{AtomicFile, AtomicFolder, Own, Progress, Quantity};
@@ -74,7 +75,13 @@ fn write(scenario: &Scenario, comparison: &Comparison, mut folder: AtomicFolder)
         AtomicFile::create(path, Own::SAME_BYTES)?.commit_with(summary.as_bytes())
     })?;
     let within = Path::new("report");
-    let paths = hysteron_report::write_comparison(scenario, comparison, &mut folder, within)?;
+    let paths = hysteron_report::write_comparison(
+        scenario,
+        comparison,
+        &mut folder,
+        within,
+        Typed::now().made(),
+    )?;
     folder.commit()?;
     say(format_args!("the report is {}", paths[0].display()));
     Ok(())

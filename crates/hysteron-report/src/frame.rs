@@ -1,11 +1,18 @@
 //! What every page has: one HTML file with everything in it.
 
+use crate::made::Made;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
 
 /// The page of `body`; `simulated` says that nothing on it was measured.
-pub(crate) fn html(heading: &str, lead: Markup, simulated: Option<&str>, body: Markup) -> String {
+pub(crate) fn html(
+    heading: &str,
+    lead: Markup,
+    simulated: Option<&str>,
+    body: Markup,
+    made: Made<'_>,
+) -> String {
     let heading = if heading.trim().is_empty() {
         "Report"
     } else {
@@ -26,6 +33,7 @@ pub(crate) fn html(heading: &str, lead: Markup, simulated: Option<&str>, body: M
                     p.lead { (lead) }
                     @if let Some(simulated) = simulated { p.simulated { (simulated) } }
                     (body)
+                    footer { (made.html()) }
                 }
             }
         }
@@ -41,8 +49,11 @@ pub(crate) fn picture(
     [title, caption]: &[String; 2],
     beside: Markup,
 ) -> Markup {
+    // Its width in pixels: all figures of a page have one scale, and so one size of text.
+    let width = svg.split_once(" width=\"").map_or("", |(_, rest)| rest);
+    let width = width.split_once('"').map_or("760", |(width, _)| width);
     html! {
-        figure id=(id) {
+        figure id=(id) style={"--width:" (width)} {
             div.wide { (PreEscaped(svg)) }
             figcaption { b { "Figure " (number + 1) ". " (title) "." } " " (caption) (beside) }
         }

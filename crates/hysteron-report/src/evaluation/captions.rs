@@ -8,6 +8,7 @@ use crate::evaluation::view::View;
 use crate::number::{capitalised, percent};
 use crate::number::{count, significant};
 use crate::quantity::Labelled;
+use crate::residuals::CLASSES;
 use crate::stack::Figures;
 use hysteron::{Criterion, Errors};
 
@@ -36,6 +37,8 @@ pub(crate) fn title(figure: Figure, view: &View<'_>) -> String {
         Figure::OutputTime => format!("{output} over {}", view.time_label.name),
         Figure::Loops => format!("{output} over {input}"),
         Figure::OutputDiscrepancy => format!("discrepancy of the modelled {output}"),
+        Figure::OutputResiduals => format!("discrepancy of the modelled {output} over {input}"),
+        Figure::OutputHistogram => "How often each discrepancy occurs".into(),
         Figure::InputTime => format!("{input} from the inverse model"),
         Figure::InputDiscrepancy => format!("discrepancy of the modelled {input}"),
         Figure::DeadBand => "Largest dead-band discrepancy, close up".into(),
@@ -74,6 +77,14 @@ pub(crate) fn caption(figure: Figure, view: &View<'_>) -> String {
         ),
         Figure::Loops => format!(
             "Modelled and {recorded} {output} over {recorded} {input}: major and minor loops."
+        ),
+        Figure::OutputResiduals => format!(
+            "Modelled minus {recorded} {output} at each {input}. What the model cannot follow shows \
+             here as a pattern."
+        ),
+        Figure::OutputHistogram => format!(
+            "Modelled minus {recorded} {output}: share of the samples in each of {CLASSES} classes \
+             of equal width. Noise alone gives a bell around zero."
         ),
         Figure::OutputDiscrepancy => {
             format!(

@@ -31,6 +31,10 @@ pub enum Figure {
     Loops,
     /// Fig. 12: modelled minus measured output over time.
     OutputDiscrepancy,
+    /// Modelled minus measured output over the input.
+    OutputResiduals,
+    /// How often each size of it occurs.
+    OutputHistogram,
     /// Fig. 13: input from the inverse model, and measured input, over time.
     InputTime,
     /// Fig. 14: modelled minus measured input over time.
@@ -42,7 +46,7 @@ pub enum Figure {
 impl Figure {
     /// Every figure, in the order of the page: the fitted weights, both tests, then the memory
     /// behind them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::WeightsPlane,
         Self::WeightsMap,
         Self::LoadShift,
@@ -54,6 +58,8 @@ impl Figure {
         Self::Loops,
         Self::LoadMeasured,
         Self::OutputDiscrepancy,
+        Self::OutputResiduals,
+        Self::OutputHistogram,
         Self::InputTime,
         Self::InputDiscrepancy,
         Self::DeadBand,
@@ -75,6 +81,8 @@ impl Figure {
             Self::OutputTime => "fig10-output-time",
             Self::Loops => "fig11-loops",
             Self::OutputDiscrepancy => "fig12-output-discrepancy",
+            Self::OutputResiduals => "residuals-input",
+            Self::OutputHistogram => "residuals-histogram",
             Self::InputTime => "fig13-input-time",
             Self::InputDiscrepancy => "fig14-input-discrepancy",
             Self::DeadBand => "fig15-dead-band",
@@ -98,7 +106,9 @@ impl Figure {
             | Self::LoadMeasured
             | Self::Excitation
             | Self::StandardErrors
-            | Self::CrossValidation => return None,
+            | Self::CrossValidation
+            | Self::OutputResiduals
+            | Self::OutputHistogram => return None,
         })
     }
 

@@ -4,6 +4,7 @@ use crate::evaluation::figure::Figure;
 use crate::evaluation::figures::classes_counted;
 use crate::evaluation::view::View;
 use crate::frame;
+use crate::made;
 use crate::number::percent;
 use crate::number::{count, significant};
 use crate::stack::Figures;
@@ -34,6 +35,8 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
             &[Figure::Loops],
             &[Figure::LoadMeasured],
             &[Figure::OutputDiscrepancy],
+            &[Figure::OutputResiduals],
+            &[Figure::OutputHistogram],
         ],
     ),
     (
@@ -59,7 +62,7 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         (facts(view))
         (errors(view))
         @for (name, groups) in SECTIONS { (section(name, groups, view, drawn)) }
-        footer {
+        p.beside {
             "Figures stand beside those of the book chapter “Hysteresis behaviour and modeling of \
              SMA actuators”, which introduces the MKP model; its figure numbers are given with \
              each caption."
@@ -70,6 +73,7 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         lead,
         view.simulated().then_some(simulated),
         body,
+        view.made,
     )
 }
 
@@ -82,6 +86,15 @@ fn facts(view: &View<'_>) -> Markup {
             tr {
                 th scope="row" { "Recording" }
                 td { (count(view.recording.input.len())) " samples, " (view.recorded()) }
+            }
+            @if let Some(source) = &view.recording.source {
+                tr {
+                    th scope="row" { "From" }
+                    td { (made::file(&source.path.display().to_string(), Some(&source.sha256))) }
+                }
+            }
+            @for (path, digest) in source.fitted_to() {
+                tr { th scope="row" { "Fitted to" } td { (made::file(path, digest)) } }
             }
             tr {
                 th scope="row" { "Plane" }

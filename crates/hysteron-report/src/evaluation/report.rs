@@ -3,6 +3,7 @@
 use crate::error::ReportError;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
+use crate::made::Made;
 use crate::stack::{self, Figures};
 use hysteron::Evaluation;
 use hysteron::Model;
@@ -21,6 +22,8 @@ pub struct Report<'a> {
     pub recording: &'a Recording,
     /// How it did.
     pub evaluation: &'a Evaluation,
+    /// How the report was made.
+    pub made: Made<'a>,
 }
 
 impl Report<'_> {

@@ -23,6 +23,19 @@ impl<'a> Source<'a> {
         self.model.fit.as_ref()
     }
 
+    /// The files that it was identified from, with their digests.
+    pub(crate) fn fitted_to(self) -> Vec<(&'a str, Option<&'a str>)> {
+        let Some(fit) = self.fit() else {
+            return Vec::new();
+        };
+        let others = fit.other_files.iter().enumerate();
+        let others = others.map(|(n, file)| (file, fit.other_sha256.get(n)));
+        let first = fit.file.iter().map(|file| (file, fit.sha256.as_ref()));
+        let all = first.chain(others);
+        all.map(|(file, digest)| (file.as_str(), digest.map(String::as_str)))
+            .collect()
+    }
+
     /// How the weights depend on a load, where they do.
     pub(crate) fn load(self) -> Option<&'a LoadDependence> {
         self.model.load.as_ref()

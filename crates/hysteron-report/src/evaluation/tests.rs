@@ -3,6 +3,7 @@
 
 use crate::evaluation::fixture::{Fixture, sma};
 use crate::evaluation::{Figure, Report};
+use crate::made::Made;
 use hysteron::{Origin, Quantity, Recording};
 
 fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
@@ -11,6 +12,7 @@ fn report<'a>(fixture: &'a Fixture, title: &'a str) -> Report<'a> {
         model: &fixture.model,
         recording: &fixture.recording,
         evaluation: &fixture.evaluation,
+        made: Made::default(),
     }
 }
 
@@ -230,7 +232,7 @@ fn without_an_inverse_its_figures_are_left_out_and_the_reason_given() {
     report(&fixture, "").write(folder.path()).unwrap();
     fixture.evaluation.inverse = Err("3 weights are below zero".into());
     let written = report(&fixture, "").write(folder.path()).unwrap();
-    assert_eq!(written.len(), 1 + 2 * 6);
+    assert_eq!(written.len(), 1 + 2 * 8);
     // Figures of the earlier report are gone; there is the list of files.
     assert_eq!(
         std::fs::read_dir(folder.path()).unwrap().count(),
@@ -248,4 +250,52 @@ fn an_evaluation_of_another_recording_is_refused() {
     let error = report(&fixture, "").write(folder.path()).unwrap_err();
     assert!(error.to_string().contains("299 samples"), "{error}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn the_page_says_how_it_was_made() {
+    let mut fixture = sma(300);
+    fixture.model.fit = None;
+    let command = "hysteron evaluate 'my <model>.json' data.csv --report here";
+    let made = Made {
+        command: Some(command),
+        date: Some("2026-11-23"),
+    };
+    let page = |made| {
+        Report {
+            made,
+            ..report(&fixture, "")
+        }
+        .page()
+        .unwrap()
+    };
+    let told = page(made);
+    for part in [
+        env!("CARGO_PKG_VERSION"),
+        "2026-11-23",
+        "my &lt;model&gt;.json",
+    ] {
+        assert!(told.contains(part), "{part}");
+    }
+    let silent = page(Made::default());
+    assert!(silent.contains(env!("CARGO_PKG_VERSION")) && !silent.contains("<pre"));
+}
+
+#[test]
+fn all_figures_of_a_page_have_one_scale() {
+    let fixture = sma(300);
+    let page = report(&fixture, "").page().unwrap();
+    let figures = page.matches("<figure ").count();
+    assert!(figures > 5);
+    for svg in page.split("<figure ").skip(1) {
+        let width = svg
+            .split("--width:")
+            .nth(1)
+            .and_then(|rest| rest.split('"').next());
+        let drawn = svg
+            .split("viewBox=\"0 0 ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next());
+        assert_eq!(width, drawn);
+    }
 }

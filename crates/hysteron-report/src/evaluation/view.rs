@@ -5,6 +5,7 @@ use crate::evaluation::figure::Figure;
 use crate::evaluation::report::Report;
 use crate::evaluation::source::Source;
 use crate::evaluation::{captions, figures, page};
+use crate::made::Made;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
 use hysteron::{BandEvaluation, Confidence, Evaluation, InverseEvaluation, Validation};
@@ -17,6 +18,7 @@ pub(crate) struct View<'a> {
     pub(crate) recording: &'a Recording,
     pub(crate) evaluation: &'a Evaluation,
     pub(crate) source: Source<'a>,
+    pub(crate) made: Made<'a>,
     pub(crate) input: Labelled,
     pub(crate) output: Labelled,
     /// Seconds, or sample numbers where the recording has no time.
@@ -31,6 +33,7 @@ impl<'a> View<'a> {
             model,
             recording,
             evaluation,
+            made,
         } = report;
         let source = Source::new(model);
         let (time, time_label) = clock(recording);
@@ -39,6 +42,7 @@ impl<'a> View<'a> {
             recording,
             evaluation,
             source,
+            made,
             input: Labelled::first([&recording.input_quantity, source.input()], "input"),
             output: Labelled::first([&recording.output_quantity, source.output()], "output"),
             time,

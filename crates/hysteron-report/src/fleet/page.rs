@@ -22,7 +22,7 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         (table(view))
     };
     let simulated = view.simulated().then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body)
+    frame::html(view.report.title, lead, simulated, body, view.report.made)
 }
 
 /// The outliers, or the ten strangest where there are fewer.

@@ -2,6 +2,7 @@
 
 use super::view::View;
 use crate::error::ReportError;
+use crate::made::Made;
 use crate::stack::{self, Figures};
 use hysteron::{AtomicFolder, Destination, FleetRow, Norm};
 use std::path::{Path, PathBuf};
@@ -15,6 +16,8 @@ pub struct FleetReport<'a> {
     pub rows: &'a [FleetRow],
     /// What is usual among them.
     pub norm: &'a Norm,
+    /// How the report was made.
+    pub made: Made<'a>,
 }
 
 impl FleetReport<'_> {

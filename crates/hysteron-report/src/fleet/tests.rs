@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::FleetReport;
+use crate::made::Made;
 use hysteron::{FleetRow, Model, Norm, Operator, Plane, Sign, operators};
 
 /// A loop with the weight around one operator; `n` varies it a little.
@@ -38,6 +39,7 @@ fn the_strangest_come_first_and_have_their_loops() {
         title: "line",
         rows: &rows,
         norm: &norm,
+        made: Made::default(),
     };
     let folder = tempfile::tempdir().unwrap();
     let written = report.write(folder.path()).unwrap();

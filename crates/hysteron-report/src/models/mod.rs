@@ -1,10 +1,8 @@
 //! Models beside each other on one recording: residuals over time, over the input, and as
 //! histograms.
 
-mod histogram;
 mod page;
 mod report;
-mod residuals;
 mod view;
 
 pub use report::{ModelsReport, NamedForward};

@@ -19,7 +19,7 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
     };
     let simulated = view.simulated().then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body)
+    frame::html(view.report.title, lead, simulated, body, view.report.made)
 }
 
 fn table(view: &View<'_>) -> Markup {

@@ -2,6 +2,7 @@
 
 use super::view::View;
 use crate::error::ReportError;
+use crate::made::Made;
 use crate::stack::{self, Figures};
 use hysteron::{AtomicFolder, Destination, Forward, Recording};
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ pub struct NamedForward<'a> {
 ///
 /// ```
 /// use hysteron::{Fit, Recording, Start, forward};
-/// use hysteron_report::{ModelsReport, NamedForward};
+/// use hysteron_report::{Made, ModelsReport, NamedForward};
 ///
 /// let input: Vec<f64> = (0..200).map(|n| (1.0 - (f64::from(n) * 0.1).cos()) * 30.0).collect();
 /// let recording = Recording::new(input.clone(), input.iter().map(|x| x * x).collect())?;
@@ -35,6 +36,7 @@ pub struct NamedForward<'a> {
 ///         NamedForward { name: "5 levels", forward: &few },
 ///         NamedForward { name: "20 levels", forward: &many },
 ///     ],
+///     made: Made::default(),
 /// };
 /// let folder = tempfile::tempdir()?;
 /// let written = report.write(folder.path())?;
@@ -49,6 +51,8 @@ pub struct ModelsReport<'a> {
     pub recording: &'a Recording,
     /// The models, in the order of the figures.
     pub models: &'a [NamedForward<'a>],
+    /// How the report was made.
+    pub made: Made<'a>,
 }
 
 impl ModelsReport<'_> {

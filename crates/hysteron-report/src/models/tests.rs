@@ -2,6 +2,7 @@
 
 use super::{ModelsReport, NamedForward};
 use crate::error::ReportError;
+use crate::made::Made;
 use hysteron::{Errors, Forward, Recording};
 
 fn forward(recording: &Recording, error: f64) -> Forward {
@@ -35,6 +36,7 @@ fn every_model_has_its_panel_and_its_row() {
             title: "models",
             recording: &recording,
             models: &models[..count],
+            made: Made::default(),
         };
         let written = report.write(folder.path()).unwrap();
         // A page, and three figures as SVG and PNG.
@@ -66,6 +68,7 @@ fn what_does_not_fit_together_is_refused() {
             title: "models",
             recording: &recording,
             models,
+            made: Made::default(),
         };
         report.write(place.as_path()).unwrap_err()
     };

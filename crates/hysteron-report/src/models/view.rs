@@ -1,11 +1,12 @@
 //! What every figure and caption reads, and the figures there are.
 
+use super::page;
 use super::report::ModelsReport;
-use super::{histogram, page, residuals};
 use crate::clock::clock;
 use crate::number::difference;
-use crate::panels::Heading;
+use crate::panels::{Heading, WIDTH};
 use crate::quantity::Labelled;
+use crate::residuals::{CLASSES, Residuals};
 use crate::stack::Figures;
 use hysteron::Origin;
 use std::borrow::Cow;
@@ -51,7 +52,7 @@ impl<'a> View<'a> {
     }
 
     /// A heading for each model, with its error.
-    pub(super) fn headings(&self) -> Vec<Heading> {
+    fn headings(&self) -> Vec<Heading> {
         let models = self.report.models.iter();
         models
             .map(|model| Heading {
@@ -63,11 +64,6 @@ impl<'a> View<'a> {
                 ),
             })
             .collect()
-    }
-
-    /// What the residuals are called on an axis.
-    pub(super) fn residual(&self) -> Labelled {
-        self.output.renamed("residual")
     }
 }
 
@@ -108,17 +104,30 @@ impl Figures for View<'_> {
             Figure::Histogram => format!(
                 "{what}: share of the samples in each of {} classes of equal width. Noise alone \
                  gives a bell around zero.",
-                histogram::CLASSES
+                CLASSES
             ),
         }
     }
 
     fn svg(&self, figure: Figure) -> Option<String> {
-        Some(match figure {
-            Figure::Time => residuals::over_time(self),
-            Figure::Input => residuals::over_input(self),
-            Figure::Histogram => histogram::svg(self),
-        })
+        let residuals = Residuals {
+            headings: self.headings(),
+            each: &self.residuals,
+            label: self.output.renamed("residual"),
+            recorded: if self.simulated() {
+                "simulated"
+            } else {
+                "measured"
+            },
+        };
+        let mut sheet = self.sheet(figure, WIDTH);
+        let input = &self.report.recording.input;
+        let bottom = match figure {
+            Figure::Time => residuals.over_time(&mut sheet, &self.time, &self.time_label),
+            Figure::Input => residuals.over_input(&mut sheet, input, &self.input),
+            Figure::Histogram => residuals.histogram(&mut sheet),
+        };
+        Some(self.finish(figure, sheet, bottom))
     }
 
     fn page(&self, drawn: &[(Figure, String)]) -> String {

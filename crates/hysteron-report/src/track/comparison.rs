@@ -2,6 +2,7 @@
 
 use super::report::{NamedTrace, TrackReport, TrackTable};
 use crate::error::ReportError;
+use crate::made::Made;
 use hysteron::{AtomicFolder, Quantity};
 use hysteron_sim::track::{Comparison, Median, Scenario};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ pub fn write_comparison(
     comparison: &Comparison,
     folder: &mut AtomicFolder,
     within: &Path,
+    made: Made<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let [drive, input, output] = scenario.plant.quantities();
     let runs = comparison.controllers.iter().zip(&comparison.traces);
@@ -38,6 +40,7 @@ pub fn write_comparison(
         events: &events,
         table: &table,
         plane: comparison.model.plane(),
+        made,
     }
     .write_into(folder, within)
 }

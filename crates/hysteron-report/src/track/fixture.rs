@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::{NamedTrace, TrackReport, TrackTable};
+use crate::made::Made;
 use hysteron::control::{LoopStatus, Snapshot, Trace};
 use hysteron::{Plane, Quantity, operators};
 
@@ -97,6 +98,7 @@ impl Fixture {
             events: &self.events,
             table: &self.table,
             plane: &self.plane,
+            made: Made::default(),
         })
     }
 }

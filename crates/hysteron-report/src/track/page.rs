@@ -36,7 +36,7 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         @if view.adapting().next().is_none() { p { "No controller adapted its weights." } }
     };
     let simulated = view.report.simulated.then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body)
+    frame::html(view.report.title, lead, simulated, body, view.report.made)
 }
 
 fn runs(view: &View<'_>) -> String {

@@ -2,6 +2,7 @@
 
 use super::view::View;
 use crate::error::ReportError;
+use crate::made::Made;
 use crate::stack::{self, Figures};
 use hysteron::control::Trace;
 use hysteron::{AtomicFolder, Destination, Plane, Quantity};
@@ -36,7 +37,7 @@ pub struct TrackTable {
 /// ```
 /// use hysteron::control::{LoopStatus, Trace};
 /// use hysteron::{Plane, Quantity};
-/// use hysteron_report::{NamedTrace, TrackReport, TrackTable};
+/// use hysteron_report::{Made, NamedTrace, TrackReport, TrackTable};
 ///
 /// let time: Vec<f64> = (0..200).map(|n| 0.1 * f64::from(n)).collect();
 /// let reference: Vec<f64> = time.iter().map(|t| t.sin()).collect();
@@ -62,6 +63,7 @@ pub struct TrackTable {
 ///     events: &[(10.0, "load 10 N".into())],
 ///     table: &TrackTable::default(),
 ///     plane: &Plane::new(20.0, 80.0, 10)?,
+///     made: Made::default(),
 /// };
 /// let folder = tempfile::tempdir()?;
 /// let written = report.write(folder.path())?;
@@ -90,6 +92,8 @@ pub struct TrackReport<'a> {
     pub table: &'a TrackTable,
     /// The plane of the snapshots' weights.
     pub plane: &'a Plane,
+    /// How the report was made.
+    pub made: Made<'a>,
 }
 
 impl TrackReport<'_> {

@@ -10,7 +10,7 @@ use super::{Session, commands};
 use base64::Engine;
 use hysteron::{Recording, TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};
-use hysteron_report::Report;
+use hysteron_report::{Made, Report};
 use serde::{Deserialize, Serialize, Serializer};
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -193,6 +193,7 @@ impl Session {
             model,
             recording: seen,
             evaluation: &evaluation,
+            made: Made::default(),
         };
         let page = report.page();
         let page = page.map_err(|error| Fault::defect(&error.to_string()))?;

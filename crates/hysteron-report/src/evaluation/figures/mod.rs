@@ -10,6 +10,7 @@ mod load_measured;
 mod load_shift;
 mod loops;
 mod over_time;
+mod residuals;
 mod standard_errors;
 mod weights_map;
 mod weights_plane;
@@ -39,6 +40,7 @@ pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
         Figure::OutputTime => Some(over_time::output(view)),
         Figure::Loops => Some(loops::svg(view)),
         Figure::OutputDiscrepancy => Some(discrepancy::output(view)),
+        Figure::OutputResiduals | Figure::OutputHistogram => Some(residuals::svg(figure, view)),
         Figure::InputTime => over_time::input(view),
         Figure::InputDiscrepancy => discrepancy::input(view),
         Figure::DeadBand => close_up::svg(view),
