@@ -20,11 +20,12 @@
 //!
 //! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
 //! write files and folders under temporary names (`unfinished`) and move them to their place
-//! (`moves`). `table` writes tables; `csv` writes them as text; `parquet`, `spool` and `splice` as
+//! (`moves`). `table` writes tables, `added` is what commands add to them; `csv` writes them as text; `parquet`, `spool` and `splice` as
 //! Parquet.
 //! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
 //! makes them.
 
+mod added;
 mod atomic;
 mod csv;
 mod destination;
@@ -40,11 +41,13 @@ mod spool;
 mod table;
 mod unfinished;
 
+pub use added::Added;
+pub(crate) use added::AddedCells;
 pub use atomic::AtomicFile;
 pub use destination::{Destination, Own, refuse_one_file};
 pub use folder::AtomicFolder;
 pub(crate) use partial::{Entry, Partial};
 pub(crate) use records::{Kind, RecordWriter, Schema, Value, read_records};
 pub(crate) use sign::is_our_model;
-pub use table::{Added, Cell, STANDARD_OUTPUT, TableWriter};
+pub use table::{STANDARD_OUTPUT, TableWriter};
 pub use unfinished::discard_unfinished;

@@ -71,6 +71,12 @@ impl Cells {
         self.numbers.extend(number);
     }
 
+    /// Adds cells that all hold a number.
+    pub(super) fn push_numbers(&mut self, numbers: &[f64]) {
+        self.defined.resize(self.defined.len() + numbers.len(), 1);
+        self.numbers.extend_from_slice(numbers);
+    }
+
     pub(super) fn push_text(&mut self, text: Option<&[u8]>) {
         self.defined.push(text.is_some().into());
         // Words such as a status come many times in a row.

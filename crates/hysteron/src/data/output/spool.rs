@@ -4,12 +4,13 @@
 //! a name, which the system removes when the program ends. Memory does not grow with the number of
 //! rows. The rows of a table in memory are stored in memory.
 
+use super::added::AddedCells;
 use super::csv::Csv;
 use super::parquet::{Cells, Kind, field, io_error, properties};
-use super::table::{Cell, Sink};
+use super::table::Sink;
 use super::unfinished::bare;
 use crate::data::cells::push_row;
-use crate::data::table::Splitter;
+use crate::data::table::{Block, Splitter};
 use parquet::errors::ParquetError;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
@@ -102,25 +103,38 @@ impl Spool {
         let mut row = std::mem::take(&mut self.row);
         row.clear();
         push_row(&mut row, cells);
-        let written = self.extended(&row, &[]);
+        self.note(&row);
+        let written = self.rows.copied(&row);
         self.row = row;
         written
     }
 
-    /// A row that is CSV already, followed by more cells.
-    pub(super) fn extended(&mut self, row: &[u8], cells: &[Cell<'_>]) -> io::Result<()> {
+    /// Rows that are CSV already, each followed by more cells.
+    pub(super) fn extended(
+        &mut self,
+        (block, first): (&Block, usize),
+        cells: (&AddedCells, usize),
+        count: usize,
+    ) -> io::Result<()> {
+        for n in 0..count {
+            self.note(block.row(first + n));
+        }
+        if !cells.0.words.is_empty()
+            && let Some(last) = self.kinds.last_mut()
+        {
+            *last = Kind::Text;
+        }
+        self.rows.extended((block, first), cells, count)
+    }
+
+    /// Notes what the cells of a row need.
+    fn note(&mut self, row: &[u8]) {
         let mut kinds = self.kinds.iter_mut();
         self.splitter.line(row, b',', |cell| {
             if let Some(kind) = kinds.next() {
                 *kind = kind.with(cell);
             }
         });
-        for (kind, cell) in kinds.zip(cells) {
-            if matches!(cell, Cell::Word(_)) {
-                *kind = Kind::Text;
-            }
-        }
-        self.rows.extended(row, cells)
     }
 
     /// Writes all rows as Parquet.

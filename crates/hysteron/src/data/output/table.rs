@@ -1,43 +1,16 @@
 //! Writes tables row by row, as CSV or Parquet, to a file, to standard output or to memory.
 
+use super::added::{Added, AddedCells};
 use super::csv::Csv;
 use super::destination::folder_of;
 use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
 use super::{AtomicFile, Destination, Own};
-use crate::data::table::TableReader;
+use crate::data::table::{Block, TableReader};
 use crate::error::{Error, Result};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-/// A column that is added to a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Added {
-    /// A column of numbers, with its name.
-    Numbers(&'static str),
-    /// A column of words, with its name.
-    Words(&'static str),
-}
-
-impl Added {
-    /// The column's name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Numbers(name) | Self::Words(name) => name,
-        }
-    }
-}
-
-/// A cell of an added column.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell<'a> {
-    /// A cell in a column of numbers.
-    Number(f64),
-    /// A cell in a column of words.
-    Word(&'a str),
-}
 
 /// The path in errors about standard output.
 pub const STANDARD_OUTPUT: &str = "standard output";
@@ -217,16 +190,21 @@ impl TableWriter {
         matches!(self.to, Format::Spliced(_))
     }
 
-    /// Writes a row of the source, which is CSV without the end of the line, followed by more cells.
+    /// Writes `count` rows of the source, followed by more cells: the rows of a block and the cells,
+    /// each from a place on.
     ///
     /// # Errors
     /// [`Error::File`].
-    #[inline]
-    pub(crate) fn extend_row(&mut self, row: &[u8], cells: &[Cell<'_>]) -> Result<()> {
+    pub(crate) fn extend_rows(
+        &mut self,
+        rows: (&Block, usize),
+        cells: (&AddedCells, usize),
+        count: usize,
+    ) -> Result<()> {
         let written = match &mut self.to {
-            Format::Csv(csv) => csv.extended(row, cells),
-            Format::Parquet(spool, _) => spool.extended(row, cells),
-            Format::Spliced(splice) => splice.row(cells),
+            Format::Csv(csv) => csv.extended(rows, cells, count),
+            Format::Parquet(spool, _) => spool.extended(rows, cells, count),
+            Format::Spliced(splice) => splice.rows(cells, count),
         };
         written.map_err(|source| self.failed(source))
     }

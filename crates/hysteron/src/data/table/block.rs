@@ -2,7 +2,7 @@
 
 use super::{Column, Source, TableReader};
 use crate::data::cells;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Result};
 use std::ops::Range;
 
 /// Rows of a table: how they will be written, and the numbers of the columns asked for.
@@ -199,13 +199,11 @@ impl TableReader {
         found.map(|_| ())
     }
 
-    /// An error at a row of a block.
-    pub(crate) fn fault_in(
-        &self,
-        (block, row): (&Block, usize),
-        column: Option<Column>,
-        problem: String,
-    ) -> Error {
-        self.fault_at(block.place(row), column, problem)
+    /// Whether all bytes that have arrived are used, so that the next row may be long in coming.
+    pub(crate) fn may_wait(&self) -> bool {
+        match &self.source {
+            Source::Text(text) => text.is_drained(),
+            Source::Numbers(_) => false,
+        }
     }
 }
