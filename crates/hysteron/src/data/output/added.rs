@@ -1,5 +1,7 @@
 //! Columns that commands add to tables, and their cells.
 
+use std::ops::Range;
+
 /// A column that is added to a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Added {
@@ -46,6 +48,15 @@ impl AddedCells {
     pub(crate) fn clear(&mut self) {
         self.numbers.iter_mut().for_each(Vec::clear);
         self.words.clear();
+    }
+
+    /// Adds the cells of these rows of others.
+    pub(crate) fn extend(&mut self, others: &Self, rows: Range<usize>) {
+        for (series, more) in self.numbers.iter_mut().zip(&others.numbers) {
+            series.extend_from_slice(&more[rows.clone()]);
+        }
+        self.words
+            .extend(others.words.get(rows).unwrap_or_default());
     }
 
     /// Adds the numbers of a row.

@@ -5,7 +5,7 @@
 
 use super::Counts;
 use super::sink::Sink;
-use crate::data::output::{Added, AddedCells, TableWriter};
+use crate::data::output::{Added, AddedCells, Needs, TableWriter};
 use crate::data::table::{Block, Column, TableReader};
 use crate::error::Result;
 use std::panic::resume_unwind;
@@ -37,7 +37,7 @@ pub(super) struct Parcel {
 }
 
 /// Blocks that may wait before a thread.
-const AHEAD: usize = 1;
+const AHEAD: usize = 2;
 
 /// Copies `table` to `out` with the columns `added`, whose cells `work` finds. Reads the numbers of
 /// `columns`.
@@ -56,13 +56,13 @@ pub(super) fn through(
     progress: impl Fn(u64),
 ) -> Result<Counts> {
     let sink = Sink::start(table, out, added)?;
-    let text = sink.needs_rows();
-    if !text {
+    let needs = sink.needs();
+    if needs == Needs::Nothing {
         table.read_only(columns.iter().copied());
     }
     let rows = Rows {
         columns,
-        text,
+        needs,
         added,
     };
     // A page in a browser has no threads of this kind.
@@ -81,7 +81,7 @@ pub(super) fn through(
 /// What is read of each row, and added to it.
 struct Rows<'a> {
     columns: &'a [Column],
-    text: bool,
+    needs: Needs,
     added: &'a [Added],
 }
 
@@ -96,7 +96,7 @@ impl Rows<'_> {
     /// Reads the next rows; false at the end.
     fn read(&self, table: &mut TableReader, parcel: &mut Parcel) -> Result<bool> {
         parcel.cells.clear();
-        table.fill(&mut parcel.block, self.columns, self.text)?;
+        table.fill(&mut parcel.block, self.columns, self.needs)?;
         Ok(parcel.block.len() > 0)
     }
 }
@@ -186,11 +186,7 @@ fn compute(
     Ok(())
 }
 
-fn write(
-    mut sink: Sink,
-    worked: &Receiver<Parcel>,
-    to_reader: &Sender<Parcel>,
-) -> Result<Sink> {
+fn write(mut sink: Sink, worked: &Receiver<Parcel>, to_reader: &Sender<Parcel>) -> Result<Sink> {
     for mut parcel in worked {
         sink.take(&mut parcel)?;
         // After an error the reader takes no more.

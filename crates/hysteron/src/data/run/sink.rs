@@ -1,7 +1,7 @@
 //! Pairs the rows of a table with the cells that come for them in the same order.
 
 use super::pipeline::Parcel;
-use crate::data::output::{Added, AddedCells, TableWriter};
+use crate::data::output::{Added, AddedCells, Needs, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
 use std::collections::VecDeque;
@@ -34,9 +34,9 @@ impl Sink {
         })
     }
 
-    /// Whether the rows themselves are needed, and not only their new cells.
-    pub(super) fn needs_rows(&self) -> bool {
-        self.out.as_ref().is_some_and(|out| !out.copies())
+    /// What of the rows is to be read for the writer.
+    pub(super) fn needs(&self) -> Needs {
+        self.out.as_ref().map_or(Needs::Nothing, TableWriter::needs)
     }
 
     /// Writes the rows whose cells are known now, and hands them on to whoever reads the result.
