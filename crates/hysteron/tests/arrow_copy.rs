@@ -6,8 +6,8 @@ use arrow_array::types::Float64Type;
 use arrow_array::{Array, RecordBatch};
 use arrow_ipc::reader::{FileReader, StreamReader};
 use hysteron::{
-    Around, Invert, Model, Operator, Plane, Policy, Sign, Simulate, TableReader, TableWriter,
-    invert_table, simulate_table,
+    Around, Destination, Invert, Model, Operator, Plane, Policy, Sign, Simulate, TableReader,
+    TableWriter, invert_table, simulate_table,
 };
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ fn parts(path: &Path) -> Vec<RecordBatch> {
 
 fn simulate(source: &Path, out: &Path) -> hysteron::Result<()> {
     let mut table = TableReader::open(source)?;
-    let writer = TableWriter::create(Some(out.into()))?;
+    let writer = TableWriter::create(Some(Destination::keeping_foreign(out, false)))?;
     let what = Simulate {
         input: "x",
         around: Around::default(),
@@ -58,7 +58,7 @@ fn simulate(source: &Path, out: &Path) -> hysteron::Result<()> {
 
 fn invert(source: &Path, out: &Path) -> hysteron::Result<()> {
     let mut table = TableReader::open(source)?;
-    let writer = TableWriter::create(Some(out.into()))?;
+    let writer = TableWriter::create(Some(Destination::keeping_foreign(out, false)))?;
     let how = Invert {
         target: "x",
         around: Around::default(),

@@ -1,7 +1,7 @@
 //! Writes rows of CSV to a stream, a block at a time.
 
 use super::added::AddedCells;
-use crate::data::cells::{push_cell, push_number, push_row};
+use crate::data::cells::{push_number, push_row};
 use crate::data::table::Block;
 use std::io::{self, Write};
 
@@ -46,7 +46,8 @@ impl<W: Write> Csv<W> {
             }
             if let Some(word) = cells.words.get(from + n) {
                 self.held.push(b',');
-                push_cell(&mut self.held, word.as_bytes());
+                // The words of commands need no quotes.
+                self.held.extend_from_slice(word.as_bytes());
             }
             self.end_row()?;
         }

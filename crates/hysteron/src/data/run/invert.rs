@@ -105,11 +105,14 @@ struct Inverting<'m> {
 
 impl Work for Inverting<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
+        let plain = self.model.is_plain();
         for row in 0..block.len() {
             let sample = self.samples.next(block, row);
             // A time or a load that cannot be is told with its row.
-            let accepted = self.model.accepts(sample);
-            accepted.map_err(|error| self.samples.fault(block, row, &error))?;
+            if !plain {
+                let accepted = self.model.accepts(sample);
+                accepted.map_err(|error| self.samples.fault(block, row, &error))?;
+            }
             let Some(headings) = &mut self.headings else {
                 let wanted = Wanted::of(sample, None, self.tolerance);
                 self.solving.row(wanted, cells)?;

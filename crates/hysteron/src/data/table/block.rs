@@ -22,8 +22,9 @@ pub(crate) struct Block {
     copied: Vec<Vec<f64>>,
 }
 
-/// A block is full with so many bytes of text, or so many rows.
-const BYTES: usize = 1 << 16;
+/// A block is full with so many bytes of text, or so many rows. Text comes 64 KiB at a time: a block
+/// takes it once.
+const BYTES: usize = 1 << 15;
 pub(super) const ROWS: usize = 1 << 13;
 
 impl Block {

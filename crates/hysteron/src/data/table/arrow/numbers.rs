@@ -56,7 +56,7 @@ pub(super) fn is_number(of: &DataType) -> bool {
 pub(super) fn numbers(array: &dyn Array) -> Result<Vec<f64>, ArrowError> {
     if let Some(dictionary) = array.as_any_dictionary_opt() {
         let values = numbers(dictionary.values().as_ref())?;
-        return Ok(by_key(array, &values, f64::NAN));
+        return Ok(by_key(array, &values));
     }
     let decimal = |scale: i8| 10_f64.powi(i32::from(scale));
     Ok(match array.data_type() {
@@ -107,7 +107,7 @@ pub(super) fn numbers(array: &dyn Array) -> Result<Vec<f64>, ArrowError> {
 pub(super) fn codes(array: &dyn Array, labels: &Labels) -> Result<Vec<f64>, ArrowError> {
     if let Some(dictionary) = array.as_any_dictionary_opt() {
         let values = codes(dictionary.values().as_ref(), labels)?;
-        return Ok(by_key(array, &values, f64::NAN));
+        return Ok(by_key(array, &values));
     }
     let code = |label: Option<&[u8]>| label.map_or(f64::NAN, |label| labels.code(label));
     let text = |label: Option<&str>| code(label.map(str::as_bytes));
@@ -136,16 +136,16 @@ pub(super) fn codes(array: &dyn Array, labels: &Labels) -> Result<Vec<f64>, Arro
     })
 }
 
-/// The value of each row by the keys of a dictionary.
-fn by_key(array: &dyn Array, values: &[f64], none: f64) -> Vec<f64> {
+/// The value of each row by the keys of a dictionary, NaN for null.
+fn by_key(array: &dyn Array, values: &[f64]) -> Vec<f64> {
     // Without values, all keys are null.
     if values.is_empty() {
-        return vec![none; array.len()];
+        return vec![f64::NAN; array.len()];
     }
     let keys = array.as_any_dictionary().normalized_keys();
     let value = |(row, key): (usize, &usize)| match array.is_null(row) {
-        true => none,
-        false => values.get(*key).copied().unwrap_or(none),
+        true => f64::NAN,
+        false => values.get(*key).copied().unwrap_or(f64::NAN),
     };
     keys.iter().enumerate().map(value).collect()
 }
