@@ -20,8 +20,9 @@
 //!
 //! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
 //! write files and folders under temporary names (`unfinished`) and move them to their place
-//! (`moves`). `table` writes tables, `added` is what commands add to them; `csv` writes them as text; `columnar` writes columns as Parquet (`parquet`) or Arrow
-//! (`arrow`), `spool` keeps rows until their types are known, and `splice` copies Parquet.
+//! (`moves`). `table` writes tables, `added` is what commands add to them; `csv` writes them as text;
+//! `columnar` writes columns as Parquet (`parquet`) or Arrow (`arrow`), `spool` keeps rows until
+//! their types are known, and `splice` copies Parquet.
 //! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
 //! makes them.
 
