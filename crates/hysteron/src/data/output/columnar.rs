@@ -32,8 +32,8 @@ pub(super) struct ColumnsWriter {
 }
 
 enum To {
-    Parquet(SerializedFileWriter<Sink>),
-    Arrow(ArrowWriter),
+    Parquet(Box<SerializedFileWriter<Sink>>),
+    Arrow(Box<ArrowWriter>),
 }
 
 impl ColumnsWriter {
@@ -55,11 +55,12 @@ impl ColumnsWriter {
                 });
                 let schema = Arc::new(schema.map_err(io_error)?);
                 let writer = SerializedFileWriter::new(out, schema, properties(computed));
-                To::Parquet(writer.map_err(io_error)?)
+                To::Parquet(Box::new(writer.map_err(io_error)?))
             }
             Columnar::Arrow | Columnar::ArrowStream => {
                 let is_stream = format == Columnar::ArrowStream;
-                To::Arrow(ArrowWriter::with_columns(out, is_stream, columns)?)
+                let writer = ArrowWriter::with_columns(out, is_stream, columns)?;
+                To::Arrow(Box::new(writer))
             }
         };
         Ok(Self {

@@ -40,7 +40,7 @@ pub struct Invert<'a> {
 /// the bytes read.
 ///
 /// # Errors
-/// As [`simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
+/// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
 /// [`crate::Error::Fit`] for a range of drives that is not in order.
 pub fn invert_table(
     model: &Model,
