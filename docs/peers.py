@@ -79,7 +79,9 @@ def tables(program):
     _, found = TABLES["measure"](program)
     for (command, kind), (ours, peer, limit) in found.items():
         name, who, aim = {
-            "csv": ("CSV", "`mawk`", 0.25), "parquet": ("Parquet", "PyArrow", 1),
+            "csv": ("CSV", "`mawk`", 0.25),
+            "parquet": ("Parquet", "PyArrow", 1),
+            "arrow": ("Arrow", "PyArrow", 1),
         }[kind]
         row(f"`{command}`, 1e6 rows, {name}", f"{ours:.3f} s", f"{who}: {peer:.3f} s",
             f"`dd`: {limit:.3f} s", ours / peer, aim)

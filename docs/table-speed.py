@@ -30,10 +30,14 @@ A table of {rows:,} rows: time, temperature, displacement and a column of words;
 system, the least of {rounds} runs in turn. The *limit* is `dd`, which copies the result and flushes it
 to the disk, as the command does.
 
+Before the run the load of the machine was {load:.1f} on {cores} processors. The command reads,
+computes and writes on three threads; their CPU is added up.
+
 - CSV: the peer is `mawk`, which copies the table with a column added: `{{print $0, $2*2}}`. It
   writes 6 digits and does not flush.
-- Parquet: the peer is PyArrow, which reads the file and writes it again, without a column added.
-  The time of starting Python and importing PyArrow is taken off.
+- Parquet and Arrow: the peer is PyArrow, which reads the file and writes it again, without a column
+  added. Arrow files are not compressed. The time of starting Python and importing PyArrow is taken
+  off.
 """
 
 
@@ -77,12 +81,18 @@ def measure(program):
         table(at("in.csv"))
         model(at("model.json"), LEVELS)
         import pyarrow.csv
+        import pyarrow.feather
         import pyarrow.parquet
-        pyarrow.parquet.write_table(pyarrow.csv.read_csv(at("in.csv")), at("in.parquet"))
-        start = "import pyarrow.parquet as p, sys"
-        copy = start + "; p.write_table(p.read_table(sys.argv[1]), sys.argv[2])"
+        read = pyarrow.csv.read_csv(at("in.csv"))
+        pyarrow.parquet.write_table(read, at("in.parquet"))
+        pyarrow.feather.write_feather(read, at("in.arrow"), compression="uncompressed")
+        start = "import pyarrow.parquet as p, pyarrow.feather as f, sys"
+        copy = {
+            "parquet": "; p.write_table(p.read_table(sys.argv[1]), sys.argv[2])",
+            "arrow": "; f.write_feather(f.read_table(sys.argv[1]), sys.argv[2], 'uncompressed')",
+        }
         ours = {}
-        for kind in ["csv", "parquet"]:
+        for kind in ["csv", *copy]:
             source, result = at("in." + kind), at("out." + kind)
             for command, column in [
                 ("simulate", "--input=temperature"),
@@ -103,10 +113,11 @@ def measure(program):
                 keep((command, kind, "limit"), cpu(dd))
             keep("csv", cpu(add_column, at("peer.csv")))
             keep("start", cpu([sys.executable, "-c", start]))
-            files = [at("in.parquet"), at("peer.parquet")]
-            keep("parquet", cpu([sys.executable, "-c", copy, *files]))
+            for kind, work in copy.items():
+                files = [at("in." + kind), at("peer." + kind)]
+                keep(kind, cpu([sys.executable, "-c", start + work, *files]))
         size = os.path.getsize(at("in.csv")) / 1e6
-        peer = {"csv": least["csv"], "parquet": least["parquet"] - least["start"]}
+        peer = {"csv": least["csv"], **{kind: least[kind] - least["start"] for kind in copy}}
         return size, {
             (command, kind): (least[command, kind], peer[kind], least[command, kind, "limit"])
             for command, kind in ours
@@ -114,12 +125,14 @@ def measure(program):
 
 
 def main(program):
+    load, cores = os.getloadavg()[0], os.cpu_count()
     size, found = measure(program)
-    print(HEAD.format(rows=ROWS, levels=LEVELS, rounds=ROUNDS, csv=size))
+    about = {"rows": ROWS, "levels": LEVELS, "rounds": ROUNDS, "csv": size}
+    print(HEAD.format(**about, load=load, cores=cores))
     print("| command | ours, s | peer, s | limit, s | ours / peer | ours / limit |")
     print("| --- | ---: | ---: | ---: | ---: | ---: |")
     for (command, kind), (own, peer, limit) in found.items():
-        name = "CSV" if kind == "csv" else "Parquet"
+        name = "CSV" if kind == "csv" else kind.capitalize()
         print(
             f"| `{command}`, {name} | {own:.3f} | {peer:.3f} | {limit:.3f} "
             f"| {own / peer:.2f} | {own / limit:.1f} |"

@@ -203,6 +203,7 @@ def main():
             "zstd.parquet",
             "lz4.parquet",
         ),
+        "Arrow": ("none.arrow", "zstd.arrow", "lz4.arrow", "kinds.arrow", "stream.arrows"),
         "MAT v5": ("v5.mat",),
         "MAT v7": ("v7.mat",),
         "MAT v7.3": ("v73.mat",),

@@ -7,7 +7,7 @@ mod common;
 use common::{run, text};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
@@ -70,6 +70,9 @@ fn on_a_full_disk_the_old_stays_whole() {
         "simulate m.json run.csv --input x -o out.csv",
         "simulate m.json run.csv --input x -o out.parquet",
         "invert m.json out.parquet --target y -o copied.parquet",
+        "simulate m.json run.csv --input x -o out.arrow",
+        "invert m.json out.arrow --target y -o copied.arrow",
+        "invert m.json out.arrow --target y -o other.parquet",
         "prepare run.csv --input x --output y -o clean.csv",
         "adapt m.json run.csv --input x --output y -o adapted.json --table adapted.parquet",
         "export fmu m.json -o m.fmu",
@@ -150,7 +153,7 @@ fn half_a_table(folder: &Path, out: &str) -> Child {
 fn what_a_killed_run_left_is_removed_by_the_next() {
     let bench = bench();
     let path = bench.path();
-    for out in ["out.csv", "out.parquet"] {
+    for out in ["out.csv", "out.parquet", "out.arrow"] {
         let mut killed = half_a_table(path, out);
         started(path);
         killed.kill().unwrap();
@@ -201,6 +204,38 @@ fn what_another_run_is_writing_stays() {
             .count(),
         100_001
     );
+}
+
+/// Rows that come one by one are answered one by one. When the reader of the answers is gone, the
+/// next row ends the run.
+#[test]
+fn each_row_is_answered_before_the_next_one_comes() {
+    let bench = bench();
+    let mut child = hysteron(bench.path(), "simulate m.json - --input x")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut rows = child.stdin.take().unwrap();
+    let mut answers = BufReader::new(child.stdout.take().unwrap());
+    // So many rows tell the dialect.
+    write!(rows, "x\n20\n30\n40\n").unwrap();
+    let mut line = String::new();
+    for expected in ["x,output_model", "20,", "30,", "40,"] {
+        line.clear();
+        answers.read_line(&mut line).unwrap();
+        assert!(line.starts_with(expected), "{line}");
+    }
+    for n in 0..200 {
+        writeln!(rows, "{n}").unwrap();
+        line.clear();
+        answers.read_line(&mut line).unwrap();
+        assert!(line.starts_with(&format!("{n},")), "{line}");
+    }
+    drop(answers);
+    writeln!(rows, "50").unwrap();
+    // Its standard input stays open.
+    assert!(child.wait().unwrap().success());
 }
 
 #[test]

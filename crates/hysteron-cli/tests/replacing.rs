@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// Commands that write a file, `OUT`; the ending is that of its name.
-const FILES: [(&str, &str); 13] = [
+const FILES: [(&str, &str); 15] = [
     (
         "fit run.csv --input x --output y --levels 4 --bootstrap 0 -o OUT",
         "json",
@@ -20,6 +20,8 @@ const FILES: [(&str, &str); 13] = [
     ("simulate m.json run.csv --input x -o OUT", "parquet"),
     ("invert m.json run.csv --target y -o OUT", "csv"),
     ("invert m.json run.csv --target y -o OUT", "parquet"),
+    ("invert m.json run.csv --target y -o OUT", "arrow"),
+    ("prepare run.csv --input x --output y -o OUT", "arrow"),
     ("prepare run.csv --input x --output y -o OUT", "csv"),
     ("prepare run.csv --input x --output y -o OUT", "parquet"),
     (

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Read a recording from a CSV, Parquet or MATLAB file.
+/// Read a recording from a CSV, Parquet, Arrow or MATLAB file.
 ///
 /// `HysteronWarning` reports assumptions about the file, repaired rows and gaps in time.
 ///

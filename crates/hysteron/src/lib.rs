@@ -52,9 +52,9 @@ pub use adapt::{
 pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
-    Added, Around, AtomicFile, AtomicFolder, Cell, Column, ColumnSummary, Columns, Counts,
-    Destination, Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair,
-    Roles, Row, STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
+    Added, Around, AtomicFile, AtomicFolder, Column, ColumnSummary, Columns, Counts, Destination,
+    Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair, Roles, Row,
+    STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
     discard_unfinished, inspect_table, invert_table, preview_table, printable, refuse_one_file,
     shell_word, simulate_table,
 };

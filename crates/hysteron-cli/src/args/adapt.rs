@@ -44,7 +44,7 @@ pub(crate) struct Adapt {
     pub(crate) force: Force,
     /// Write the recording with the columns `output_model` (predicted before each sample was
     /// learned from), `error` and `outcome`, with `load` also `shift_model` and `load_model`; CSV, or
-    /// Parquet where the name ends with .parquet
+    /// Parquet or Arrow where the name ends with .parquet or .arrow
     #[arg(long, value_name = "TABLE")]
     pub(crate) table: Option<PathBuf>,
     #[command(flatten)]

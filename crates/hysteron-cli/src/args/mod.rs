@@ -28,7 +28,7 @@ pub(crate) use value::*;
     arg_required_else_help = true,
     after_help = "Recordings are tables with named columns: CSV (commas, semicolons or tabs;\n\
                   decimal points or commas; a row of units; # and % comments; loggers and\n\
-                  LabVIEW), Parquet, or MATLAB files (v5, v7, v7.3).\n\
+                  LabVIEW), Parquet, Arrow, or MATLAB files (v5, v7, v7.3).\n\
                   A column goes by its name, without its unit if there is no other, or by its\n\
                   number from 1.\n\
                   `-` reads CSV from standard input.\n\
@@ -229,8 +229,8 @@ pub(crate) struct Simulate {
     /// State of the operators before the first row
     #[arg(long, value_enum, default_value = "fitted")]
     pub(crate) start: RunStart,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
-    /// standard output; with --json nowhere]
+    /// Where the table goes: *.parquet or *.arrow with the types of a source of the same kind,
+    /// otherwise CSV [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -281,8 +281,8 @@ pub(crate) struct Invert {
     /// that is not known ahead [default: twice the longer time constant]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_tolerance)]
     pub(crate) preview: Option<f64>,
-    /// Where the table goes: *.parquet with the types of a Parquet source, otherwise CSV [default:
-    /// standard output; with --json nowhere]
+    /// Where the table goes: *.parquet or *.arrow with the types of a source of the same kind,
+    /// otherwise CSV [default: standard output; with --json nowhere]
     #[arg(short, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! Reads and writes files: tables, recordings, models and results. This is the only module that
 //! uses the file system (feature `data`).
 //!
-//! `table` reads CSV, Parquet and MATLAB files. `recording` turns their columns into recordings.
+//! `table` reads CSV, Parquet, Arrow and MATLAB files. `recording` turns their columns into recordings.
 //! `output` writes files so that they appear complete or not at all. `cells` writes cells as CSV.
 //! `run` simulates and inverts tables, a block of rows at a time. `model`, `design`, `adapted` and
 //! `trace` read and write what their names say. `columns` summarises a table, `guess` guesses the
@@ -23,7 +23,7 @@ mod trace;
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
 pub use guess::{PICTURE, Roles, TablePreview, preview_table};
 pub use output::{
-    Added, AtomicFile, AtomicFolder, Cell, Destination, Own, STANDARD_OUTPUT, TableWriter,
+    Added, AtomicFile, AtomicFolder, Destination, Own, STANDARD_OUTPUT, TableWriter,
     discard_unfinished, refuse_one_file,
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};

@@ -6,7 +6,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Endings of the tables that are taken from a folder.
-const TABLES: [&str; 6] = ["csv", "txt", "dat", "tsv", "parquet", "mat"];
+const TABLES: [&str; 9] = [
+    "csv", "txt", "dat", "tsv", "parquet", "arrow", "arrows", "feather", "mat",
+];
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Writes rows of CSV to a stream, a block at a time.
 
-use super::table::Cell;
-use crate::data::cells::{push_cell, push_number, push_row};
+use super::added::AddedCells;
+use crate::data::cells::{push_number, push_row};
+use crate::data::table::Block;
 use std::io::{self, Write};
 
 /// Rows are handed on when they take this many bytes.
@@ -30,17 +31,32 @@ impl<W: Write> Csv<W> {
         self.end_row()
     }
 
-    /// A row that is CSV already, followed by more cells.
-    #[inline]
-    pub(super) fn extended(&mut self, row: &[u8], cells: &[Cell<'_>]) -> io::Result<()> {
-        self.held.extend_from_slice(row);
-        for cell in cells {
-            self.held.push(b',');
-            match cell {
-                Cell::Number(number) => push_number(&mut self.held, *number),
-                Cell::Word(word) => push_cell(&mut self.held, word.as_bytes()),
+    /// Rows that are CSV already, each followed by more cells.
+    pub(super) fn extended(
+        &mut self,
+        (block, first): (&Block, usize),
+        (cells, from): (&AddedCells, usize),
+        count: usize,
+    ) -> io::Result<()> {
+        for n in 0..count {
+            self.held.extend_from_slice(block.row(first + n));
+            for series in &cells.numbers {
+                self.held.push(b',');
+                push_number(&mut self.held, series[from + n]);
             }
+            if let Some(word) = cells.words.get(from + n) {
+                self.held.push(b',');
+                // The words of commands need no quotes.
+                self.held.extend_from_slice(word.as_bytes());
+            }
+            self.end_row()?;
         }
+        Ok(())
+    }
+
+    /// A row that is CSV already.
+    pub(super) fn copied(&mut self, row: &[u8]) -> io::Result<()> {
+        self.held.extend_from_slice(row);
         self.end_row()
     }
 

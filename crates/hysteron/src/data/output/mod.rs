@@ -9,7 +9,7 @@
 //! | --- | --- |
 //! | model | it records a fit and has exactly the bytes that this library would write |
 //! | table, CSV | its last columns are those that a command adds, written as we write them |
-//! | table, Parquet | its metadata name this library as the writer |
+//! | table, Parquet or Arrow file | its metadata name this library as the writer |
 //! | folder | each file matches its digest in the list ([`manifest`]) |
 //! | exported C | the digest in its first line matches the lines below |
 //! | FMU | its description names this program, and no file was added or replaced |
@@ -20,12 +20,16 @@
 //!
 //! `destination` holds the rule; `sign` and `manifest` recognise our results. `atomic` and `folder`
 //! write files and folders under temporary names (`unfinished`) and move them to their place
-//! (`moves`). `table` writes tables; `csv` writes them as text; `parquet`, `spool` and `splice` as
-//! Parquet.
+//! (`moves`). `table` writes tables, `added` is what commands add to them; `csv` writes them as text;
+//! `columnar` writes columns as Parquet (`parquet`) or Arrow (`arrow`), `spool` keeps rows until
+//! their types are known, and `splice` copies Parquet.
 //! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
 //! makes them.
 
+mod added;
+mod arrow;
 mod atomic;
+mod columnar;
 mod csv;
 mod destination;
 mod folder;
@@ -40,11 +44,14 @@ mod spool;
 mod table;
 mod unfinished;
 
+pub use added::Added;
+pub(crate) use added::AddedCells;
 pub use atomic::AtomicFile;
 pub use destination::{Destination, Own, refuse_one_file};
 pub use folder::AtomicFolder;
 pub(crate) use partial::{Entry, Partial};
 pub(crate) use records::{Kind, RecordWriter, Schema, Value, read_records};
 pub(crate) use sign::is_our_model;
-pub use table::{Added, Cell, STANDARD_OUTPUT, TableWriter};
+pub(crate) use table::Needs;
+pub use table::{STANDARD_OUTPUT, TableWriter};
 pub use unfinished::discard_unfinished;

@@ -1,5 +1,6 @@
 //! Writes columns of Parquet files: types, and the cells of a row group.
 
+use arrow_array::{ArrayRef, BinaryArray, Float64Array, StringArray};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::{ParquetError, Result};
@@ -66,9 +67,19 @@ impl Cells {
         }
     }
 
+    pub(super) fn kind(&self) -> Kind {
+        self.kind
+    }
+
     pub(super) fn push_number(&mut self, number: Option<f64>) {
         self.defined.push(number.is_some().into());
         self.numbers.extend(number);
+    }
+
+    /// Adds cells that all hold a number.
+    pub(super) fn push_numbers(&mut self, numbers: &[f64]) {
+        self.defined.resize(self.defined.len() + numbers.len(), 1);
+        self.numbers.extend_from_slice(numbers);
     }
 
     pub(super) fn push_text(&mut self, text: Option<&[u8]>) {
@@ -79,6 +90,33 @@ impl Cells {
             _ => ByteArray::from(text.to_vec()),
         });
         self.texts.extend(text);
+    }
+
+    /// The cells as a column of Arrow; clears them.
+    pub(super) fn take_array(&mut self) -> ArrayRef {
+        let Self {
+            kind,
+            numbers,
+            texts,
+            defined,
+        } = std::mem::replace(self, Self::new(self.kind));
+        let (mut numbers, mut texts) = (numbers.into_iter(), texts.iter().map(ByteArray::data));
+        let defined = defined.iter().map(|level| *level > 0);
+        match kind {
+            Kind::Numbers => {
+                let cells = defined.map(|there| there.then(|| numbers.next()).flatten());
+                Arc::new(Float64Array::from_iter(cells))
+            }
+            Kind::Text => {
+                let text = |bytes| String::from_utf8_lossy(bytes);
+                let cells = defined.map(|there| there.then(|| texts.next().map(text)).flatten());
+                Arc::new(StringArray::from_iter(cells))
+            }
+            Kind::Bytes => {
+                let cells = defined.map(|there| there.then(|| texts.next()).flatten());
+                Arc::new(BinaryArray::from_iter(cells))
+            }
+        }
     }
 
     /// Writes the cells as the next column of a row group, and clears them.

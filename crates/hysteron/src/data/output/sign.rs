@@ -1,6 +1,7 @@
 //! Recognises files that hysteron wrote, by their content.
 
 use super::parquet::PROGRAM;
+use crate::data::table::ARROW_FILE;
 use crate::model::Model;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
@@ -32,9 +33,12 @@ pub(crate) fn is_our_model(path: &Path) -> io::Result<bool> {
 
 /// Whether the file is a table that a command made.
 pub(crate) fn is_our_table(path: &Path) -> io::Result<bool> {
-    match begins_with(path, b"PAR1")? {
-        true => parquet(path),
-        false => csv(path),
+    if begins_with(path, b"PAR1")? {
+        parquet(path)
+    } else if begins_with(path, ARROW_FILE)? {
+        super::arrow::is_ours(path)
+    } else {
+        csv(path)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Copies a Parquet file and adds columns. The stored columns of the source are copied as bytes,
 //! whatever their type.
 
+use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, field, io_error, properties};
 use super::spool::distinct;
-use super::table::{Added, Cell, Sink};
+use super::table::Sink;
 use crate::data::table::caught;
 use parquet::column::writer::ColumnCloseResult;
 use parquet::errors::ParquetError;
@@ -104,16 +105,32 @@ impl Splice {
         Ok(splice)
     }
 
-    /// Adds the new cells of the next row.
-    pub(super) fn row(&mut self, cells: &[Cell<'_>]) -> io::Result<()> {
-        for (column, cell) in self.added.iter_mut().zip(cells) {
-            match cell {
-                Cell::Number(number) => column.push_number(Some(*number)),
-                Cell::Word(word) => column.push_text(Some(word.as_bytes())),
+    /// Adds the new cells of the next rows.
+    pub(super) fn rows(
+        &mut self,
+        (cells, mut from): (&AddedCells, usize),
+        count: usize,
+    ) -> io::Result<()> {
+        let end = from + count;
+        while from < end {
+            // The cells go into one row group after the other.
+            let rows = self.original.rows(self.group).unwrap_or(u64::MAX);
+            let left = usize::try_from(rows - self.rows).unwrap_or(usize::MAX);
+            let to = end.min(from.saturating_add(left));
+            let (numbers, words) = self.added.split_at_mut(cells.numbers.len());
+            for (column, series) in numbers.iter_mut().zip(&cells.numbers) {
+                column.push_numbers(&series[from..to]);
             }
+            for column in words {
+                for word in &cells.words[from..to] {
+                    column.push_text(Some(word.as_bytes()));
+                }
+            }
+            self.rows += (to - from) as u64;
+            from = to;
+            self.end_groups()?;
         }
-        self.rows += 1;
-        self.end_groups()
+        Ok(())
     }
 
     /// Writes the row groups that are complete. A row group without rows is always complete.

@@ -1,27 +1,22 @@
-//! Stores the rows of a table until they can be written as a Parquet file.
+//! Stores the rows of a table until they can be written by columns, as Parquet or Arrow.
 //!
 //! The type of a column is known only after its last cell. So the rows are stored in a file without
 //! a name, which the system removes when the program ends. Memory does not grow with the number of
 //! rows. The rows of a table in memory are stored in memory.
 
+use super::added::AddedCells;
+use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
-use super::parquet::{Cells, Kind, field, io_error, properties};
-use super::table::{Cell, Sink};
+use super::parquet::Kind;
+use super::table::Sink;
 use super::unfinished::bare;
 use crate::data::cells::push_row;
-use crate::data::table::Splitter;
-use parquet::errors::ParquetError;
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
+use crate::data::table::{Block, Splitter};
 use std::collections::HashSet;
 use std::fs::File;
 use std::hash::Hash;
 use std::io::{self, BufReader, Cursor, Read, Seek, Write};
 use std::path::Path;
-use std::sync::Arc;
-
-/// A row group is written when its cells take this many bytes.
-const GROUP: usize = 1 << 24;
 
 /// The stored rows. The first one is the header.
 pub(super) struct Spool {
@@ -102,86 +97,71 @@ impl Spool {
         let mut row = std::mem::take(&mut self.row);
         row.clear();
         push_row(&mut row, cells);
-        let written = self.extended(&row, &[]);
+        self.note(&row);
+        let written = self.rows.copied(&row);
         self.row = row;
         written
     }
 
-    /// A row that is CSV already, followed by more cells.
-    pub(super) fn extended(&mut self, row: &[u8], cells: &[Cell<'_>]) -> io::Result<()> {
+    /// Rows that are CSV already, each followed by more cells.
+    pub(super) fn extended(
+        &mut self,
+        (block, first): (&Block, usize),
+        cells: (&AddedCells, usize),
+        count: usize,
+    ) -> io::Result<()> {
+        for n in 0..count {
+            self.note(block.row(first + n));
+        }
+        if !cells.0.words.is_empty()
+            && let Some(last) = self.kinds.last_mut()
+        {
+            *last = Kind::Text;
+        }
+        self.rows.extended((block, first), cells, count)
+    }
+
+    /// Notes what the cells of a row need.
+    fn note(&mut self, row: &[u8]) {
         let mut kinds = self.kinds.iter_mut();
         self.splitter.line(row, b',', |cell| {
             if let Some(kind) = kinds.next() {
                 *kind = kind.with(cell);
             }
         });
-        for (kind, cell) in kinds.zip(cells) {
-            if matches!(cell, Cell::Word(_)) {
-                *kind = Kind::Text;
-            }
-        }
-        self.rows.extended(row, cells)
     }
 
-    /// Writes all rows as Parquet.
-    pub(super) fn finish(self, out: Sink) -> io::Result<Sink> {
+    /// Writes all rows by columns.
+    pub(super) fn finish(self, out: Sink, format: Columnar) -> io::Result<Sink> {
         let Some(stored) = self.rows.finish()? else {
             return Ok(out);
         };
         let header = self.header.unwrap_or_default();
         distinct(header.iter())?;
-        let fields = header.iter().zip(&self.kinds);
-        let fields: Result<_, _> = fields.map(|(name, kind)| field(name, *kind)).collect();
-        let schema = fields.and_then(|fields| {
-            Type::group_type_builder("table")
-                .with_fields(fields)
-                .build()
-        });
-        let schema = Arc::new(schema.map_err(io_error)?);
-        let writer = SerializedFileWriter::new(out, schema, properties(&[])).map_err(io_error)?;
-        write(writer, &self.kinds, stored.read()?)
+        let names = header.iter().map(String::as_str);
+        let columns: Vec<(&str, Kind)> = names.zip(self.kinds.iter().copied()).collect();
+        let mut writer = ColumnsWriter::start(out, format, &columns, &[])?;
+        write(&mut writer, stored.read()?)?;
+        writer.finish()
     }
 }
 
-fn write(
-    mut writer: SerializedFileWriter<Sink>,
-    kinds: &[Kind],
-    rows: impl Read,
-) -> io::Result<Sink> {
+fn write(writer: &mut ColumnsWriter, rows: impl Read) -> io::Result<()> {
     let mut rows = csv::ReaderBuilder::new()
         .has_headers(false)
         .from_reader(rows);
-    let mut columns: Vec<Cells> = kinds.iter().map(|kind| Cells::new(*kind)).collect();
-    let (mut row, mut bytes) = (csv::ByteRecord::new(), 0);
+    let mut row = csv::ByteRecord::new();
     while rows.read_byte_record(&mut row)? {
-        for ((column, kind), cell) in columns.iter_mut().zip(kinds).zip(&row) {
+        for (column, cell) in writer.columns.iter_mut().zip(&row) {
             let cell = Some(cell).filter(|cell| !cell.is_empty());
-            bytes += cell.map_or(0, <[u8]>::len) + size_of::<f64>();
-            match kind {
+            match column.kind() {
                 Kind::Numbers => column.push_number(cell.and_then(number)),
                 Kind::Text | Kind::Bytes => column.push_text(cell),
             }
         }
-        if bytes > GROUP {
-            write_group(&mut writer, &mut columns).map_err(io_error)?;
-            bytes = 0;
-        }
+        writer.end_rows(row.as_slice().len() + row.len() * size_of::<f64>())?;
     }
-    if bytes > 0 {
-        write_group(&mut writer, &mut columns).map_err(io_error)?;
-    }
-    writer.into_inner().map_err(io_error)
-}
-
-fn write_group(
-    writer: &mut SerializedFileWriter<Sink>,
-    columns: &mut [Cells],
-) -> Result<(), ParquetError> {
-    let mut group = writer.next_row_group()?;
-    for column in columns {
-        column.write(&mut group)?;
-    }
-    group.close().map(|_| ())
+    Ok(())
 }
 
 impl Kind {
@@ -208,7 +188,8 @@ fn number(cell: &[u8]) -> Option<f64> {
     (exact && !padded).then_some(value)
 }
 
-/// Refuses two columns with the same name, because readers of Parquet could not distinguish them.
+/// Refuses two columns with the same name, because readers of Parquet or Arrow could not
+/// distinguish them.
 pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
     names: impl Iterator<Item = N>,
 ) -> io::Result<()> {
@@ -216,8 +197,10 @@ pub(super) fn distinct<N: AsRef<str> + Eq + Hash>(
     for name in names {
         if let Some(name) = seen.replace(name) {
             let name = name.as_ref();
-            let text =
-                format!("two columns are called `{name}`, which Parquet cannot hold: write CSV");
+            let text = format!(
+                "two columns are called `{name}`, which readers of such a file could not tell apart: \
+                 write CSV"
+            );
             return Err(io::Error::other(text));
         }
     }

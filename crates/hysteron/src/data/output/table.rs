@@ -1,43 +1,18 @@
-//! Writes tables row by row, as CSV or Parquet, to a file, to standard output or to memory.
+//! Writes tables row by row, as CSV, Parquet or Arrow, to a file, to standard output or to memory.
 
+use super::added::{Added, AddedCells};
+use super::arrow::ArrowCopy;
+use super::columnar::{Columnar, ColumnsWriter};
 use super::csv::Csv;
 use super::destination::folder_of;
 use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
 use super::{AtomicFile, Destination, Own};
-use crate::data::table::TableReader;
+use crate::data::table::{Block, TableReader};
 use crate::error::{Error, Result};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-/// A column that is added to a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Added {
-    /// A column of numbers, with its name.
-    Numbers(&'static str),
-    /// A column of words, with its name.
-    Words(&'static str),
-}
-
-impl Added {
-    /// The column's name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Numbers(name) | Self::Words(name) => name,
-        }
-    }
-}
-
-/// A cell of an added column.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell<'a> {
-    /// A cell in a column of numbers.
-    Number(f64),
-    /// A cell in a column of words.
-    Word(&'a str),
-}
 
 /// The path in errors about standard output.
 pub const STANDARD_OUTPUT: &str = "standard output";
@@ -45,14 +20,16 @@ pub const STANDARD_OUTPUT: &str = "standard output";
 /// Writes a table to standard output, or to a file that appears only when it is complete. Memory
 /// does not grow with the table.
 ///
-/// The ending of the file's name decides the format: `.parquet` is Parquet; `.csv`, `.txt`, `.dat`
-/// or no ending is CSV; other formats cannot be written.
+/// The ending of the file's name decides the format: `.parquet` is Parquet; `.arrow` or `.feather` is
+/// an Arrow file and `.arrows` an Arrow stream; `.csv`, `.txt`, `.dat` or no ending is CSV; other
+/// formats cannot be written.
 ///
-/// If the output and its source are both Parquet, the columns of the source are copied as stored,
-/// with their types. Only the metadata of Apache Arrow (time zone names, dictionaries, durations)
-/// are not copied. From other sources, a column of numbers only becomes a column of doubles and any
-/// other column becomes text; an empty cell is null. A cell is a number if a double can hold all of
-/// it: `007` and 2⁵³ + 1 are text.
+/// If the output and its source are both Parquet, or both Arrow, the columns of the source are
+/// copied as stored, with their types. Only the metadata of Apache Arrow (time zone names,
+/// dictionaries, durations) are not copied into Parquet. From other sources that store columns, the
+/// columns of numbers become doubles. From text, a column of numbers only becomes a column of
+/// doubles and any other column becomes text; an empty cell is null. A cell is a number if a double
+/// can hold all of it: `007` and 2⁵³ + 1 are text.
 pub struct TableWriter {
     path: PathBuf,
     to: Format,
@@ -60,8 +37,22 @@ pub struct TableWriter {
 
 enum Format {
     Csv(Csv<Sink>),
-    Parquet(Spool, Sink),
+    /// Rows of cells, until their kinds are known.
+    Spooled(Spool, Sink, Columnar),
+    Columns(Box<ColumnsWriter>),
     Spliced(Box<Splice>),
+    Arrow(Box<ArrowCopy>),
+}
+
+/// What a writer needs of the rows of its source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Needs {
+    /// Nothing: it copies them itself.
+    Nothing,
+    /// Their numbers.
+    Numbers,
+    /// Their text.
+    Text,
 }
 
 pub(super) enum Sink {
@@ -88,25 +79,27 @@ impl Write for Sink {
     }
 }
 
-/// Whether a table with this name is Parquet.
-fn is_parquet(path: &Path) -> io::Result<bool> {
+/// The format of a table with this name; `None` for CSV.
+fn format_of(path: &Path) -> io::Result<Option<Columnar>> {
     // The name of a pipe or of `/dev/null` does not decide the format.
     match path.metadata().is_ok_and(|there| !there.is_file()) {
-        true => Ok(by_ending(path).unwrap_or(false)),
+        true => Ok(by_ending(path).unwrap_or(None)),
         false => by_ending(path),
     }
 }
 
-/// Whether the ending of a name is that of Parquet.
-fn by_ending(path: &Path) -> io::Result<bool> {
+/// The format that the ending of a name says; `None` for CSV.
+fn by_ending(path: &Path) -> io::Result<Option<Columnar>> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
-        None | Some("csv" | "txt" | "dat") => Ok(false),
-        Some("parquet") => Ok(true),
+        None | Some("csv" | "txt" | "dat") => Ok(None),
+        Some("parquet") => Ok(Some(Columnar::Parquet)),
+        Some("arrow" | "feather") => Ok(Some(Columnar::Arrow)),
+        Some("arrows") => Ok(Some(Columnar::ArrowStream)),
         Some(other) => Err(io::Error::other(format!(
-            "a table cannot be written as `.{other}`: let the name end with .csv or .parquet"
+            "a table cannot be written as `.{other}`: let the name end with .csv, .parquet or .arrow"
         ))),
     }
 }
@@ -142,13 +135,13 @@ impl TableWriter {
             path: path.clone(),
             source,
         };
-        let parquet = is_parquet(&path).map_err(failed)?;
+        let columnar = format_of(&path).map_err(failed)?;
         let file = AtomicFile::create(target, own)?;
-        let to = match parquet {
-            false => Format::Csv(Csv::new(Sink::File(file))),
-            true => {
+        let to = match columnar {
+            None => Format::Csv(Csv::new(Sink::File(file))),
+            Some(format) => {
                 let spool = Spool::create_in(folder_of(&path)).map_err(failed)?;
-                Format::Parquet(spool, Sink::File(file))
+                Format::Spooled(spool, Sink::File(file), format)
             }
         };
         Ok(Self { path, to })
@@ -169,14 +162,14 @@ impl TableWriter {
     /// [`Error::File`] for a name with the ending of a format that cannot be written.
     pub fn in_memory(name: &str) -> Result<Self> {
         let path = PathBuf::from(name);
-        let parquet = by_ending(&path).map_err(|source| Error::File {
+        let columnar = by_ending(&path).map_err(|source| Error::File {
             path: path.clone(),
             source,
         })?;
         let memory = Sink::Memory(Vec::new());
-        let to = match parquet {
-            false => Format::Csv(Csv::new(memory)),
-            true => Format::Parquet(Spool::in_memory(), memory),
+        let to = match columnar {
+            None => Format::Csv(Csv::new(memory)),
+            Some(format) => Format::Spooled(Spool::in_memory(), memory, format),
         };
         Ok(Self { path, to })
     }
@@ -186,47 +179,78 @@ impl TableWriter {
     /// # Errors
     /// [`Error::File`].
     pub fn begin(mut self, table: &TableReader, added: &[Added]) -> Result<Self> {
-        if let Format::Parquet(spool, file) = self.to {
-            let original = Original::open(table.path()).map_err(|source| Error::File {
-                path: table.path().to_owned(),
-                source,
-            })?;
-            self.to = match original {
-                None => Format::Parquet(spool, file),
-                Some(original) => {
-                    let splice =
-                        Splice::start(original, file, added).map_err(|source| Error::File {
-                            path: self.path.clone(),
-                            source,
-                        })?;
-                    return Ok(Self {
-                        to: Format::Spliced(Box::new(splice)),
-                        ..self
-                    });
-                }
-            };
+        if let Format::Spooled(spool, sink, format) = self.to {
+            self.to = Self::columnar(&self.path, table, added, (spool, sink, format))?;
         }
         let names = added.iter().map(|column| column.name().to_owned());
         self.row(table.header().iter().cloned().chain(names))?;
         Ok(self)
     }
 
-    /// Whether the rows of the source are copied as they are stored, so that only added cells are
-    /// needed.
-    pub(crate) fn copies(&self) -> bool {
-        matches!(self.to, Format::Spliced(_))
+    /// A table by columns: copied as it is stored, if source and target are of one format, or
+    /// written from the numbers of a source that is stored by columns.
+    fn columnar(
+        path: &Path,
+        table: &TableReader,
+        added: &[Added],
+        (spool, sink, format): (Spool, Sink, Columnar),
+    ) -> Result<Format> {
+        let of = |path: &Path, source| Error::File {
+            path: path.to_owned(),
+            source,
+        };
+        if format == Columnar::Parquet {
+            let original = Original::open(table.path());
+            if let Some(original) = original.map_err(|source| of(table.path(), source))? {
+                let splice = Splice::start(original, sink, added);
+                let splice = splice.map_err(|source| of(path, source))?;
+                return Ok(Format::Spliced(Box::new(splice)));
+            }
+        } else {
+            let batches = table.batches().map_err(io::Error::other);
+            if let Some(batches) = batches.map_err(|source| of(table.path(), source))? {
+                let is_stream = format == Columnar::ArrowStream;
+                let copy = ArrowCopy::start(batches, sink, is_stream, added);
+                return Ok(Format::Arrow(Box::new(
+                    copy.map_err(|source| of(path, source))?,
+                )));
+            }
+        }
+        if !table.is_by_columns() {
+            return Ok(Format::Spooled(spool, sink, format));
+        }
+        let columns = ColumnsWriter::of_numbers(sink, format, table.header(), added);
+        Ok(Format::Columns(Box::new(
+            columns.map_err(|source| of(path, source))?,
+        )))
     }
 
-    /// Writes a row of the source, which is CSV without the end of the line, followed by more cells.
+    /// What [`TableWriter::extend_rows`] needs of the source.
+    pub(crate) fn needs(&self) -> Needs {
+        match self.to {
+            Format::Csv(_) | Format::Spooled(..) => Needs::Text,
+            Format::Columns(_) => Needs::Numbers,
+            Format::Spliced(_) | Format::Arrow(_) => Needs::Nothing,
+        }
+    }
+
+    /// Writes `count` rows of the source, followed by more cells: the rows of a block and the cells,
+    /// each from a place on.
     ///
     /// # Errors
     /// [`Error::File`].
-    #[inline]
-    pub(crate) fn extend_row(&mut self, row: &[u8], cells: &[Cell<'_>]) -> Result<()> {
+    pub(crate) fn extend_rows(
+        &mut self,
+        rows: (&Block, usize),
+        cells: (&AddedCells, usize),
+        count: usize,
+    ) -> Result<()> {
         let written = match &mut self.to {
-            Format::Csv(csv) => csv.extended(row, cells),
-            Format::Parquet(spool, _) => spool.extended(row, cells),
-            Format::Spliced(splice) => splice.row(cells),
+            Format::Csv(csv) => csv.extended(rows, cells, count),
+            Format::Spooled(spool, ..) => spool.extended(rows, cells, count),
+            Format::Columns(columns) => columns.extended(rows, cells, count),
+            Format::Spliced(splice) => splice.rows(cells, count),
+            Format::Arrow(copy) => copy.rows(cells, count),
         };
         written.map_err(|source| self.failed(source))
     }
@@ -238,7 +262,7 @@ impl TableWriter {
     pub(crate) fn hand_on(&mut self) -> Result<()> {
         match &mut self.to {
             Format::Csv(csv) => csv.hand_on().map_err(|source| self.failed(source)),
-            Format::Parquet(..) | Format::Spliced(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 
@@ -249,9 +273,9 @@ impl TableWriter {
     pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) -> Result<()> {
         let written = match &mut self.to {
             Format::Csv(csv) => csv.row(cells),
-            Format::Parquet(spool, _) => spool.row(cells),
-            // The stored columns already contain the source's header.
-            Format::Spliced(_) => Ok(()),
+            Format::Spooled(spool, ..) => spool.row(cells),
+            // The header is there since the beginning.
+            Format::Columns(_) | Format::Spliced(_) | Format::Arrow(_) => Ok(()),
         };
         written.map_err(|source| self.failed(source))
     }
@@ -289,8 +313,10 @@ impl TableWriter {
         let path = self.path;
         let ended = match self.to {
             Format::Csv(csv) => csv.finish(),
-            Format::Parquet(spool, to) => spool.finish(to).map(Some),
+            Format::Spooled(spool, to, format) => spool.finish(to, format).map(Some),
+            Format::Columns(columns) => columns.finish().map(Some),
             Format::Spliced(splice) => splice.finish().map(Some),
+            Format::Arrow(copy) => copy.finish().map(Some),
         };
         ended.map_err(|source| Error::File { path, source })
     }

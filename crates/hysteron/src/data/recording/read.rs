@@ -13,7 +13,7 @@ use bytes::Bytes;
 use std::path::Path;
 
 impl Recording {
-    /// Reads a recording from a CSV, Parquet or MATLAB file. The path `-` is CSV from standard
+    /// Reads a recording from a CSV, Parquet, Arrow or MATLAB file. The path `-` is CSV from standard
     /// input.
     ///
     /// **CSV.** Cells are separated by commas, semicolons or tabs. Numbers have a decimal point, or

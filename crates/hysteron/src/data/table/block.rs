@@ -2,23 +2,29 @@
 
 use super::{Column, Source, TableReader};
 use crate::data::cells;
-use crate::error::{Error, Place, Result};
+use crate::data::output::Needs;
+use crate::error::{Place, Result};
 use std::ops::Range;
 
 /// Rows of a table: how they will be written, and the numbers of the columns asked for.
 #[derive(Default)]
 pub(crate) struct Block {
-    /// The rows as CSV with commas; nothing if [`TableReader::fill`] was not asked for it.
+    /// The rows as CSV with commas, if it is needed.
     text: Vec<u8>,
-    /// Where each row is in `text`.
-    rows: Vec<Range<usize>>,
-    places: Vec<Place>,
+    /// Where each row begins and ends in `text`, which is small.
+    rows: Vec<(u32, u32)>,
+    /// The lines of the rows, or their numbers.
+    places: Vec<u64>,
+    by_line: bool,
     /// A series for each column asked for.
     numbers: Vec<Vec<f64>>,
+    /// A series for each column, if they are needed.
+    copied: Vec<Vec<f64>>,
 }
 
-/// A block is full with so many bytes of text, or so many rows.
-const BYTES: usize = 1 << 16;
+/// A block is full with so many bytes of text, or so many rows. Text comes 64 KiB at a time: a block
+/// takes it once.
+const BYTES: usize = 1 << 15;
 pub(super) const ROWS: usize = 1 << 13;
 
 impl Block {
@@ -31,19 +37,43 @@ impl Block {
         &self.numbers
     }
 
+    /// The numbers of all columns, if they were needed.
+    pub(crate) fn copied(&self) -> &[Vec<f64>] {
+        &self.copied
+    }
+
+    /// Keeps these rows of all columns.
+    pub(super) fn copy(&mut self, columns: &[Vec<f64>], rows: Range<usize>) {
+        self.copied.resize_with(columns.len(), Vec::new);
+        for (copy, column) in self.copied.iter_mut().zip(columns) {
+            let end = rows.end.min(column.len());
+            copy.clear();
+            copy.extend_from_slice(column.get(rows.start..end).unwrap_or_default());
+        }
+    }
+
     /// A row as CSV without the end of its line; empty if no text was asked for.
     pub(crate) fn row(&self, n: usize) -> &[u8] {
-        self.rows.get(n).map_or(&[], |row| &self.text[row.clone()])
+        let row = self.rows.get(n);
+        row.map_or(&[], |(start, end)| {
+            &self.text[*start as usize..*end as usize]
+        })
     }
 
     pub(crate) fn place(&self, n: usize) -> Option<Place> {
-        self.places.get(n).copied()
+        let place = self.places.get(n).copied();
+        place.map(if self.by_line {
+            Place::Line
+        } else {
+            Place::Row
+        })
     }
 
     fn clear(&mut self, columns: usize) {
         self.text.clear();
         self.rows.clear();
         self.places.clear();
+        self.by_line = false;
         self.numbers.resize_with(columns, Vec::new);
         self.numbers.iter_mut().for_each(Vec::clear);
     }
@@ -69,14 +99,21 @@ impl Block {
     pub(super) fn push_row(&mut self, place: Place, write: impl FnOnce(&mut Vec<u8>)) {
         let start = self.text.len();
         write(&mut self.text);
-        self.rows.push(start..self.text.len());
-        self.places.push(place);
+        let place = match place {
+            Place::Line(line) => {
+                self.by_line = true;
+                line
+            }
+            Place::Row(row) => row,
+        };
+        self.push_row_at(place, start..self.text.len());
     }
 
-    /// Adds a row whose text is at `row`, or will be with [`Block::push_text`].
+    /// Adds a row whose text is at `row`, or will be with [`Block::push_text`]. The place is of the
+    /// kind of the rows before it.
     #[inline]
-    pub(super) fn push_row_at(&mut self, place: Place, row: Range<usize>) {
-        self.rows.push(row);
+    pub(super) fn push_row_at(&mut self, place: u64, row: Range<usize>) {
+        self.rows.push((row.start as u32, row.end as u32));
         self.places.push(place);
     }
 
@@ -99,7 +136,7 @@ impl Block {
 
     /// Adds rows without text, whose numbers were added before.
     pub(super) fn push_places(&mut self, rows: Range<u64>) {
-        self.places.extend(rows.map(Place::Row));
+        self.places.extend(rows);
     }
 
     /// Drops the rows from `len` on.
@@ -111,21 +148,21 @@ impl Block {
 }
 
 impl TableReader {
-    /// Reads the next rows into `block`; none at the end of the table. With `text`, also as they
-    /// will be written. An error comes after the rows before it.
+    /// Reads the next rows into `block`; none at the end of the table. `needs` is what will be
+    /// written of them. An error comes after the rows before it.
     ///
     /// From a pipe, rows are not kept back until a block is full.
     ///
     /// # Errors
     /// As [`TableReader::advance`] and [`TableReader::number`].
-    pub(crate) fn fill(&mut self, block: &mut Block, asked: &[Column], text: bool) -> Result<()> {
+    pub(crate) fn fill(&mut self, block: &mut Block, asked: &[Column], needs: Needs) -> Result<()> {
         block.clear(asked.len());
         if let Some(error) = self.late.take() {
             return Err(error);
         }
         let filled = match &self.source {
             Source::Text(_) => self.fill_from_text(block, asked),
-            Source::Numbers(_) => self.fill_from_numbers(block, asked, text),
+            Source::Numbers(_) => self.fill_from_numbers(block, asked, needs),
         };
         match filled {
             Err(error) if block.len() > 0 => {
@@ -171,12 +208,17 @@ impl TableReader {
         Ok(())
     }
 
-    fn fill_from_numbers(&mut self, block: &mut Block, asked: &[Column], text: bool) -> Result<()> {
+    fn fill_from_numbers(
+        &mut self,
+        block: &mut Block,
+        asked: &[Column],
+        needs: Needs,
+    ) -> Result<()> {
         let Source::Numbers(numbers) = &mut self.source else {
             return Ok(());
         };
         let places: Vec<usize> = asked.iter().map(|column| column.place()).collect();
-        let filled = numbers.fill(block, &places, text);
+        let filled = numbers.fill(block, &places, needs);
         filled.map_err(|problem| self.fault(None, problem))?;
         for (slot, column) in asked.iter().enumerate() {
             if let Some((time, unit)) = &self.time
@@ -199,13 +241,16 @@ impl TableReader {
         found.map(|_| ())
     }
 
-    /// An error at a row of a block.
-    pub(crate) fn fault_in(
-        &self,
-        (block, row): (&Block, usize),
-        column: Option<Column>,
-        problem: String,
-    ) -> Error {
-        self.fault_at(block.place(row), column, problem)
+    /// Whether the table is stored by columns of numbers.
+    pub(crate) fn is_by_columns(&self) -> bool {
+        matches!(self.source, Source::Numbers(_))
+    }
+
+    /// Whether all bytes that have arrived are used, so that the next row may be long in coming.
+    pub(crate) fn may_wait(&self) -> bool {
+        match &self.source {
+            Source::Text(text) => text.is_drained(),
+            Source::Numbers(_) => false,
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::hashing::{Hash, Hashing};
 use super::labels::Labels;
 use super::text::{self, Text};
 use super::wanted::Wanted;
-use super::{Source, mat, parquet};
+use super::{Source, arrow, mat, parquet};
 use crate::data::recording::Repair;
 use crate::error::{Error, Result};
 use bytes::Bytes;
@@ -17,6 +17,7 @@ use std::path::Path;
 enum Format {
     Csv,
     Parquet,
+    Arrow,
     MatV5,
     MatV73,
 }
@@ -30,6 +31,8 @@ impl Format {
         let begins = |mark: &[u8]| head.starts_with(mark);
         if begins(b"PAR1") {
             Ok(Self::Parquet)
+        } else if begins(arrow::FILE) || begins(arrow::STREAM) {
+            Ok(Self::Arrow)
         } else if begins(b"MATLAB 5.0") {
             Ok(Self::MatV5)
         } else if begins(b"MATLAB 7.3") || begins(b"\x89HDF\r\n\x1a\n") {
@@ -38,6 +41,10 @@ impl Format {
             Err("the file is compressed by gzip: unpack it first")
         } else if begins(b"PK\x03\x04") || begins(b"\xd0\xcf\x11\xe0") {
             Err("this is a workbook or an archive: save the table as CSV")
+        } else if begins(b"FEA1") {
+            Err("this is Feather of version 1: write it again as version 2")
+        } else if named("arrow") || named("arrows") || named("feather") {
+            Err("this is no Arrow file or stream, for all its name")
         } else if named("parquet") {
             Err("this is no Parquet file, for all its name: it does not begin with `PAR1`")
         } else if named("mat") {
@@ -46,6 +53,13 @@ impl Format {
             Ok(Self::Csv)
         }
     }
+}
+
+/// An open file: the names of its columns, and its rows.
+pub(super) struct Opened {
+    pub(super) header: Vec<String>,
+    pub(super) source: Source,
+    pub(super) is_arrow: bool,
 }
 
 /// Opens a file of any format. Returns the names of its columns and its rows. Of a file that is
@@ -58,7 +72,7 @@ pub(super) fn open(
     hash: Option<Hash>,
     (labels, wanted): (Option<&Labels>, &Wanted),
     budget: &mut Budget,
-) -> Result<(Vec<String>, Source)> {
+) -> Result<Opened> {
     let failed = |source| Error::File {
         path: path.to_owned(),
         source,
@@ -88,12 +102,17 @@ pub(super) fn open(
     let mut file = Hashing::new(file, hash);
     let (head, whole) = text::head(&mut file).map_err(failed)?;
     let format = Format::of(path, &head).map_err(|problem| refused(problem.to_owned()))?;
+    let is_arrow = matches!(format, Format::Arrow);
     let (header, numbers) = match format {
         Format::Csv => {
             let rest = file;
             let source = text::Source { head, whole, rest };
             let (header, text) = Text::open(path, source, repair, budget)?;
-            return Ok((header, Source::Text(Box::new(text))));
+            return Ok(Opened {
+                header,
+                source: Source::Text(Box::new(text)),
+                is_arrow: false,
+            });
         }
         _ if !seekable => {
             let problem = "only CSV can be read from a pipe: name the file";
@@ -105,6 +124,11 @@ pub(super) fn open(
                 None => parquet::open(path, *budget, (labels, wanted)),
             };
             let opened = opened.map_err(refused)?;
+            (opened.header, opened.numbers.with_times(opened.times))
+        }
+        Format::Arrow => {
+            let (batches, length) = arrow::batches(path, held, *budget).map_err(refused)?;
+            let opened = arrow::open(batches, length, (labels, wanted)).map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
         Format::MatV73 => {
@@ -126,5 +150,9 @@ pub(super) fn open(
             mat::table(variables, budget).map_err(refused)?
         }
     };
-    Ok((header, Source::Numbers(numbers)))
+    Ok(Opened {
+        header,
+        source: Source::Numbers(numbers),
+        is_arrow,
+    })
 }

@@ -1,10 +1,12 @@
-//! Reads tables row by row through one reader: CSV in its dialects, Parquet and MATLAB files.
+//! Reads tables row by row through one reader: CSV in its dialects, Parquet, Arrow and MATLAB files.
 //!
-//! `format` detects the format; `text`, `parquet` and `mat` read it. `columns` and `names` find
-//! columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
-//! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are the settings, `hashing` computes
-//! the file's digest. `labels` is the column whose text tells which recording a row belongs to.
+//! `format` detects the format; `text`, `parquet`, `arrow` and `mat` read it. `columns` and `names`
+//! find columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
+//! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are
+//! the settings, `hashing` computes the file's digest. `labels` is the column whose text tells which
+//! recording a row belongs to.
 
+mod arrow;
 mod block;
 mod budget;
 mod columns;
@@ -24,6 +26,7 @@ mod wanted;
 pub use options::ReadOptions;
 pub use remark::Remark;
 
+pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
 pub(crate) use block::Block;
 pub(crate) use budget::Budget;
 pub(crate) use labels::Label;
@@ -43,7 +46,7 @@ use wanted::Wanted;
 
 /// Reads a table with named columns, one row at a time.
 ///
-/// CSV is read as a stream and Parquet by row groups, so memory does not grow with the file. A
+/// CSV is read as a stream, Parquet and Arrow by their parts, so memory does not grow with the file. A
 /// MATLAB file is held in memory as a whole. There a vector is a column under its own name, and a
 /// matrix `M` is the columns `M:1`, `M:2` and so on.
 pub struct TableReader {
@@ -62,6 +65,7 @@ pub struct TableReader {
     labels: Option<labels::Labels>,
     /// The columns of numbers that are read.
     wanted: Wanted,
+    is_arrow: bool,
     /// An error that comes after the last block.
     late: Option<Error>,
 }
@@ -164,7 +168,11 @@ impl TableReader {
     ) -> Result<Self> {
         let mut budget = Budget::new(max_memory);
         let wanted = Wanted::default();
-        let (header, source) = format::open(
+        let format::Opened {
+            header,
+            source,
+            is_arrow,
+        } = format::open(
             path,
             held.as_ref(),
             repair,
@@ -183,6 +191,7 @@ impl TableReader {
             time: None,
             labels,
             wanted,
+            is_arrow,
             late: None,
         })
     }

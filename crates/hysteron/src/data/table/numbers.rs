@@ -3,6 +3,7 @@
 use super::Row;
 use super::block::{Block, ROWS};
 use crate::data::cells::push_number;
+use crate::data::output::Needs;
 use crate::error::Place;
 
 /// Columns of numbers. A missing number is NaN.
@@ -126,13 +127,13 @@ impl Numbers {
         Ok(true)
     }
 
-    /// Reads the next rows into `block`: the numbers of the columns `asked` for and, with `text`,
-    /// the whole rows.
+    /// Reads the next rows into `block`: the numbers of the columns `asked` for, and what else it
+    /// `needs`.
     pub(super) fn fill(
         &mut self,
         block: &mut Block,
         asked: &[usize],
-        text: bool,
+        needs: Needs,
     ) -> Result<(), String> {
         if !self.advance()? {
             return Ok(());
@@ -146,7 +147,10 @@ impl Numbers {
                 block.push_number(slot, column.get(row).copied().unwrap_or(f64::NAN));
             }
         }
-        if !text {
+        if needs != Needs::Text {
+            if needs == Needs::Numbers {
+                block.copy(&self.group, rows);
+            }
             block.push_places(places);
             return Ok(());
         }

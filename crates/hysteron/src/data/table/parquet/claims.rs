@@ -20,7 +20,7 @@ pub(super) struct Claims {
 }
 
 /// A file, or bytes in memory.
-pub(super) trait ReadSeek: Read + Seek + Send {}
+pub(in crate::data) trait ReadSeek: Read + Seek + Send {}
 
 impl<T: Read + Seek + Send> ReadSeek for T {}
 

@@ -4,7 +4,6 @@
 use super::Text;
 use super::marks::Marks;
 use crate::data::table::block::Block;
-use crate::error::Place;
 use memchr::memchr;
 use std::io::BufRead;
 
@@ -63,7 +62,7 @@ impl Text {
             if cell != columns || delimiter != b',' && has(b',') {
                 break;
             }
-            block.push_row_at(Place::Line(line), text + row.start..text + row.end);
+            block.push_row_at(line, text + row.start..text + row.end);
             (taken, line) = (end + 1, line + 1);
             (cell, to_find) = (0, asked);
         }

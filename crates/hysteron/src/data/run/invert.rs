@@ -1,0 +1,196 @@
+//! Inverts tables.
+
+use super::pipeline::{Work, through};
+use super::samples::Samples;
+use super::{Around, Counts};
+use crate::data::output::{Added, AddedCells, TableWriter};
+use crate::data::table::{Block, TableReader};
+use crate::error::Result;
+use crate::model::{Inverse, Model, Policy, Preview, Sample, State, Wanted};
+use crate::series::Headings;
+use hysteron_core::Status;
+use std::collections::VecDeque;
+
+/// The columns and options of an inversion.
+#[derive(Debug, Clone, Copy)]
+pub struct Invert<'a> {
+    /// Column of the wanted output.
+    pub target: &'a str,
+    /// Columns of time and load.
+    pub around: Around<'a>,
+    /// Whether the inverse holds the input or crosses the dead band when the target reverses.
+    pub policy: Policy,
+    /// Reversals of the target up to this size are noise and are not followed; in its unit.
+    pub tolerance: f64,
+    /// Largest number of rows to look ahead for [`Policy::Anticipate`]. If the next turning point
+    /// is further away, the input is held.
+    pub look_ahead: usize,
+    /// The range of the drive; `None` for that of the model ([`Model::drive_range`]).
+    pub drive_range: Option<(f64, f64)>,
+    /// Time in which a temperature is to be reached, s ([`Inverse::horizon`]).
+    pub horizon: f64,
+    /// For a model with a thermal body: how many seconds ahead of a target the drive may start;
+    /// `None` for twice the longer time constant.
+    pub preview: Option<f64>,
+}
+
+/// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
+/// wanted output, from `state`. For a model with a thermal body the input is the drive to hold since
+/// the row before, and `temperature_model` follows it. `out` is finished at the end. `progress` gets
+/// the bytes read.
+///
+/// # Errors
+/// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
+/// [`crate::Error::Fit`] for a range of drives that is not in order.
+pub fn invert_table(
+    model: &Model,
+    state: State,
+    table: &mut TableReader,
+    what: Invert<'_>,
+    out: Option<TableWriter>,
+    progress: impl Fn(u64),
+) -> Result<Counts> {
+    let samples = Samples::new(model, table, what.target, what.around)?;
+    let columns = samples.columns.clone();
+    let drive = what.drive_range.unwrap_or_else(|| model.drive_range());
+    let inner = model.without_body();
+    let usual = model
+        .thermal
+        .map(|body| 2.0 * body.tau_heating.max(body.tau_cooling));
+    let seconds = what.preview.or(usual).unwrap_or_default();
+    let preview = match model.thermal.filter(|_| seconds > 0.0) {
+        None => None,
+        Some(_) => Some(Preview::new(model, &inner, drive, seconds, state.clone())?),
+    };
+    let heated = model.thermal.is_some();
+    let mut added = vec![Added::Numbers("input_model"), Added::Words("status")];
+    if heated {
+        added.insert(1, Added::Numbers("temperature_model"));
+    }
+    let inverse = model
+        .inverse()?
+        .drive_range(drive.0, drive.1)?
+        .horizon(what.horizon)?;
+    let headings = match what.policy {
+        Policy::Hold => None,
+        Policy::Anticipate => Some(Headings::new(what.tolerance, what.look_ahead)),
+    };
+    let work = Inverting {
+        model,
+        samples,
+        tolerance: what.tolerance,
+        headings,
+        unheaded: VecDeque::new(),
+        solving: Solving {
+            inverse,
+            state,
+            preview,
+            heated,
+            counts: Counts::default(),
+        },
+    };
+    through(table, &columns, out, &added, work, progress)
+}
+
+/// Gives each target its heading, then solves it.
+struct Inverting<'m> {
+    model: &'m Model,
+    samples: Samples,
+    tolerance: f64,
+    headings: Option<Headings>,
+    /// The targets that wait for their heading.
+    unheaded: VecDeque<Sample>,
+    solving: Solving<'m>,
+}
+
+impl Work for Inverting<'_> {
+    fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
+        let plain = self.model.is_plain();
+        for row in 0..block.len() {
+            let sample = self.samples.next(block, row);
+            // A time or a load that cannot be is told with its row.
+            if !plain {
+                let accepted = self.model.accepts(sample);
+                accepted.map_err(|error| self.samples.fault(block, row, &error))?;
+            }
+            let Some(headings) = &mut self.headings else {
+                let wanted = Wanted::of(sample, None, self.tolerance);
+                self.solving.row(wanted, cells)?;
+                continue;
+            };
+            self.unheaded.push_back(sample);
+            for (heading, count) in headings.push(sample.input) {
+                for sample in self.unheaded.drain(..count) {
+                    let wanted = Wanted::of(sample, heading, self.tolerance);
+                    self.solving.row(wanted, cells)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn rest(&mut self, cells: &mut AddedCells) -> Result<()> {
+        if let Some(headings) = self.headings.take() {
+            let (heading, count) = headings.finish();
+            for sample in self.unheaded.drain(..count) {
+                let wanted = Wanted::of(sample, heading, self.tolerance);
+                self.solving.row(wanted, cells)?;
+            }
+        }
+        self.solving.rest(cells)
+    }
+
+    fn counts(&self) -> Counts {
+        self.solving.counts
+    }
+}
+
+/// Finds the input of one target after the other.
+struct Solving<'m> {
+    inverse: Inverse<'m>,
+    state: State,
+    preview: Option<Preview<'m>>,
+    heated: bool,
+    counts: Counts,
+}
+
+impl Solving<'_> {
+    fn row(&mut self, wanted: Wanted, cells: &mut AddedCells) -> Result<()> {
+        let Some(preview) = &mut self.preview else {
+            return self.solve(wanted, wanted.target.output, cells);
+        };
+        for (wanted, asked) in preview.push(wanted)? {
+            self.solve(wanted, asked, cells)?;
+        }
+        Ok(())
+    }
+
+    fn rest(&mut self, cells: &mut AddedCells) -> Result<()> {
+        while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
+            self.solve(wanted, asked, cells)?;
+        }
+        Ok(())
+    }
+
+    /// `asked` is the output that the row asks for; a preview may want a little less of it.
+    fn solve(&mut self, wanted: Wanted, asked: f64, cells: &mut AddedCells) -> Result<()> {
+        let hysteron_core::Solution { input, status } = match &self.preview {
+            Some(preview) => preview.step(&self.inverse, &mut self.state, wanted, asked)?,
+            None => self.inverse.step(&mut self.state, wanted)?,
+        };
+        self.counts.samples += 1;
+        match status {
+            Status::Ok => {}
+            Status::Low => self.counts.low += 1,
+            Status::High => self.counts.high += 1,
+            Status::Passed => self.counts.passed += 1,
+            Status::Limited => self.counts.limited += 1,
+        }
+        match self.heated {
+            true => cells.push(&[input, self.state.temperature()]),
+            false => cells.push(&[input]),
+        }
+        cells.words.push(status.name());
+        Ok(())
+    }
+}

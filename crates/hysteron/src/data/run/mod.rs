@@ -1,0 +1,39 @@
+//! Simulates and inverts tables block by block, so that memory does not grow with the file.
+//!
+//! `pipeline` reads, computes and writes, each on a thread of its own. `samples` makes samples of
+//! rows. `simulate` and `invert` are the work in between. `sink` pairs rows with their new cells.
+
+mod invert;
+mod pipeline;
+mod samples;
+mod simulate;
+mod sink;
+
+pub use invert::{Invert, invert_table};
+pub use simulate::{Simulate, simulate_table};
+
+use serde::Serialize;
+
+/// Counts of the rows processed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// Rows read and written.
+    pub samples: u64,
+    /// Rows clipped at the upper end: an input above the range, or a target above it.
+    pub high: u64,
+    /// Rows clipped at the lower end: an input below the range, or a target below it.
+    pub low: u64,
+    /// Targets inside a jump of a relay model, which no input reaches exactly.
+    pub passed: u64,
+    /// Targets that the drive, within its range, cannot reach in time.
+    pub limited: u64,
+}
+
+/// The columns that a model may need besides its input or target.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Around<'a> {
+    /// Column of time in seconds, for a model that depends on time.
+    pub time: Option<&'a str>,
+    /// Column of the load, for a model that depends on one.
+    pub load: Option<&'a str>,
+}
