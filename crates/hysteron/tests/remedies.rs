@@ -4,20 +4,26 @@
 use hysteron::{Error, Remedy, Setting};
 use std::path::Path;
 
-/// The lines of code, without comments, that have an option of the command in them.
+/// The lines of code, without tests and comments, that have an option of the command in them. A name
+/// with a colon is a variable of a style sheet.
 fn spelt_in(folder: &Path, found: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             spelt_in(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
+        } else if path.extension().is_some_and(|ending| ending == "rs")
+            && !path.ends_with("tests.rs")
+        {
             let text = std::fs::read_to_string(&path).unwrap();
             let code = text
                 .lines()
                 .filter(|line| !line.trim_start().starts_with("//"));
             let spelt = |line: &&str| {
                 let mut after = line.split("--").skip(1);
-                after.any(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
+                after.any(|rest| {
+                    let end = rest.trim_start_matches(|c: char| c.is_ascii_lowercase());
+                    end.len() < rest.len() && !end.starts_with(':')
+                })
             };
             let lines = code
                 .filter(spelt)

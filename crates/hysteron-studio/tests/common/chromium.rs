@@ -93,6 +93,13 @@ impl Chromium {
     }
 
     fn call(&mut self, tab: Option<&Tab>, method: &str, params: Value) -> Value {
+        let answer = self.asked(tab, method, params);
+        assert!(answer["error"].is_null(), "{method}: {answer}");
+        answer["result"].clone()
+    }
+
+    /// The whole answer, an error too.
+    fn asked(&mut self, tab: Option<&Tab>, method: &str, params: Value) -> Value {
         self.last += 1;
         let mut message = json!({"id": self.last, "method": method, "params": params});
         if let Some(Tab(session)) = tab {
@@ -114,8 +121,7 @@ impl Chromium {
                 _ => {}
             }
             if answer["id"] == self.last {
-                assert!(answer["error"].is_null(), "{method}: {answer}");
-                return answer["result"].clone();
+                return answer;
             }
         }
     }
@@ -142,16 +148,27 @@ impl Chromium {
 
     /// The value of an expression, once its promise is kept.
     pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
-        let params = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
-        let found = self.call(Some(tab), "Runtime.evaluate", params);
-        assert!(found["exceptionDetails"].is_null(), "{expression}: {found}");
-        found["result"]["value"].clone()
+        self.value_if_there(tab, expression)
+            .unwrap_or_else(|| panic!("the page went away: {expression}"))
     }
 
-    /// Waits until an expression is true.
+    /// The same; `None` where the page goes away before that, to load again.
+    fn value_if_there(&mut self, tab: &Tab, expression: &str) -> Option<Value> {
+        let params = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
+        let answer = self.asked(Some(tab), "Runtime.evaluate", params);
+        if answer["error"]["message"] == "Inspected target navigated or closed" {
+            return None;
+        }
+        let found = &answer["result"];
+        assert!(answer["error"].is_null(), "{expression}: {answer}");
+        assert!(found["exceptionDetails"].is_null(), "{expression}: {found}");
+        Some(found["result"]["value"].clone())
+    }
+
+    /// Waits until an expression is true, through a page that is loaded again.
     pub fn wait(&mut self, tab: &Tab, expression: &str) {
         let begin = Instant::now();
-        while self.value(tab, &format!("Boolean({expression})")) != true {
+        while self.value_if_there(tab, &format!("Boolean({expression})")) != Some(json!(true)) {
             if begin.elapsed() > PATIENCE {
                 let page = self.value(tab, "document.body.innerText");
                 panic!("never: {expression}\n{page}\n{:?}", self.errors);
