@@ -4,14 +4,19 @@ use crate::made::Made;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
+/// Nothing from elsewhere, and nothing sent there.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+                      img-src data: blob:; base-uri 'none'; form-action 'none'";
 
-/// The page of `body`; `simulated` says that nothing on it was measured.
+/// The page of `body`; `simulated` says that nothing on it was measured. `scripts` stand at its
+/// end.
 pub(crate) fn html(
     heading: &str,
     lead: Markup,
     simulated: Option<&str>,
     body: Markup,
     made: Made<'_>,
+    scripts: Markup,
 ) -> String {
     let heading = if heading.trim().is_empty() {
         "Report"
@@ -23,6 +28,7 @@ pub(crate) fn html(
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="content-security-policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (heading) @if simulated.is_some() { " (simulated)" } }
                 style { (PreEscaped(STYLE)) }
@@ -35,6 +41,7 @@ pub(crate) fn html(
                     (body)
                     footer { (made.html()) }
                 }
+                (scripts)
             }
         }
     }

@@ -3,8 +3,9 @@
 use crate::draw::axis::Axis;
 use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, y_label};
+use crate::draw::plot::Words;
 use crate::draw::sheet::{MARGIN, Sheet};
-use crate::draw::style::{FAINT, GUIDE, LABEL, TICK};
+use crate::draw::style::{FAINT, GUIDE, INK, LABEL, TICK};
 use crate::draw::text;
 
 /// Width of a figure over time.
@@ -81,16 +82,20 @@ pub(crate) fn head(sheet: &mut Sheet, heading: &Heading, area: Rect) {
     let baseline = area.y - 6.0;
     let taken = text::width(&heading.remark, TICK) + 12.0;
     let name = text::fit(&heading.name, LABEL, area.width - taken);
-    sheet
-        .canvas
-        .text([area.x, baseline], Anchor::Start, LABEL, &name);
-    sheet.canvas.text_in(
-        [area.right(), baseline],
-        Anchor::End,
-        TICK,
-        FAINT,
-        &heading.remark,
-    );
+    sheet.canvas.words(Words {
+        at: [area.x, baseline],
+        anchor: Anchor::Start,
+        size: LABEL,
+        colour: INK,
+        text: name,
+    });
+    sheet.canvas.words(Words {
+        at: [area.right(), baseline],
+        anchor: Anchor::End,
+        size: TICK,
+        colour: FAINT,
+        text: heading.remark.clone(),
+    });
 }
 
 /// Where an event stands in pixels, if it does within `area`.
@@ -132,11 +137,8 @@ fn words_of(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, area: Rect) -
 }
 
 /// Lines at the events, over the data.
-pub(crate) fn event_lines(sheet: &mut Sheet, events: &[(f64, String)], x: &Axis, panel: &Panel) {
-    for (time, _) in events {
-        if let Some(at) = place(x, panel.area, *time) {
-            let (top, bottom) = (panel.area.y, panel.area.bottom());
-            sheet.canvas.line([at, top], [at, bottom], &GUIDE);
-        }
+pub(crate) fn event_lines(sheet: &mut Sheet, events: &[(f64, String)], panel: &Panel) {
+    for (time, words) in events {
+        panel.upright(&mut sheet.canvas, *time, &GUIDE, words);
     }
 }

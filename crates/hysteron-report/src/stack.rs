@@ -1,8 +1,9 @@
 //! What both reports are made of: figures with titles and captions, written as files around a page.
 
-use crate::draw::sheet::Sheet;
+use crate::draw::sheet::{Drawing, Sheet};
 use crate::error::ReportError;
 use crate::frame;
+use crate::linked;
 use crate::png;
 use hysteron::{AtomicFile, AtomicFolder, Destination, Own, printable};
 use maud::{Markup, html};
@@ -28,11 +29,20 @@ pub(crate) trait Figures {
     /// What a figure shows, in a sentence or two.
     fn caption(&self, figure: Self::Figure) -> String;
 
-    /// The figure as SVG; `None` where there is nothing to show in it.
-    fn svg(&self, figure: Self::Figure) -> Option<String>;
+    /// The figure; `None` where there is nothing to show in it.
+    fn draw(&self, figure: Self::Figure) -> Option<Drawing>;
 
     /// The page around the figures in `drawn`.
-    fn page(&self, drawn: &[(Self::Figure, String)]) -> String;
+    fn page(&self, drawn: &[(Self::Figure, Drawing)]) -> String;
+
+    /// Whether a page can draw the figure again from the numbers of its panels, where one zooms.
+    fn is_linked(figure: Self::Figure) -> bool;
+
+    /// What the page needs at its end, so that its figures zoom.
+    fn scripts(&self, drawn: &[(Self::Figure, Drawing)]) -> Markup {
+        let linked = drawn.iter().filter(|(figure, _)| Self::is_linked(*figure));
+        linked::scripts(linked.map(|(figure, drawing)| (Self::stem(*figure), drawing)))
+    }
 
     /// The empty sheet of a figure.
     fn sheet(&self, figure: Self::Figure, width: f64) -> Sheet {
@@ -41,7 +51,7 @@ pub(crate) trait Figures {
     }
 
     /// The finished figure with its caption as spoken text.
-    fn finish(&self, figure: Self::Figure, sheet: Sheet, height: f64) -> String {
+    fn finish(&self, figure: Self::Figure, sheet: Sheet, height: f64) -> Drawing {
         sheet.finish(height, &self.caption(figure))
     }
 
@@ -49,15 +59,15 @@ pub(crate) trait Figures {
     fn picture(
         &self,
         figure: Self::Figure,
-        drawn: &[(Self::Figure, String)],
+        drawn: &[(Self::Figure, Drawing)],
         beside: Markup,
     ) -> Markup {
         let mut numbered = drawn.iter().enumerate();
-        let Some((number, (_, svg))) = numbered.find(|(_, (drawn, _))| *drawn == figure) else {
+        let Some((number, (_, drawing))) = numbered.find(|(_, (drawn, _))| *drawn == figure) else {
             return html! {};
         };
         let words = [self.title(figure), self.caption(figure)];
-        frame::picture(Self::stem(figure), number, svg, &words, beside)
+        frame::picture(Self::stem(figure), number, &drawing.svg, &words, beside)
     }
 
     /// Writes each figure that there is as SVG and PNG, and the page `index.html`, into the folder
@@ -65,7 +75,7 @@ pub(crate) trait Figures {
     fn write(&self, folder: &mut AtomicFolder, within: &Path) -> Result<Vec<PathBuf>, ReportError> {
         let drawn = self.drawn();
         let mut names = vec![within.join("index.html")];
-        for (figure, svg) in &drawn {
+        for (figure, Drawing { svg, .. }) in &drawn {
             let stem = Self::stem(*figure);
             let [svg_name, png_name] =
                 ["svg", "png"].map(|extension| within.join(format!("{stem}.{extension}")));
@@ -81,18 +91,22 @@ pub(crate) trait Figures {
         Ok(names.iter().map(|name| folder.path().join(name)).collect())
     }
 
-    /// Each figure that there is, as SVG.
-    fn drawn(&self) -> Vec<(Self::Figure, String)> {
+    /// Each figure that there is.
+    fn drawn(&self) -> Vec<(Self::Figure, Drawing)> {
         // Names come from anywhere; XML allows no control characters.
-        let svg = |figure| Some(printable(&self.svg(figure)?).into_owned());
-        let figures = Self::ALL.iter();
-        figures
-            .filter_map(|&figure| Some((figure, svg(figure)?)))
+        let drawing = |figure| {
+            let mut drawing = self.draw(figure)?;
+            drawing.svg = printable(&drawing.svg).into_owned();
+            Some((figure, drawing))
+        };
+        Self::ALL
+            .iter()
+            .filter_map(|&figure| drawing(figure))
             .collect()
     }
 
     /// The page around the figures in `drawn`, as it is written.
-    fn whole_page(&self, drawn: &[(Self::Figure, String)]) -> String {
+    fn whole_page(&self, drawn: &[(Self::Figure, Drawing)]) -> String {
         printable(&self.page(drawn)).into_owned()
     }
 }

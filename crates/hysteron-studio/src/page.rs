@@ -88,19 +88,8 @@ const HEAD: &str = concat!(
     "\">\n<meta name=\"hysteron-session\" content=\"local\">"
 );
 
-/// plotly.js, which the crate `plotly` carries. It gives its scripts as elements of a page, this
-/// one first.
-static PLOTLY: LazyLock<String> = LazyLock::new(|| {
-    const ELEMENT: &str = "<script type=\"text/javascript\">";
-    let all = plotly::Plot::offline_js_sources();
-    let rest = all.strip_prefix(ELEMENT).unwrap_or_default();
-    // A later element begins where the last of these marks is.
-    let first = rest
-        .rsplit_once(ELEMENT)
-        .map_or(rest, |(first, _)| first)
-        .trim_end();
-    first.strip_suffix("</script>").unwrap_or(first).to_owned()
-});
+/// plotly.js, unpacked once.
+static PLOTLY: LazyLock<String> = LazyLock::new(hysteron_report::plotly);
 
 fn plotly() -> PageFile {
     PageFile {
@@ -148,18 +137,4 @@ pub fn static_page() -> impl Iterator<Item = PageFile> {
     };
     let files = SHARED.iter().chain(STATIC).map(page);
     [index, plotly()].into_iter().chain(files)
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn plotly_is_one_script() {
-        let script = super::PLOTLY.as_str();
-        assert!(script.starts_with("/**") && script.contains("plotly.js v"));
-        assert!(
-            !script.contains("<script type=\"text/javascript\">")
-                && !script.contains("MathJax-script")
-        );
-        assert!(script.len() > 3_000_000, "{}", script.len());
-    }
 }

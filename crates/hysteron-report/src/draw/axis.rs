@@ -150,6 +150,11 @@ impl Axis {
         self.quantity.axis(factor.as_deref())
     }
 
+    /// Name and unit, without a factor and also where the label stands elsewhere.
+    pub(crate) fn whole_label(&self) -> String {
+        self.quantity.axis(None)
+    }
+
     /// Ticks for a horizontal axis of `length` pixels: as many as their labels leave room for.
     pub(crate) fn ticks_across(&self, length: f64) -> Vec<Tick> {
         self.ticks(length, |ticks| {

@@ -1,11 +1,13 @@
 //! SVG elements, written as text.
 
+use super::plot::{Plot, Words};
 use super::style::{INK, Stroke};
 use super::text::FAMILIES;
+use serde::Serialize;
 use std::fmt::Write;
 
 /// A rectangle in pixels, y downwards.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Rect {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -24,7 +26,8 @@ impl Rect {
 }
 
 /// Where a text stands relative to its point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum Anchor {
     Start,
     Middle,
@@ -38,6 +41,10 @@ pub(crate) struct Canvas {
     stem: &'static str,
     clips: usize,
     body: String,
+    /// What the panels show, as numbers.
+    pub(crate) plots: Vec<Plot>,
+    /// The words beside the panels.
+    pub(crate) words: Vec<Words>,
 }
 
 // Writing to a string cannot fail, so the results are ignored.
@@ -47,6 +54,8 @@ impl Canvas {
             stem,
             clips: 0,
             body: String::new(),
+            plots: Vec::new(),
+            words: Vec::new(),
         }
     }
 
@@ -112,6 +121,18 @@ impl Canvas {
     ) {
         let place = format!(r#"x="{}" y="{}""#, Short(at[0]), Short(at[1]));
         self.text_element(&place, anchor, size, colour, text);
+    }
+
+    /// Text that a page keeps when it draws the panels again.
+    pub(crate) fn words(&mut self, words: Words) {
+        self.text_in(
+            words.at,
+            words.anchor,
+            words.size,
+            words.colour,
+            &words.text,
+        );
+        self.words.push(words);
     }
 
     /// Text that reads upwards.

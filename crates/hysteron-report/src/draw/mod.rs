@@ -7,6 +7,7 @@ pub(crate) mod colour;
 pub(crate) mod colour_bar;
 pub(crate) mod marker;
 pub(crate) mod panel;
+pub(crate) mod plot;
 pub(crate) mod sheet;
 pub(crate) mod stretches;
 pub(crate) mod style;

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Rect, rect_data};
+use super::plot::{Line, Plot, Shown};
 use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
 use super::text;
 use crate::decimate;
@@ -24,6 +25,8 @@ pub(crate) struct Panel {
     pub(crate) area: Rect,
     x: Axis,
     y: Axis,
+    /// Its place among the plots of the canvas.
+    plot: Option<usize>,
 }
 
 /// Space to the left of a panel `height` pixels high for the tick labels and label of its `y` axis.
@@ -46,7 +49,13 @@ pub(crate) fn y_label(canvas: &mut Canvas, y: &Axis, left: f64, area: Rect) {
 impl Panel {
     /// Draws grid and axes over `area`, which excludes the space for labels.
     pub(crate) fn draw(canvas: &mut Canvas, area: Rect, x: Axis, y: Axis, labels: Labels) -> Self {
-        let panel = Self { area, x, y };
+        canvas.plots.push(Plot::new(
+            area,
+            Shown::new(&x, labels.x),
+            Shown::new(&y, labels.y),
+        ));
+        let plot = canvas.plots.len().checked_sub(1);
+        let panel = Self { area, x, y, plot };
         panel.grid(canvas);
         panel.x_axis(canvas, labels.x);
         panel.y_axis(canvas, labels.y);
@@ -55,8 +64,8 @@ impl Panel {
 
     /// An `x` axis without a panel, at the foot of `area`.
     pub(crate) fn x_alone(canvas: &mut Canvas, area: Rect, x: Axis) {
-        let y = x.clone();
-        Self { area, x, y }.x_axis(canvas, true);
+        let (y, plot) = (x.clone(), None);
+        Self { area, x, y, plot }.x_axis(canvas, true);
     }
 
     /// Pixel of an x value.
@@ -79,28 +88,52 @@ impl Panel {
     /// A curve over time.
     pub(crate) fn curve(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
         self.strokes(canvas, &decimate::columns(self.points(xs, ys)), stroke);
+        self.plot(canvas, |plot| plot.lines.push(Line::curve(xs, ys, *stroke)));
     }
 
     /// A curve that returns on itself.
     pub(crate) fn loops(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], stroke: &Stroke) {
         self.strokes(canvas, &decimate::loops(self.points(xs, ys)), stroke);
+        self.plot(canvas, |plot| {
+            plot.lines.push(Line::returning(xs, ys, *stroke))
+        });
     }
 
     /// Bands from x to x over the full height; bands less than a pixel apart become one.
     pub(crate) fn shade(&self, canvas: &mut Canvas, bands: impl IntoIterator<Item = [f64; 2]>) {
-        for [from, to] in self.merged(bands) {
-            canvas.rect(
-                Rect {
-                    x: from,
-                    width: (to - from).max(0.5),
-                    ..self.area
-                },
-                SHADE,
-            );
-        }
+        self.fill(canvas, bands, self.area, SHADE);
         // The shade covers the grid and the axis line's inner half: draw them again.
         self.grid(canvas);
         self.frame(canvas);
+    }
+
+    /// Fills bands from x to x between top and bottom of `area`.
+    pub(crate) fn fill(
+        &self,
+        canvas: &mut Canvas,
+        bands: impl IntoIterator<Item = [f64; 2]>,
+        area: Rect,
+        fill: &'static str,
+    ) {
+        let bands: Vec<[f64; 2]> = bands.into_iter().collect();
+        let merged = self.merged(bands.iter().copied());
+        for &[from, to] in &merged {
+            let width = (to - from).max(1.0);
+            canvas.rect(
+                Rect {
+                    x: from,
+                    width,
+                    ..area
+                },
+                fill,
+            );
+        }
+        let back = |px: f64| {
+            let share = (px - self.area.x) / self.area.width;
+            self.x.span.low + share * (self.x.span.high - self.x.span.low)
+        };
+        let shown = merged.into_iter().map(|band| band.map(back)).collect();
+        self.plot(canvas, |plot| plot.fill(bands, shown, area, fill));
     }
 
     /// Pixels of bands from x to x; bands less than a pixel apart become one.
@@ -122,7 +155,7 @@ impl Panel {
         canvas: &mut Canvas,
         xs: &[f64],
         [low, high]: &[Vec<f64>; 2],
-        fill: &str,
+        fill: &'static str,
     ) {
         let edges = self.points(xs, low).zip(self.points(xs, high));
         let d: String = decimate::covered(edges, self.area.x, self.area.right())
@@ -137,6 +170,7 @@ impl Panel {
             })
             .collect();
         canvas.clipped(self.area, |canvas| canvas.path(&d, Some(fill), None));
+        self.plot(canvas, |plot| plot.band(xs, [low, high], fill));
         self.grid(canvas);
         self.frame(canvas);
     }
@@ -148,6 +182,25 @@ impl Panel {
             [self.area.right(), self.py(y)],
             stroke,
         );
+        self.plot(canvas, |plot| plot.levels.push((y, *stroke)));
+    }
+
+    /// A vertical line through the panel, with its words where these stand elsewhere.
+    pub(crate) fn upright(&self, canvas: &mut Canvas, x: f64, stroke: &Stroke, words: &str) {
+        let at = self.px(x);
+        if (self.area.x..=self.area.right()).contains(&at) {
+            canvas.line([at, self.area.y], [at, self.area.bottom()], stroke);
+            self.plot(canvas, |plot| {
+                plot.uprights.push((x, *stroke, words.to_owned()))
+            });
+        }
+    }
+
+    /// Notes in numbers what was drawn.
+    fn plot(&self, canvas: &mut Canvas, note: impl FnOnce(&mut Plot)) {
+        if let Some(plot) = self.plot.and_then(|n| canvas.plots.get_mut(n)) {
+            note(plot);
+        }
     }
 
     fn points<'a>(&'a self, xs: &'a [f64], ys: &'a [f64]) -> impl Iterator<Item = [f64; 2]> + 'a {

@@ -2,7 +2,8 @@
 
 use super::canvas::{Anchor, Canvas, Rect};
 use super::marker::Marker;
-use super::style::{AXIS, FAINT, LABEL, Stroke, TITLE};
+use super::plot::{Plot, Words};
+use super::style::{AXIS, FAINT, INK, LABEL, Stroke, TITLE};
 use super::text;
 
 /// Space around everything.
@@ -26,11 +27,26 @@ pub(crate) enum Key {
     Text(String),
 }
 
+/// A figure, drawn.
+#[derive(Debug, Clone)]
+pub(crate) struct Drawing {
+    /// As it stands on paper.
+    pub(crate) svg: String,
+    /// Its panels, for a page that can draw them again.
+    pub(crate) plots: Vec<Plot>,
+    pub(crate) words: Vec<Words>,
+    /// What filled areas are.
+    pub(crate) areas: Vec<(&'static str, String)>,
+}
+
 /// A figure under construction.
 pub(crate) struct Sheet {
     pub(crate) canvas: Canvas,
     width: f64,
     title: String,
+    /// What lines and filled areas are, as the legend says.
+    lines: Vec<(Stroke, String)>,
+    areas: Vec<(&'static str, String)>,
     /// Below title and legend.
     pub(crate) top: f64,
 }
@@ -44,19 +60,28 @@ impl Sheet {
         let mut room = width - 2.0 * MARGIN;
         if let Some(note) = note {
             let taken = text::width(note, LABEL);
-            canvas.text_in([width - MARGIN, baseline], Anchor::End, LABEL, FAINT, note);
+            canvas.words(Words {
+                at: [width - MARGIN, baseline],
+                anchor: Anchor::End,
+                size: LABEL,
+                colour: FAINT,
+                text: note.to_owned(),
+            });
             room -= taken + 16.0;
         }
-        canvas.text(
-            [MARGIN, baseline],
-            Anchor::Start,
-            TITLE,
-            &text::fit(title, TITLE, room),
-        );
+        canvas.words(Words {
+            at: [MARGIN, baseline],
+            anchor: Anchor::Start,
+            size: TITLE,
+            colour: INK,
+            text: text::fit(title, TITLE, room),
+        });
         Self {
             canvas,
             width,
             title: title.to_owned(),
+            lines: Vec::new(),
+            areas: Vec::new(),
             top: baseline + 12.0,
         }
     }
@@ -78,6 +103,11 @@ impl Sheet {
                 (x, y) = (MARGIN, y + ROW);
             }
             self.sample(key, [x, y]);
+            match key {
+                Key::Line(stroke, words) => self.lines.push((*stroke, words.clone())),
+                Key::Area(fill, words) => self.areas.push((*fill, words.clone())),
+                Key::Marker(..) | Key::Text(_) => {}
+            }
             self.canvas
                 .text([x + sample, y + 0.36 * LABEL], Anchor::Start, LABEL, &words);
             self.canvas.text(
@@ -114,8 +144,22 @@ impl Sheet {
     }
 
     /// The finished figure, `height` pixels high; `label` is what a screen reader says.
-    pub(crate) fn finish(self, height: f64, label: &str) -> String {
-        self.canvas
-            .finish(self.width, height.ceil(), &self.title, label)
+    pub(crate) fn finish(mut self, height: f64, label: &str) -> Drawing {
+        let mut plots = std::mem::take(&mut self.canvas.plots);
+        for line in plots.iter_mut().flat_map(|plot| &mut plot.lines) {
+            let named = self
+                .lines
+                .iter()
+                .find(|(stroke, _)| *stroke == line.stroke());
+            line.name = named.map_or(String::new(), |(_, words)| words.clone());
+        }
+        Drawing {
+            words: std::mem::take(&mut self.canvas.words),
+            svg: self
+                .canvas
+                .finish(self.width, height.ceil(), &self.title, label),
+            plots,
+            areas: self.areas,
+        }
     }
 }

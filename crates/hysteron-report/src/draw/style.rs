@@ -1,8 +1,10 @@
 //! One look for all figures. Lines differ in lightness, width and dash, so that they stay apart in
 //! grey.
 
+use serde::Serialize;
+
 /// How a line is drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Stroke {
     pub(crate) colour: &'static str,
     pub(crate) width: f64,

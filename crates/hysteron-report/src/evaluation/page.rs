@@ -1,5 +1,6 @@
 //! The page of an evaluation.
 
+use crate::draw::sheet::Drawing;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::figures::classes_counted;
 use crate::evaluation::view::View;
@@ -51,7 +52,7 @@ const SECTIONS: [(&str, &[&[Figure]]); 5] = [
 ];
 
 /// The page around the figures in `drawn`.
-pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
     let lead = html! {
         "A hysteresis model of " (view.output.name) " over " (view.input.name)
         ", tested on a recording of both."
@@ -74,6 +75,7 @@ pub(crate) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         view.simulated().then_some(simulated),
         body,
         view.made,
+        view.scripts(drawn),
     )
 }
 
@@ -188,7 +190,7 @@ fn section(
     name: &str,
     groups: &[&[Figure]],
     view: &View<'_>,
-    drawn: &[(Figure, String)],
+    drawn: &[(Figure, Drawing)],
 ) -> Markup {
     let inverse = groups
         .iter()
@@ -232,7 +234,7 @@ fn section(
     }
 }
 
-fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
+fn picture(figure: Figure, view: &View<'_>, drawn: &[(Figure, Drawing)]) -> Markup {
     let beside = html! {
         @if let Some(number) = figure.chapter_number() {
             " " span.beside { "Beside Fig. " (number) " of the chapter." }

@@ -75,7 +75,7 @@ impl Report<'_> {
     ///
     /// [`ReportError::Length`] where the evaluation belongs to another recording.
     pub fn svg(&self, figure: Figure) -> Result<Option<String>, ReportError> {
-        Ok(self.view()?.svg(figure))
+        Ok(self.view()?.draw(figure).map(|drawing| drawing.svg))
     }
 
     /// The parts of the report, once they fit together.

@@ -1,6 +1,7 @@
 //! What every figure and caption reads: the report's parts in the words and units that are shown.
 
 use crate::clock::clock;
+use crate::draw::sheet::Drawing;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::report::Report;
 use crate::evaluation::source::Source;
@@ -105,11 +106,26 @@ impl Figures for View<'_> {
         captions::caption(figure, self)
     }
 
-    fn svg(&self, figure: Figure) -> Option<String> {
+    fn draw(&self, figure: Figure) -> Option<Drawing> {
         figures::svg(figure, self)
     }
 
-    fn page(&self, drawn: &[(Figure, String)]) -> String {
+    fn is_linked(figure: Figure) -> bool {
+        matches!(
+            figure,
+            Figure::OutputTime
+                | Figure::Loops
+                | Figure::LoadLoops
+                | Figure::LoadMeasured
+                | Figure::OutputDiscrepancy
+                | Figure::OutputResiduals
+                | Figure::InputTime
+                | Figure::InputDiscrepancy
+                | Figure::DeadBand
+        )
+    }
+
+    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
         page::html(self, drawn)
     }
 }

@@ -4,7 +4,7 @@ use super::view::{Figure, View};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::MARGIN;
+use crate::draw::sheet::{Drawing, MARGIN};
 use crate::draw::style::{FOLLOWER, GUIDE};
 use crate::panels::WIDTH;
 use crate::quantity::Labelled;
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 240.0;
 /// Distances beyond so many limits are drawn at the edge: one broken actuator would flatten all.
 const MOST: f64 = 8.0;
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::Distances, WIDTH);
     let limit = view.ordered[0].1.limit;
     let distances: Vec<f64> = view

@@ -4,7 +4,7 @@ use super::view::{Figure, View};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::MARGIN;
+use crate::draw::sheet::{Drawing, MARGIN};
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
 use crate::panels::WIDTH;
 use crate::quantity::Labelled;
@@ -21,7 +21,7 @@ const REACH: f64 = 8.0;
 /// A number of each actuator: its name, and its value.
 type Number = (Labelled, fn(&FleetRow) -> Option<f64>);
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::Distributions, WIDTH);
     let slope = match (&view.output.unit, &view.input.unit) {
         (Some(output), Some(input)) => Some(format!("{output}/{input}")),

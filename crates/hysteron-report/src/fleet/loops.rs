@@ -4,7 +4,7 @@ use super::view::{Figure, View};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::{FOLLOWER, REFERENCE};
 use crate::panels::{HEADING, Heading, WIDTH, head};
 use crate::stack::Figures;
@@ -20,7 +20,7 @@ pub(super) fn count(view: &View<'_>) -> usize {
 }
 
 /// `None` for a fleet of one.
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let strangest = &view.ordered[..count(view)];
     let usual = major_loop(&view.usual().model)?;
     let loops: Vec<[Vec<f64>; 2]> = strangest

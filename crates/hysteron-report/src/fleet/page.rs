@@ -1,6 +1,7 @@
 //! The page of a fleet.
 
 use super::view::{Figure, View};
+use crate::draw::sheet::Drawing;
 use crate::frame;
 use crate::number::{count, percent, significant};
 use crate::stack::Figures;
@@ -10,7 +11,7 @@ use maud::{Markup, html};
 const LISTED: usize = 50;
 
 /// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
     let lead = html! {
         (count(view.ordered.len())) " actuators: " (view.output.name) " over " (view.input.name)
         ". " (count(view.outliers())) " are unlike the others."
@@ -22,7 +23,14 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         (table(view))
     };
     let simulated = view.simulated().then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body, view.report.made)
+    frame::html(
+        view.report.title,
+        lead,
+        simulated,
+        body,
+        view.report.made,
+        view.scripts(drawn),
+    )
 }
 
 /// The outliers, or the ten strangest where there are fewer.

@@ -2,6 +2,7 @@
 
 use super::report::FleetReport;
 use super::{distances, distributions, loops, page};
+use crate::draw::sheet::Drawing;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
 use hysteron::{FleetRow, Strangeness};
@@ -115,7 +116,7 @@ impl Figures for View<'_> {
         }
     }
 
-    fn svg(&self, figure: Figure) -> Option<String> {
+    fn draw(&self, figure: Figure) -> Option<Drawing> {
         match figure {
             Figure::Distributions => Some(distributions::svg(self)),
             Figure::Distances => Some(distances::svg(self)),
@@ -123,7 +124,11 @@ impl Figures for View<'_> {
         }
     }
 
-    fn page(&self, drawn: &[(Figure, String)]) -> String {
+    fn is_linked(figure: Figure) -> bool {
+        figure == Figure::Loops
+    }
+
+    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
         page::html(self, drawn)
     }
 }

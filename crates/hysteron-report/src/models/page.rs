@@ -1,13 +1,14 @@
 //! The page of models beside each other.
 
 use super::view::{Figure, View};
+use crate::draw::sheet::Drawing;
 use crate::frame;
 use crate::number::{count, percent, significant};
 use crate::stack::Figures;
 use maud::{Markup, html};
 
 /// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
     let lead = html! {
         "Models of " (view.output.name) " over " (view.input.name) ", on one recording of "
         (count(view.report.recording.input.len())) " samples."
@@ -19,7 +20,14 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
     };
     let simulated = view.simulated().then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body, view.report.made)
+    frame::html(
+        view.report.title,
+        lead,
+        simulated,
+        body,
+        view.report.made,
+        view.scripts(drawn),
+    )
 }
 
 fn table(view: &View<'_>) -> Markup {

@@ -3,6 +3,7 @@
 use super::page;
 use super::report::ModelsReport;
 use crate::clock::clock;
+use crate::draw::sheet::Drawing;
 use crate::number::difference;
 use crate::panels::{Heading, WIDTH};
 use crate::quantity::Labelled;
@@ -109,7 +110,7 @@ impl Figures for View<'_> {
         }
     }
 
-    fn svg(&self, figure: Figure) -> Option<String> {
+    fn draw(&self, figure: Figure) -> Option<Drawing> {
         let residuals = Residuals {
             headings: self.headings(),
             each: &self.residuals,
@@ -130,7 +131,11 @@ impl Figures for View<'_> {
         Some(self.finish(figure, sheet, bottom))
     }
 
-    fn page(&self, drawn: &[(Figure, String)]) -> String {
+    fn is_linked(figure: Figure) -> bool {
+        figure != Figure::Histogram
+    }
+
+    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
         page::html(self, drawn)
     }
 }

@@ -7,7 +7,7 @@ use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::LABEL;
 use crate::panels::{HEADING, Heading, head};
 use crate::plane::{Half, axes};
@@ -17,7 +17,7 @@ use crate::stack::Figures;
 const WIDTH: f64 = 920.0;
 const GAP: f64 = 12.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let plane = view.report.plane;
     let runs: Vec<(&str, [Half; 3])> = view
         .adapting()

@@ -2,6 +2,7 @@
 
 use super::view::View;
 use super::{before_after, input, reversal, series, weights_time};
+use crate::draw::sheet::Drawing;
 
 /// A figure of the report, named after what it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +53,7 @@ impl Figure {
     }
 
     /// The figure as SVG; `None` where the runs have nothing to show in it.
-    pub(super) fn svg(self, view: &View<'_>) -> Option<String> {
+    pub(super) fn svg(self, view: &View<'_>) -> Option<Drawing> {
         match self {
             Self::Tracking => Some(series::tracking(view)),
             Self::Error => Some(series::error(view)),

@@ -6,7 +6,8 @@ use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Anchor, Rect};
 use crate::draw::panel::{BELOW, Panel};
-use crate::draw::sheet::{Key, Sheet};
+use crate::draw::plot::Words;
+use crate::draw::sheet::{Drawing, Key, Sheet};
 use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{FAINT, FOLLOWER, GRID, LABEL, REFERENCE};
@@ -38,7 +39,7 @@ const FLAGS: [(&str, &str, &str, Flag); 4] = [
     }),
 ];
 
-pub(super) fn input(view: &View<'_>) -> Option<String> {
+pub(super) fn input(view: &View<'_>) -> Option<Drawing> {
     let asked = view
         .report
         .runs
@@ -56,7 +57,7 @@ pub(super) fn input(view: &View<'_>) -> Option<String> {
     any.then(|| figure(Figure::Input, view, keys, curves, !view.has_drive()))
 }
 
-pub(super) fn drive(view: &View<'_>) -> Option<String> {
+pub(super) fn drive(view: &View<'_>) -> Option<Drawing> {
     let keys = vec![Key::Line(FOLLOWER, view.drive.name.clone())];
     let curves = |trace: &'_ Trace| [Vec::new(), trace.drive.clone()];
     view.has_drive()
@@ -71,7 +72,7 @@ fn figure(
     mut keys: Vec<Key>,
     curves: impl Fn(&Trace) -> [Vec<f64>; 2],
     strip: bool,
-) -> String {
+) -> Drawing {
     let runs = view.report.runs;
     let said = |flag: Flag| runs.iter().any(|run| run.trace.status.iter().any(flag));
     let flags: Vec<_> = FLAGS
@@ -114,7 +115,7 @@ fn figure(
         let time = &run.trace.time;
         panel.curve(&mut sheet.canvas, time, beneath, &REFERENCE);
         panel.curve(&mut sheet.canvas, time, above, &FOLLOWER);
-        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
+        event_lines(&mut sheet, view.report.events, panel);
         for (n, (word, _, colour, flag)) in flags.iter().enumerate() {
             let area = Rect {
                 y: panel.area.bottom() + 5.0 + ROW * n as f64,
@@ -138,27 +139,23 @@ fn row(
     panel: &Panel,
     trace: &Trace,
     area: Rect,
-    (word, colour, flag): (&str, &str, Flag),
+    (word, colour, flag): (&str, &'static str, Flag),
 ) {
     let canvas = &mut sheet.canvas;
     let middle = area.y + 0.5 * area.height;
     let at = [area.x - 8.0, middle + 0.36 * WORD];
-    canvas.text_in(at, Anchor::End, WORD, FAINT, word);
+    canvas.words(Words {
+        at,
+        anchor: Anchor::End,
+        size: WORD,
+        colour: FAINT,
+        text: word.to_owned(),
+    });
     canvas.line([area.x, middle], [area.right(), middle], &GRID);
     let clear: Vec<bool> = trace.status.iter().map(|status| !flag(status)).collect();
     let bands = stretches(&clear);
     let times = bands.iter().map(|stretch| extent(&trace.time, stretch));
-    for [from, to] in panel.merged(times) {
-        let width = (to - from).max(1.5);
-        canvas.rect(
-            Rect {
-                x: from,
-                width,
-                ..area
-            },
-            colour,
-        );
-    }
+    panel.fill(canvas, times, area, colour);
 }
 
 /// How much of the time each flag held.

@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::view::View;
+use crate::draw::sheet::Drawing;
 use crate::frame;
 use crate::number::{count, significant};
 use crate::stack::Figures;
@@ -19,7 +20,7 @@ const SECTIONS: [(&str, &[Figure]); 4] = [
 ];
 
 /// The page around the figures in `drawn`.
-pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
+pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
     let lead = html! {
         "Control of the " (view.output.name)
         @if view.has_drive() { " by " (view.drive.name) "," }
@@ -36,7 +37,14 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, String)]) -> String {
         @if view.adapting().next().is_none() { p { "No controller adapted its weights." } }
     };
     let simulated = view.report.simulated.then_some(simulated);
-    frame::html(view.report.title, lead, simulated, body, view.report.made)
+    frame::html(
+        view.report.title,
+        lead,
+        simulated,
+        body,
+        view.report.made,
+        view.scripts(drawn),
+    )
 }
 
 fn runs(view: &View<'_>) -> String {
@@ -115,7 +123,7 @@ fn facts(view: &View<'_>) -> Markup {
     }
 }
 
-fn section(name: &str, figures: &[Figure], view: &View<'_>, drawn: &[(Figure, String)]) -> Markup {
+fn section(name: &str, figures: &[Figure], view: &View<'_>, drawn: &[(Figure, Drawing)]) -> Markup {
     let drawn_here = |figure: &&Figure| drawn.iter().any(|(drawn, _)| drawn == *figure);
     html! {
         @if figures.iter().any(|figure| drawn_here(&figure)) {

@@ -6,7 +6,7 @@ use super::series::{beyond, named, robust};
 use super::view::View;
 use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
-use crate::draw::sheet::Key;
+use crate::draw::sheet::{Drawing, Key};
 use crate::draw::style::{BEYOND, FOLLOWER, GUIDE, REFERENCE};
 use crate::number::difference;
 use crate::panels::{WIDTH, height, stack};
@@ -57,7 +57,7 @@ pub(super) fn find(report: &TrackReport<'_>) -> Option<Reversal> {
         .max_by(|a, b| spread(a).total_cmp(&spread(b)))
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let reversal = view.reversal.as_ref()?;
     let runs = view.report.runs;
     let time = &runs.first()?.trace.time;
@@ -108,9 +108,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         panel.curve(&mut sheet.canvas, &time, reference, &REFERENCE);
         panel.curve(&mut sheet.canvas, &time, output, &FOLLOWER);
         beyond(&mut sheet, panel, &time, output, span);
-        let at = panel.px(reversal.time);
-        let (top, bottom) = (panel.area.y, panel.area.bottom());
-        sheet.canvas.line([at, top], [at, bottom], &GUIDE);
+        panel.upright(&mut sheet.canvas, reversal.time, &GUIDE, "");
     }
     Some(view.finish(Figure::Reversal, sheet, bottom))
 }

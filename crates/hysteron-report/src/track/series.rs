@@ -5,7 +5,7 @@ use super::report::NamedTrace;
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::panel::Panel;
-use crate::draw::sheet::{Key, Sheet};
+use crate::draw::sheet::{Drawing, Key, Sheet};
 use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{BEYOND, FOLLOWER, REFERENCE, ZERO};
@@ -18,7 +18,7 @@ const SEEN: f64 = 0.98;
 /// How far beyond that the axis goes.
 const ROOM: f64 = 1.6;
 
-pub(super) fn tracking(view: &View<'_>) -> String {
+pub(super) fn tracking(view: &View<'_>) -> Drawing {
     let runs = view.report.runs;
     let references = || runs.iter().flat_map(|run| &run.trace.reference);
     let outputs = || runs.iter().flat_map(|run| &run.trace.output);
@@ -55,7 +55,7 @@ pub(super) fn tracking(view: &View<'_>) -> String {
         panel.curve(&mut sheet.canvas, &trace.time, &trace.reference, &REFERENCE);
         panel.curve(&mut sheet.canvas, &trace.time, &trace.output, &FOLLOWER);
         beyond(&mut sheet, panel, &trace.time, &trace.output, span);
-        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
+        event_lines(&mut sheet, view.report.events, panel);
     }
     view.finish(Figure::Tracking, sheet, bottom)
 }
@@ -64,13 +64,13 @@ fn error_of(run: &NamedTrace<'_>) -> Vec<f64> {
     difference(&run.trace.output, &run.trace.reference)
 }
 
-pub(super) fn error(view: &View<'_>) -> String {
+pub(super) fn error(view: &View<'_>) -> Drawing {
     let runs = view.report.runs.iter();
     let errors: Vec<_> = runs.map(|run| (*run, error_of(run))).collect();
     differences(Figure::Error, view, &errors)
 }
 
-pub(super) fn prediction(view: &View<'_>) -> Option<String> {
+pub(super) fn prediction(view: &View<'_>) -> Option<Drawing> {
     let of = |run: &NamedTrace<'_>| difference(&run.trace.prediction, &run.trace.output);
     let runs = view.report.runs.iter().map(|run| (*run, of(run)));
     let told: Vec<_> = runs
@@ -79,7 +79,7 @@ pub(super) fn prediction(view: &View<'_>) -> Option<String> {
     (!told.is_empty()).then(|| differences(Figure::Prediction, view, &told))
 }
 
-fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64>)]) -> String {
+fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64>)]) -> Drawing {
     let (span, cut) = robust(runs.iter().map(|(_, values)| values.as_slice()));
     let y = Axis::new(&view.output.renamed("error"), span);
     let mut sheet = view.sheet(figure, WIDTH);
@@ -106,7 +106,7 @@ fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64
         panel.level(&mut sheet.canvas, 0.0, &ZERO);
         panel.curve(&mut sheet.canvas, &run.trace.time, values, &FOLLOWER);
         beyond(&mut sheet, panel, &run.trace.time, values, span);
-        event_lines(&mut sheet, view.report.events, &view.time_axis, panel);
+        event_lines(&mut sheet, view.report.events, panel);
     }
     view.finish(figure, sheet, bottom)
 }

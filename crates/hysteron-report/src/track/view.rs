@@ -7,6 +7,7 @@ use super::reversal::{self, Reversal};
 use super::{captions, page};
 use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
+use crate::draw::sheet::Drawing;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
 
@@ -83,11 +84,15 @@ impl Figures for View<'_> {
         captions::caption(figure, self)
     }
 
-    fn svg(&self, figure: Figure) -> Option<String> {
+    fn draw(&self, figure: Figure) -> Option<Drawing> {
         figure.svg(self)
     }
 
-    fn page(&self, drawn: &[(Figure, String)]) -> String {
+    fn is_linked(figure: Figure) -> bool {
+        !matches!(figure, Figure::WeightsTime | Figure::BeforeAfter)
+    }
+
+    fn page(&self, drawn: &[(Figure, Drawing)]) -> String {
         page::html(self, drawn)
     }
 }

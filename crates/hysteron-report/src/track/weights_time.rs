@@ -9,7 +9,7 @@ use crate::draw::canvas::{Rect, Short, rect_data};
 use crate::draw::colour::of_share;
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
-use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
 use crate::draw::style::{FOLLOWER, MODELLED, ZERO};
 use crate::panels::{HEADING, Heading, WIDTH, event_lines, head};
 use crate::plane::MINUS;
@@ -73,7 +73,7 @@ impl Change {
     }
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let plane = view.report.plane;
     let runs: Vec<(&NamedTrace<'_>, Change)> = view
         .adapting()
@@ -135,7 +135,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
             labels,
         );
         map(&mut sheet, &panel, run.trace, change, span);
-        event_lines(&mut sheet, view.report.events, &view.time_axis, &panel);
+        event_lines(&mut sheet, view.report.events, &panel);
         let bar = Rect {
             x: area.right() + BESIDE,
             width: BAR,
@@ -162,7 +162,7 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
         panel.level(&mut sheet.canvas, 0.0, &ZERO);
         panel.curve(&mut sheet.canvas, &change.time, &change.sum, &FOLLOWER);
         panel.curve(&mut sheet.canvas, &change.time, &change.offset, &MODELLED);
-        event_lines(&mut sheet, view.report.events, &view.time_axis, &panel);
+        event_lines(&mut sheet, view.report.events, &panel);
         bottom = below.bottom();
         area.y = bottom + 8.0;
     }

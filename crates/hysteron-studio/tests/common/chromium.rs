@@ -146,6 +146,12 @@ impl Chromium {
         self.call(Some(tab), "Emulation.setDeviceMetricsOverride", metrics);
     }
 
+    /// Shows a page as `screen` or as `print`.
+    pub fn media(&mut self, tab: &Tab, name: &str) {
+        let params = json!({"media": name});
+        self.call(Some(tab), "Emulation.setEmulatedMedia", params);
+    }
+
     /// The value of an expression, once its promise is kept.
     pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
         self.value_if_there(tab, expression)
@@ -210,6 +216,12 @@ impl Chromium {
             send("mouseMoved", *point);
         }
         send("mouseReleased", points[points.len() - 1]);
+    }
+
+    /// Moves the mouse to a point of the page.
+    pub fn point(&mut self, tab: &Tab, (x, y): (f64, f64)) {
+        let params = json!({"type": "mouseMoved", "x": x, "y": y});
+        self.call(Some(tab), "Input.dispatchMouseEvent", params);
     }
 
     /// Shares of an element's width and height as points of the page. It is scrolled into view.

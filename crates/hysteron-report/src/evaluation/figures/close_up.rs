@@ -5,7 +5,7 @@ use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{ANTICIPATE, GUIDE, MEASURED, MODELLED};
@@ -19,7 +19,7 @@ const OUTPUT_HEIGHT: f64 = 150.0;
 const INPUT_HEIGHT: f64 = 250.0;
 const GAP: f64 = 16.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let inverse = view.inverse()?;
     let found = find(view)?;
     let window = around(&found.stretch, view.recording.input.len());
@@ -70,13 +70,8 @@ pub(super) fn svg(view: &View<'_>) -> Option<String> {
     let below = Panel::draw(canvas, lower, x, lower_y, Labels { x: true, y: true });
     for panel in [&above, &below] {
         panel.shade(canvas, bands.iter().copied());
-        if let Some(at) = view
-            .time
-            .get(found.sample)
-            .map(|&t| panel.px(t))
-            .filter(|at| at.is_finite())
-        {
-            canvas.line([at, panel.area.y], [at, panel.area.bottom()], &GUIDE);
+        if let Some(at) = view.time.get(found.sample) {
+            panel.upright(canvas, *at, &GUIDE, "");
         }
     }
     above.curve(canvas, time, output, &MEASURED);

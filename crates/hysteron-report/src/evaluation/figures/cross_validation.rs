@@ -5,7 +5,7 @@ use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::LINES;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -20,7 +20,7 @@ const PLOT_HEIGHT: f64 = 340.0;
 /// Errors beyond this many times the best are cut off: they would press the others together.
 pub(crate) const SHOWN: f64 = 6.0;
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let (levels, smooth, errors) = shown(view.validation()?);
     let of_levels = |k: usize| format!("{k} levels");
     let lines: Vec<(String, Vec<Option<f64>>)> = match smooth.len() {

@@ -2,7 +2,7 @@
 
 use super::over_time::{Curve, WIDTH, plot, policies};
 use crate::draw::axis::{Axis, Span};
-use crate::draw::sheet::Key;
+use crate::draw::sheet::{Drawing, Key};
 use crate::draw::style::{ANTICIPATE, DISCREPANCY, MODELLED, ZERO};
 use crate::evaluation::captions::rmse_and_max;
 use crate::evaluation::figure::Figure;
@@ -12,7 +12,7 @@ use crate::stack::Figures;
 
 const PLOT_HEIGHT: f64 = 210.0;
 
-pub(super) fn output(view: &View<'_>) -> String {
+pub(super) fn output(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::OutputDiscrepancy, WIDTH);
     sheet.legend(&[
         Key::Line(DISCREPANCY, format!("modelled − {}", view.recorded())),
@@ -32,7 +32,7 @@ pub(super) fn output(view: &View<'_>) -> String {
     view.finish(Figure::OutputDiscrepancy, sheet, height)
 }
 
-pub(super) fn input(view: &View<'_>) -> Option<String> {
+pub(super) fn input(view: &View<'_>) -> Option<Drawing> {
     let inverse = view.inverse()?;
     let mut sheet = view.sheet(Figure::InputDiscrepancy, WIDTH);
     sheet.legend(&policies(&inverse.moving));

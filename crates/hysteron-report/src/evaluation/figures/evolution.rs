@@ -3,7 +3,7 @@
 use crate::draw::canvas::{Anchor, Canvas, Rect};
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::{GUIDE, LABEL, TICK};
 use crate::draw::text;
 use crate::evaluation::figure::Figure;
@@ -26,7 +26,7 @@ struct Instant {
     half: Half,
 }
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::PlaneEvolution, WIDTH);
     sheet.legend(&[
         Key::Marker(Marker::Ring, "γ = 0: S".into(), "min"),

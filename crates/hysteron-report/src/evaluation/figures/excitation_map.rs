@@ -3,7 +3,7 @@
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::{Rect, rect_data};
 use crate::draw::panel::{BELOW, Labels, Panel, left_of, threshold};
-use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
 use crate::draw::style::Stroke;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -33,14 +33,12 @@ pub fn excitation_map(plane: &Plane, classes: &[Excitation], input: &Quantity) -
     let input = Labelled::first([input, input], "input");
     let sheet = Sheet::new(STEM, WIDTH, "What is known of each operator", None);
     let (sheet, height) = draw(sheet, plane, classes, &input);
-    sheet.finish(
-        height,
-        &format!("Operators on the plane: {}.", counts(classes)),
-    )
+    let label = format!("Operators on the plane: {}.", counts(classes));
+    sheet.finish(height, &label).svg
 }
 
 /// The same for the recording that a model was fitted to, where its file tells.
-pub(super) fn of_model(view: &View<'_>) -> Option<String> {
+pub(super) fn of_model(view: &View<'_>) -> Option<Drawing> {
     let confidence = view.confidence()?;
     let sheet = view.sheet(Figure::Excitation, WIDTH);
     let classes = &confidence.excitation;

@@ -3,7 +3,7 @@
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::{ANTICIPATE, MEASURED, MODELLED};
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -16,7 +16,7 @@ const PLOT_HEIGHT: f64 = 420.0;
 /// Inputs on each branch.
 const SAMPLES: usize = 500;
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let load = view.source.load()?;
     let (low, high) = load.range();
     // The load moves the loops along the axis.

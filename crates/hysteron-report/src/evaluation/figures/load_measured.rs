@@ -3,7 +3,7 @@
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::{LINES, Stroke};
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -92,7 +92,7 @@ fn apart(loads: &[f64], gap: f64) -> Vec<f64> {
     groups.map(|group| group[group.len() / 2]).collect()
 }
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let (found, load) = (resting(view)?, view.source.load()?);
     let quantity = Labelled::first([&load.quantity, &load.quantity], "load");
     let stroke = |n: usize| Stroke::solid(LINES[COLOURS[n % MOST]].colour, 3.2);

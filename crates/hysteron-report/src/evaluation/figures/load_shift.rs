@@ -4,7 +4,7 @@ use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::draw::style::MODELLED;
 use crate::draw::style::Stroke;
 use crate::evaluation::figure::Figure;
@@ -16,7 +16,7 @@ const WIDTH: f64 = 520.0;
 const PLOT_HEIGHT: f64 = 300.0;
 const CURVE: Stroke = Stroke::solid(MODELLED.colour, 2.0);
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let load = view.source.load()?;
     let curves = load.curves.as_ref()?;
     if curves.loads.len() < 2 || curves.shifts.len() != curves.loads.len() {

@@ -4,7 +4,7 @@ use super::over_time::measured_and_modelled;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::MARGIN;
+use crate::draw::sheet::{Drawing, MARGIN};
 use crate::draw::style::{BAND, MEASURED, MODELLED};
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -13,7 +13,7 @@ use crate::stack::Figures;
 const WIDTH: f64 = 620.0;
 const PLOT_HEIGHT: f64 = 420.0;
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::Loops, WIDTH);
     sheet.legend(&measured_and_modelled(view));
     let (input, output, modelled) = (

@@ -22,11 +22,12 @@ pub(crate) use cross_validation::{SHOWN, choices_hidden};
 pub(crate) use excitation_map::counts as classes_counted;
 pub(crate) use load_measured::resting as resting_loads;
 
+use crate::draw::sheet::Drawing;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 
 /// The figure as SVG; `None` where this report has no such figure.
-pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<String> {
+pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<Drawing> {
     match figure {
         Figure::PlaneEvolution => Some(evolution::svg(view)),
         Figure::WeightsPlane => Some(weights_plane::svg(view)),

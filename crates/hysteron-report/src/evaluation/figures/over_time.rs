@@ -4,7 +4,7 @@ use crate::draw::axis::time_axis;
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::panel::{BELOW, Labels, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
 use crate::draw::stretches::extent;
 use crate::draw::stretches::stretches;
 use crate::draw::style::{ANTICIPATE, BAND, MEASURED, MODELLED, SHADE, Stroke};
@@ -22,7 +22,7 @@ pub(super) struct Curve<'a> {
     pub(super) stroke: Stroke,
 }
 
-pub(super) fn output(view: &View<'_>) -> String {
+pub(super) fn output(view: &View<'_>) -> Drawing {
     let mut sheet = view.sheet(Figure::OutputTime, WIDTH);
     sheet.legend(&measured_and_modelled(view));
     let curves = [
@@ -59,7 +59,7 @@ pub(super) fn measured_and_modelled(view: &View<'_>) -> Vec<Key> {
     keys
 }
 
-pub(super) fn input(view: &View<'_>) -> Option<String> {
+pub(super) fn input(view: &View<'_>) -> Option<Drawing> {
     let inverse = view.inverse()?;
     let mut sheet = view.sheet(Figure::InputTime, WIDTH);
     let mut keys = vec![Key::Line(MEASURED, view.recorded().into())];

@@ -1,5 +1,6 @@
 //! Modelled minus measured output over the input, and by size.
 
+use crate::draw::sheet::Drawing;
 use crate::evaluation::captions::rmse_and_max;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -8,7 +9,7 @@ use crate::panels::{Heading, WIDTH};
 use crate::residuals::Residuals;
 use crate::stack::Figures;
 
-pub(super) fn svg(figure: Figure, view: &View<'_>) -> String {
+pub(super) fn svg(figure: Figure, view: &View<'_>) -> Drawing {
     let recording = view.recording;
     let each = [difference(&view.evaluation.output_model, &recording.output)];
     let heading = Heading {

@@ -3,7 +3,7 @@
 use super::weights_map::{WIDTH, plot};
 use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Short;
-use crate::draw::sheet::Key;
+use crate::draw::sheet::{Drawing, Key};
 use crate::draw::style::Stroke;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
@@ -16,7 +16,7 @@ use std::fmt::Write;
 /// Cells that the data say nothing of.
 const UNKNOWN: Stroke = Stroke::solid("#6b7480", 1.0);
 
-pub(super) fn svg(view: &View<'_>) -> Option<String> {
+pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let confidence = view.confidence()?;
     let of = view.source.weights().iter();
     let largest = of.fold(0.0, |largest: f64, mu| largest.max(mu.abs()));

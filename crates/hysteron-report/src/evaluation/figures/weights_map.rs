@@ -4,7 +4,7 @@ use crate::draw::axis::{Axis, Span};
 use crate::draw::canvas::Rect;
 use crate::draw::colour_bar::{BAR, BESIDE, colour_bar, room};
 use crate::draw::panel::{BELOW, Panel, left_of};
-use crate::draw::sheet::{Key, MARGIN, Sheet};
+use crate::draw::sheet::{Drawing, Key, MARGIN, Sheet};
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 use crate::plane::{Cell, Half, axes};
@@ -12,7 +12,7 @@ use crate::stack::Figures;
 
 pub(super) const WIDTH: f64 = 600.0;
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let half = Half::of_values(view.source.plane(), view.source.weights());
     let span = Span::from_zero(half.cells().map(|cell| cell.sum));
     let scale = Axis::new(&view.output.renamed("weight μ"), span);

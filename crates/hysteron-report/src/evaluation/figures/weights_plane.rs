@@ -3,7 +3,7 @@
 use crate::draw::canvas::Rect;
 use crate::draw::marker::Marker;
 use crate::draw::panel::{BELOW, left_of};
-use crate::draw::sheet::{Key, MARGIN};
+use crate::draw::sheet::{Drawing, Key, MARGIN};
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 use crate::plane::{Half, axes};
@@ -11,7 +11,7 @@ use crate::stack::Figures;
 
 const WIDTH: f64 = 520.0;
 
-pub(super) fn svg(view: &View<'_>) -> String {
+pub(super) fn svg(view: &View<'_>) -> Drawing {
     let half = Half::of_values(view.source.plane(), view.source.weights());
     let zero = view.source.zero();
     let mut sheet = view.sheet(Figure::WeightsPlane, WIDTH);

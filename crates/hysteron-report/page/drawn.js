@@ -1,0 +1,192 @@
+// A figure, drawn again by plotly.js as it is on paper.
+
+/** @returns {any} */
+const plotly = () => /** @type {any} */ (globalThis).Plotly;
+
+/**
+ * A line as plotly takes it.
+ * @param {Line} line
+ * @param {number} n of its plot
+ * @param {boolean} listed in the legend
+ */
+const trace = (line, n, listed) => {
+  let { xs, ys } = line;
+  const part = line.forward ? null : windowOf(line.samples);
+  if (part)
+    [xs, ys] = [xs, ys].map((values) =>
+      values.slice(placeOf(line, part[0]), placeOf(line, part[1]) + 1),
+    );
+  const dash = line.stroke.dash
+    .split(" ")
+    .filter(Boolean)
+    .map((length) => `${Math.max(1.5, Number(length))}px`);
+  return {
+    type: "scatter",
+    mode: xs.length === 1 ? "markers" : "lines",
+    x: xs,
+    y: ys,
+    xaxis: `x${n + 1}`,
+    yaxis: `y${n + 1}`,
+    name: plain(line.name),
+    legendgroup: plain(line.name),
+    showlegend: listed,
+    line: { color: line.stroke.colour, width: line.stroke.width, dash: dash.join(",") || "solid" },
+    fill: line.fill ? "tonexty" : "none",
+    fillcolor: line.fill ?? undefined,
+    hoverinfo: line.name ? "all" : "skip",
+    connectgaps: false,
+  };
+};
+
+/** A figure: its picture, and the node that it is drawn in. */
+class Drawn {
+  /** @param {Figure} figure */
+  constructor(figure) {
+    this.figure = figure;
+    const frame = /** @type {HTMLElement} */ (document.getElementById(figure.id));
+    const svg = /** @type {SVGSVGElement} */ (frame.querySelector("svg"));
+    this.size = {
+      width: Number(svg.getAttribute("width")),
+      height: Number(svg.getAttribute("height")),
+    };
+    this.node = /** @type {any} */ (document.createElement("div"));
+    this.node.className = "plot";
+    this.node.setAttribute("role", "img");
+    this.node.setAttribute("aria-label", svg.getAttribute("aria-label") ?? "");
+    this.node.style.height = `${this.size.height}px`;
+    this.node.style.maxWidth = `${this.size.width}px`;
+    svg.after(this.node);
+    frame.classList.add("live");
+    this.seen = false;
+    /** @type {object[]} */
+    this.shapes = [];
+    new IntersectionObserver(
+      (entries) => {
+        this.seen = entries.some((entry) => entry.isIntersecting);
+        if (this.seen && this.stale) this.draw();
+      },
+      { rootMargin: "300px" },
+    ).observe(this.node);
+    this.stale = true;
+  }
+
+  /** Whether it still has to be drawn as it should be shown now. */
+  get stale() {
+    return this.node.getAttribute("aria-busy") === "true";
+  }
+  set stale(stale) {
+    this.node.setAttribute("aria-busy", String(stale));
+  }
+
+  traces() {
+    const listed = new Set();
+    const { plots, areas } = this.figure;
+    const filled = new Set(
+      plots.flatMap(({ bands, lines }) => [
+        ...bands.map(([, , fill]) => fill),
+        ...lines.map(({ fill }) => fill),
+      ]),
+    );
+    const lines = plots.flatMap(({ lines }, n) =>
+      lines.map((line) => {
+        const first = line.name !== "" && !listed.has(line.name);
+        listed.add(line.name);
+        return trace(line, n, first);
+      }),
+    );
+    // An area has no line of its own: these are for the legend alone.
+    const keys = areas
+      .filter(([fill]) => filled.has(fill))
+      .map(([fill, name]) => ({
+        type: "scatter",
+        mode: "markers",
+        x: [null],
+        y: [null],
+        xaxis: "x1",
+        yaxis: "y1",
+        name: plain(name),
+        marker: { symbol: "square", size: 12, color: fill, line: { width: 0.5, color: AXIS } },
+      }));
+    return [...lines, ...keys];
+  }
+
+  /** Marks of the sample that is pointed at. */
+  marks() {
+    if (!pointed) return [];
+    const { sample, samples } = pointed;
+    return this.figure.plots.flatMap(({ lines }, n) => {
+      const line = lines.find((line) => line.name && line.samples === samples);
+      const at = line ? placeOf(line, sample) : -1;
+      const [x, y] = [line?.xs[at], line?.ys[at]];
+      if (x == null || y == null) return [];
+      return [
+        {
+          type: "circle",
+          xref: `x${n + 1}`,
+          yref: `y${n + 1}`,
+          xsizemode: "pixel",
+          ysizemode: "pixel",
+          xanchor: x,
+          yanchor: y,
+          x0: -6,
+          x1: 6,
+          y0: -6,
+          y1: 6,
+          line: { color: "#b0588a", width: 2.5 },
+        },
+      ];
+    });
+  }
+
+  /** Marks the sample that is pointed at, and no other. */
+  remark() {
+    plotly().relayout(this.node, { shapes: [...this.shapes, ...this.marks()] });
+  }
+
+  draw() {
+    this.stale = false;
+    const narrow = isNarrow(this.node.clientWidth);
+    this.node.style.height = `${this.size.height + (narrow ? LEGEND : 0)}px`;
+    const config = {
+      responsive: true,
+      displaylogo: false,
+      displayModeBar: !narrow,
+      modeBarButtons: [["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "toImage"]],
+      doubleClick: false,
+      toImageButtonOptions: { filename: this.figure.id, scale: 2 },
+    };
+    const page = new Frame(this.figure, this.size, this.node.clientWidth);
+    this.shapes = page.shapes();
+    const layout = { ...page.layout(), shapes: [...this.shapes, ...this.marks()] };
+    const begun = Boolean(this.node.layout);
+    plotly().react(this.node, this.traces(), layout, config);
+    if (!begun) this.listen();
+  }
+
+  listen() {
+    this.node.on("plotly_relayout", (/** @type {any} */ event) => {
+      let changed = false;
+      this.figure.plots.forEach(({ x, y }, n) => {
+        for (const [axis, name] of /** @type {[Axis, string][]} */ ([
+          [x, `xaxis${n ? n + 1 : ""}`],
+          [y, `yaxis${n ? n + 1 : ""}`],
+        ])) {
+          const [low, high] = [event[`${name}.range[0]`], event[`${name}.range[1]`]];
+          if (low === undefined || high === undefined) continue;
+          shown.set(axis.label, [low, high]);
+          changed = true;
+        }
+      });
+      if (changed) everywhere();
+    });
+    this.node.on("plotly_doubleclick", showAll);
+    this.node.on("plotly_hover", (/** @type {any} */ { points: [{ curveNumber, pointIndex }] }) => {
+      const lines = this.figure.plots.flatMap(({ lines }) => lines);
+      const line = lines[curveNumber];
+      if (!line) return;
+      const from = line.forward ? 0 : placeOf(line, windowOf(line.samples)?.[0] ?? 0);
+      point({ sample: sampleAt(line, pointIndex + from), samples: line.samples });
+    });
+    this.node.on("plotly_unhover", () => point(null));
+  }
+}

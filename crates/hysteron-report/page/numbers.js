@@ -1,0 +1,95 @@
+// What the figures of a page show, as numbers, and which part of it is shown now.
+
+/** @typedef {[number, number]} Ends */
+/** @typedef {{x: number, y: number, width: number, height: number}} Area */
+/** @typedef {{label: string, range: Ends, labelled: boolean, numbered: boolean}} Axis */
+/** @typedef {{colour: string, width: number, dash: string}} Stroke */
+/**
+ * @typedef {object} Line
+ * @property {string} name
+ * @property {Stroke} stroke
+ * @property {string | null} fill to the line before
+ * @property {boolean} forward whether x only grows, as time does
+ * @property {number} samples that it was drawn from
+ * @property {number[]} kept which of them are here; all, where empty
+ * @property {(number | null)[]} xs
+ * @property {(number | null)[]} ys
+ */
+/**
+ * @typedef {object} Plot
+ * @property {Area} area
+ * @property {Axis} x
+ * @property {Axis} y
+ * @property {Line[]} lines
+ * @property {[Ends, Area, string][]} bands
+ * @property {[number, Stroke][]} levels
+ * @property {[number, Stroke, string][]} uprights
+ */
+/** @typedef {{sample: number, samples: number}} Pointed */
+/** @typedef {{at: Ends, anchor: "start" | "end", size: number, colour: string, text: string}} Words */
+/** @typedef {{id: string, plots: Plot[], series: Ends[][], words: Words[], areas: [string, string][]}} Figure */
+
+/** The text of a packed script of this page. @param {string} id */
+const unpacked = async (id) => {
+  const bytes = Uint8Array.from(atob(document.getElementById(id)?.textContent ?? ""), (c) =>
+    c.charCodeAt(0),
+  );
+  return new Response(
+    new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")),
+  ).text();
+};
+
+/** The figures of this page that are drawn again. @type {Figure[]} */
+const figures = [];
+
+/**
+ * The part of each axis that is shown, by its label; all of it, where there is none.
+ * @type {Map<string, Ends>}
+ */
+const shown = new Map();
+/** The sample that is pointed at, and of how many. @type {Pointed | null} */
+let pointed = null;
+
+/**
+ * Where a value stands in a series that grows.
+ * @param {ArrayLike<number | null>} values
+ * @param {number} value
+ */
+const place = (values, value) => {
+  let [low, high] = [0, values.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((values[middle] ?? -Infinity) < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+};
+
+/** The number of the sample at a place of a line. @param {Line} line @param {number} at */
+const sampleAt = ({ kept }, at) => (kept.length ? kept[at] : at);
+/**
+ * The place of a sample in a line, or of the next one there.
+ * @param {Line} line
+ * @param {number} sample
+ */
+const placeOf = ({ kept }, sample) => (kept.length ? place(kept, sample) : sample);
+
+/**
+ * Which samples the part of the time that is shown has, for recordings of so many.
+ * @param {number} samples
+ * @returns {Ends | null}
+ */
+const windowOf = (samples) => {
+  for (const { x, lines } of figures.flatMap(({ plots }) => plots)) {
+    const part = shown.get(x.label);
+    const line = lines.find(
+      (line) => line.forward && line.samples === samples && line.xs.length > 1,
+    );
+    if (part && line)
+      return [
+        sampleAt(line, Math.max(0, place(line.xs, part[0]) - 1)),
+        sampleAt(line, Math.min(line.xs.length - 1, place(line.xs, part[1]))),
+      ];
+  }
+  return null;
+};

@@ -1,0 +1,215 @@
+//! What a panel shows, as numbers, so that a page can draw it again where one zooms.
+
+use super::axis::Axis;
+use super::canvas::{Anchor, Rect};
+use super::style::Stroke;
+use serde::Serialize;
+
+/// Samples of a line that a page holds, at most about so many.
+pub(crate) const MOST: usize = 20_000;
+/// Filled bands of a panel, at most; where there are more, those that a figure shows.
+const BANDS: usize = 300;
+
+/// A panel, as numbers.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Plot {
+    area: Rect,
+    x: Shown,
+    y: Shown,
+    pub(crate) lines: Vec<Line>,
+    /// Bands over x: from, to, and where they are filled.
+    bands: Vec<([f64; 2], Rect, &'static str)>,
+    /// Lines at a y.
+    pub(crate) levels: Vec<(f64, Stroke)>,
+    /// Lines at an x with their words.
+    pub(crate) uprights: Vec<(f64, Stroke, String)>,
+}
+
+/// An axis, as numbers.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Shown {
+    /// Name and unit. Axes with the same label are zoomed together.
+    label: String,
+    range: [f64; 2],
+    /// Whether the label stands here, and whether the axis has numbers.
+    labelled: bool,
+    numbered: bool,
+}
+
+/// A line of a panel.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Line {
+    /// What it is, where the legend says so.
+    pub(crate) name: String,
+    stroke: Stroke,
+    /// The area to the line before this one.
+    fill: Option<&'static str>,
+    /// Whether x only ever grows, as time does.
+    forward: bool,
+    /// Number of samples that it was drawn from.
+    samples: usize,
+    /// Which of them are here; all, where empty.
+    kept: Vec<u32>,
+    #[serde(skip)]
+    pub(crate) xs: Vec<f64>,
+    #[serde(skip)]
+    pub(crate) ys: Vec<f64>,
+}
+
+/// Words beside the panels.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Words {
+    pub(crate) at: [f64; 2],
+    pub(crate) anchor: Anchor,
+    pub(crate) size: f64,
+    pub(crate) colour: &'static str,
+    pub(crate) text: String,
+}
+
+impl Shown {
+    pub(crate) fn new(axis: &Axis, numbered: bool) -> Self {
+        Self {
+            label: axis.whole_label(),
+            range: [axis.span.low, axis.span.high],
+            labelled: numbered && !axis.label().is_empty(),
+            numbered,
+        }
+    }
+}
+
+impl Plot {
+    pub(crate) fn new(area: Rect, x: Shown, y: Shown) -> Self {
+        Self {
+            area,
+            x,
+            y,
+            lines: Vec::new(),
+            bands: Vec::new(),
+            levels: Vec::new(),
+            uprights: Vec::new(),
+        }
+    }
+
+    /// Bands from x to x between top and bottom of `area`; `shown` are those of the figure, where
+    /// near ones are one.
+    pub(crate) fn fill(
+        &mut self,
+        bands: Vec<[f64; 2]>,
+        shown: Vec<[f64; 2]>,
+        area: Rect,
+        fill: &'static str,
+    ) {
+        let bands = if bands.len() > BANDS { shown } else { bands };
+        self.bands
+            .extend(bands.into_iter().map(|band| (band, area, fill)));
+    }
+
+    /// The area between two lines.
+    pub(crate) fn band(&mut self, xs: &[f64], edges: [&[f64]; 2], fill: &'static str) {
+        let [low, high] = edges.map(|ys| Line::edge(xs, ys));
+        let fill = Some(fill);
+        self.lines.extend([low, Line { fill, ..high }]);
+    }
+}
+
+impl Line {
+    /// A curve over time.
+    pub(crate) fn curve(xs: &[f64], ys: &[f64], stroke: Stroke) -> Self {
+        Self::new(xs, ys, stroke, true)
+    }
+
+    /// A curve that returns on itself.
+    pub(crate) fn returning(xs: &[f64], ys: &[f64], stroke: Stroke) -> Self {
+        Self::new(xs, ys, stroke, false)
+    }
+
+    /// An edge of an area, which is not drawn itself.
+    fn edge(xs: &[f64], ys: &[f64]) -> Self {
+        const UNSEEN: Stroke = Stroke::solid("rgba(0,0,0,0)", 0.0);
+        let forward = xs.windows(2).all(|pair| pair[0] <= pair[1]);
+        Self::new(xs, ys, UNSEEN, forward)
+    }
+
+    fn new(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool) -> Self {
+        let samples = xs.len().min(ys.len());
+        let (xs, ys) = (&xs[..samples], &ys[..samples]);
+        let kept = kept(xs, ys, forward);
+        let part = |all: &[f64]| match kept.as_slice() {
+            [] => all.to_vec(),
+            kept => kept.iter().map(|k| all[*k as usize]).collect(),
+        };
+        Self {
+            name: String::new(),
+            stroke,
+            fill: None,
+            forward,
+            samples,
+            xs: part(xs),
+            ys: part(ys),
+            kept,
+        }
+    }
+
+    pub(crate) fn stroke(&self) -> Stroke {
+        self.stroke
+    }
+}
+
+/// Which samples stand for all: of each of equally long stretches those with the smallest and the
+/// largest value, and the first gap. Empty where all can be kept.
+fn kept(xs: &[f64], ys: &[f64], forward: bool) -> Vec<u32> {
+    if xs.len() <= MOST {
+        return Vec::new();
+    }
+    let each = if forward { 2 } else { 4 };
+    let length = xs.len().div_ceil(MOST / each);
+    let mut kept = vec![0];
+    for from in (0..xs.len()).step_by(length) {
+        let stretch = from..(from + length).min(xs.len());
+        let mut ends = |values: &[f64]| {
+            let order = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+            let told = || stretch.clone().filter(|k| values[*k].is_finite());
+            let gap = stretch.clone().find(|k| !values[*k].is_finite());
+            kept.extend(
+                [told().min_by(order), told().max_by(order), gap]
+                    .into_iter()
+                    .flatten(),
+            );
+        };
+        ends(ys);
+        if !forward {
+            ends(xs);
+        }
+    }
+    kept.push(xs.len() - 1);
+    kept.sort_unstable();
+    kept.dedup();
+    kept.into_iter()
+        .filter_map(|k| u32::try_from(k).ok())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::style::MEASURED;
+
+    #[test]
+    fn a_peak_of_one_sample_is_kept() {
+        let count = 1_000_000;
+        let xs: Vec<f64> = (0..count).map(f64::from).collect();
+        let mut ys: Vec<f64> = xs.iter().map(|x| (x * 1e-3).sin()).collect();
+        (ys[123_456], ys[123_460]) = (5.0, f64::NAN);
+        for line in [
+            Line::curve(&xs, &ys, MEASURED),
+            Line::returning(&xs, &ys, MEASURED),
+        ] {
+            assert!(line.xs.len() <= MOST + 2 && line.xs.len() > MOST / 4);
+            assert!(line.ys.contains(&5.0) && line.kept.contains(&123_456));
+            assert!(line.ys.iter().any(|y| y.is_nan()));
+            assert_eq!((line.xs[0], line.xs.last()), (0.0, xs.last()));
+        }
+        let short = Line::curve(&xs[..MOST], &ys, MEASURED);
+        assert!(short.kept.is_empty() && short.xs.len() == MOST && short.samples == MOST);
+    }
+}
