@@ -73,7 +73,7 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
 
 /// Writes a page for each recording; returns the first one.
 fn report(mut folder: AtomicFolder, all: &[Compared<'_>], names: &[String]) -> Result<PathBuf> {
-    let typed = Typed::now();
+    let typed = Typed::now()?;
     let mut pages = Vec::new();
     for (n, compared) in all.iter().enumerate() {
         let named = names.iter().zip(&compared.runs);

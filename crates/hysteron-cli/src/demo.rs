@@ -24,7 +24,7 @@ pub(crate) fn run(args: &args::Demo) -> Result<()> {
         written.file(prepared, |path| demo.prepared[n].write_csv(path))?;
     }
     written.file("model.json", |path| demo.model.write(path))?;
-    let typed = Typed::now();
+    let typed = Typed::now()?;
     let report = Report {
         title: "MKP model of a simulated NiTi tension spring",
         model: &demo.model,

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
     let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
     if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());
-        let typed = Typed::now();
+        let typed = Typed::now()?;
         let report = Report {
             title: &title,
             model: &model,

@@ -155,7 +155,7 @@ fn report(args: &args::FleetReport) -> Result<()> {
     let mut folder = AtomicFolder::create(args.force.target(&args.out, &inputs), None)?;
     folder.claim(["index.html"])?;
     let rows = rows(&args.models)?;
-    let typed = Typed::now();
+    let typed = Typed::now()?;
     let report = FleetReport {
         title: &format!("The fleet {}", args.models.display()),
         rows: &rows,

@@ -80,7 +80,7 @@ fn write(scenario: &Scenario, comparison: &Comparison, mut folder: AtomicFolder)
         comparison,
         &mut folder,
         within,
-        Typed::now().made(),
+        Typed::now()?.made(),
     )?;
     folder.commit()?;
     say(format_args!("the report is {}", paths[0].display()));

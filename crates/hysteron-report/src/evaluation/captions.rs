@@ -2,7 +2,7 @@
 
 use crate::evaluation::figure::Figure;
 use crate::evaluation::figures::{
-    SHOWN, choices_hidden, classes_counted, dead_band_shown, resting_loads,
+    SHOWN, choices_hidden, classes_counted, dead_band_shown, known_errors, resting_loads,
 };
 use crate::evaluation::view::View;
 use crate::number::{capitalised, percent};
@@ -192,11 +192,7 @@ fn standard_errors(view: &View<'_>) -> String {
     let Some(confidence) = view.confidence() else {
         return String::new();
     };
-    let largest = confidence
-        .standard_error
-        .iter()
-        .copied()
-        .fold(0.0, f64::max);
+    let largest = known_errors(confidence).fold(0.0, f64::max);
     format!(
         "Standard errors of the weights, from {} replicates of a bootstrap over branches; the \
          largest is {}. Weights that are held at zero in every replicate have none.",

@@ -3,6 +3,7 @@
 use super::view::{Figure, View};
 use crate::draw::sheet::Drawing;
 use crate::frame;
+use crate::made;
 use crate::number::{count, percent, significant};
 use crate::stack::Figures;
 use maud::{Markup, html};
@@ -17,6 +18,9 @@ pub(super) fn html(view: &View<'_>, drawn: &[(Figure, Drawing)]) -> String {
         "Simulated: this recording comes from a simulated plant, not from a measurement.";
     let body = html! {
         (table(view))
+        @if let Some(source) = &view.report.recording.source {
+            p { "Recording: " (made::file(&source.path.display().to_string(), Some(&source.sha256))) }
+        }
         @for figure in View::ALL { (view.picture(*figure, drawn, html! {})) }
     };
     let simulated = view.simulated().then_some(simulated);

@@ -21,6 +21,7 @@ pub(crate) use close_up::find as dead_band_shown;
 pub(crate) use cross_validation::{SHOWN, choices_hidden};
 pub(crate) use excitation_map::counts as classes_counted;
 pub(crate) use load_measured::resting as resting_loads;
+pub(crate) use standard_errors::known as known_errors;
 
 use crate::draw::sheet::Drawing;
 use crate::evaluation::figure::Figure;

@@ -10,24 +10,34 @@ use crate::evaluation::view::View;
 use crate::plane::Half;
 use crate::quantity::Labelled;
 use crate::stack::Figures;
-use hysteron::Excitation;
+use hysteron::{Confidence, Excitation};
 use std::fmt::Write;
 
 /// Cells that the data say nothing of.
 const UNKNOWN: Stroke = Stroke::solid("#6b7480", 1.0);
 
+/// The standard error of each weight; zero where the data say nothing of it, and the number there
+/// is that of the prior alone.
+pub(crate) fn known(confidence: &Confidence) -> impl Iterator<Item = f64> + '_ {
+    let all = confidence.standard_error.iter().zip(&confidence.excitation);
+    all.map(|(error, class)| match class {
+        Excitation::Never => 0.0,
+        _ => *error,
+    })
+}
+
 pub(super) fn svg(view: &View<'_>) -> Option<Drawing> {
     let confidence = view.confidence()?;
     let of = view.source.weights().iter();
     let largest = of.fold(0.0, |largest: f64, mu| largest.max(mu.abs()));
-    let percent = |error: &f64| {
+    let percent = |error: f64| {
         if largest > 0.0 {
             100.0 * error / largest
         } else {
             0.0
         }
     };
-    let errors: Vec<f64> = confidence.standard_error.iter().map(percent).collect();
+    let errors: Vec<f64> = known(confidence).map(percent).collect();
     // The error of a block of operators is not the sum of theirs: the largest stands for it.
     let half = Half::of_values(view.source.plane(), &errors);
     let high = half
