@@ -2,7 +2,7 @@
 //! elsewhere.
 
 use super::fault::Fault;
-use super::fitting::{Finished, Job, Watch};
+use super::job::{Finished, Job, Watch};
 use super::request::Id;
 use super::saved::SavedFit;
 use base64::Engine;

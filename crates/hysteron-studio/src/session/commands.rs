@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::design::Wish;
-use super::fitting::Fitted;
+use super::fitted::Fitted;
 use super::opened::Opened;
 use super::prepare::Steps;
 use super::request::Id;

@@ -1,16 +1,19 @@
 //! The session: what is open, without a transport. A request in, a response out.
 //!
-//! `request` defines both, `fault` what is wrong. `opened` is a file, `prepare` its
-//! preparation, `design` the experiment that is missing, `fitting` a fit while it runs
-//! and afterwards, `carried` the same as bytes, `look` the pictures, `drive` a model moved by hand, `take_home` what can be taken
-//! away, `commands` the same work as text, `saved` the session as a file.
+//! `request` defines both, `fault` what is wrong. `opened` is a file, `prepare` its preparation,
+//! `design` the experiment that is missing. `fitting` asks for a fit, `job` is its work, `fitted` what
+//! it found; `carried` has these as bytes. `look` and `plane` make the pictures, from what `thinned`
+//! leaves. `drive` is a model moved by hand, `take_home` what can be taken away, `commands` the same
+//! work as text, `saved` the session as a file.
 
 mod carried;
 mod commands;
 mod design;
 mod drive;
 mod fault;
+mod fitted;
 mod fitting;
+mod job;
 mod look;
 mod opened;
 mod plane;
@@ -23,7 +26,9 @@ mod thinned;
 pub use design::{DesignView, Wish};
 pub use drive::{DriveView, Pull, RivalView};
 pub use fault::Fault;
-pub use fitting::{Finished, FitView, Held, Job, JobView};
+pub use fitted::FitView;
+pub use fitting::Held;
+pub use job::{Finished, Job, JobView};
 pub use look::{Area, Curves, Line, Picture, View};
 pub use opened::{ColumnView, FileView, Part, RepairView};
 pub use plane::{PlaneKind, PlaneView, SampleView};
@@ -32,7 +37,8 @@ pub use request::{Id, Overview, Purpose, Request, Response, Told};
 pub use take_home::{Download, Take};
 
 use drive::Drive;
-use fitting::{Fitted, Watch};
+use fitted::Fitted;
+use job::Watch;
 use opened::Opened;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -208,7 +214,7 @@ impl Session {
     /// All that is open.
     #[must_use]
     pub fn overview(&self) -> Overview {
-        let (best, best_by) = fitting::best(&self.fits);
+        let (best, best_by) = fitted::best(&self.fits);
         Overview {
             files: self.files.iter().map(Opened::view).collect(),
             fits: self.fits.iter().map(Fitted::view).collect(),

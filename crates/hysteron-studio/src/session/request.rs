@@ -3,7 +3,9 @@
 use super::design::{DesignView, Wish};
 use super::drive::{DriveView, Pull};
 use super::fault::Fault;
-use super::fitting::{FitView, Held, JobView};
+use super::fitted::FitView;
+use super::fitting::Held;
+use super::job::JobView;
 use super::look::{Curves, View};
 use super::opened::{FileView, Part};
 use super::plane::{PlaneKind, PlaneView, SampleView};

@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::fault::Fault;
-use super::fitting::Fitted;
+use super::fitted::Fitted;
 use super::opened::{Opened, Part, plain_name};
 use super::prepare::Steps;
 use super::request::{Id, Purpose};

@@ -59,10 +59,12 @@ pub(crate) fn push_number(out: &mut Vec<u8>, number: f64) {
 /// Whether a number may lie halfway between two texts with so many decimals. The standard library
 /// then takes the one further from zero, and `zmij` the even one.
 ///
-/// `(2k + 1) / 2 · 10⁻ⁿ` is an odd multiple of `2⁻ⁿ⁻¹`.
+/// `(2k + 1) / 2 · 10⁻ⁿ` is an odd multiple of `2⁻ⁿ⁻¹`: that is the last bit that is set.
 fn is_halfway(number: f64, decimals: usize) -> bool {
-    let power = f64::from_bits((1023 + decimals as u64) << 52);
-    (number * power).fract().abs() == 0.5
+    let bits = number.to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32 - 1075;
+    let mantissa = bits | 1 << 52;
+    exponent + mantissa.trailing_zeros() as i32 == -1 - decimals as i32
 }
 
 #[cfg(test)]

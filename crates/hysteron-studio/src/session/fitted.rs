@@ -1,0 +1,120 @@
+//! What a fit found, and which fit is the best.
+
+use super::request::Id;
+use hysteron::{Errors, HeldOut, Model, Quantity, State};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A fit that was made.
+#[derive(Debug)]
+pub(super) struct Fitted {
+    pub(super) id: Id,
+    pub(super) files: Vec<Id>,
+    pub(super) options: BTreeMap<String, String>,
+    /// What was held out, in words.
+    pub(super) words: String,
+    pub(super) validated: Vec<Id>,
+    pub(super) model: Arc<Model>,
+    pub(super) held_out: Option<HeldOut>,
+    pub(super) advice: Vec<String>,
+    /// Lowest and highest input and output of the recordings fitted.
+    pub(super) input: (f64, f64),
+    pub(super) output: (f64, f64),
+    /// Median time step of the recordings, in seconds.
+    pub(super) dt: Option<f64>,
+    /// The modelled output on each file that it was drawn with.
+    pub(super) courses: BTreeMap<Id, Arc<Vec<f64>>>,
+    /// A file, a number of its rows, and the state after them.
+    pub(super) reached: Option<(Id, usize, State)>,
+}
+
+/// A fit as the page shows it.
+#[derive(Debug, Clone, Serialize)]
+pub struct FitView {
+    /// Its number.
+    pub id: Id,
+    /// The files fitted.
+    pub files: Vec<Id>,
+    /// Options that differ from their defaults.
+    pub options: BTreeMap<String, String>,
+    /// What was held out, in words; empty for nothing.
+    pub hold_out: String,
+    /// Number of levels.
+    pub levels: usize,
+    /// Error over the samples fitted, in the output's unit.
+    pub rmse: f64,
+    /// The same in percent of the range.
+    pub nrmse_percent: f64,
+    /// The largest error there.
+    pub max_abs: f64,
+    /// Errors over what was held out, of the model and of simple predictors.
+    pub held_out: Option<HeldOut>,
+    /// What there is to know about the fit.
+    pub advice: Vec<String>,
+    /// Whether the model has an inverse.
+    pub inverse: bool,
+    /// Whether each sample needs the time since the one before.
+    pub timed: bool,
+    /// Lowest and highest load, if the model depends on one.
+    pub load: Option<(f64, f64)>,
+    /// The input, with its unit.
+    pub input: String,
+    /// The output, with its unit.
+    pub output: String,
+    /// Whether standard errors are known.
+    pub confidence: bool,
+}
+
+impl Fitted {
+    pub(super) fn view(&self) -> FitView {
+        let model = &self.model;
+        let fit = model.fit.as_ref();
+        let shown = |quantity: &Quantity| quantity.to_column();
+        FitView {
+            id: self.id,
+            files: self.files.clone(),
+            options: self.options.clone(),
+            hold_out: self.words.clone(),
+            levels: model.plane().levels(),
+            rmse: fit.map_or(0.0, |fit| fit.rmse),
+            nrmse_percent: fit.map_or(0.0, |fit| fit.nrmse_percent),
+            max_abs: fit.map_or(0.0, |fit| fit.max_abs),
+            held_out: self.held_out.clone(),
+            advice: self.advice.clone(),
+            inverse: model.inverse().is_ok(),
+            timed: model.is_timed(),
+            load: model.load.as_ref().map(hysteron::LoadDependence::range),
+            input: shown(&model.input),
+            output: shown(&model.output),
+            confidence: fit.is_some_and(|fit| fit.confidence.is_some()),
+        }
+    }
+
+    fn tested(&self) -> Option<&Errors> {
+        self.held_out.as_ref().map(|held_out| &held_out.model)
+    }
+}
+
+/// The best fit, and by what. Errors on what was held out count, and those of fits alone only where
+/// nothing was held out from any.
+pub(super) fn best(fits: &[Fitted]) -> (Option<Id>, &'static str) {
+    let tested = fits
+        .iter()
+        .filter_map(|fit| Some((fit.tested()?.rmse, fit.id)));
+    let least = |errors: &mut dyn Iterator<Item = (f64, Id)>| {
+        errors.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+    };
+    let mut tested = tested.peekable();
+    if tested.peek().is_some() {
+        return (
+            least(&mut tested),
+            "the smallest error on what was held out",
+        );
+    }
+    let mut fitted = fits.iter().map(|fit| (fit.view().rmse, fit.id));
+    (
+        least(&mut fitted),
+        "the smallest error of the fit: nothing was held out",
+    )
+}

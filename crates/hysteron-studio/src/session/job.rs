@@ -1,0 +1,185 @@
+//! The work of a fit, while it runs and when it ends.
+
+use super::fault::{Fault, spelt};
+use super::fitted::Fitted;
+use super::request::Id;
+use hysteron::{Advice, Fit, HeldOut, HoldOut, Progress, Recording, advice, fit_holding_out};
+use serde::Serialize;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A fit that is to be made. It owns all that it needs.
+pub struct Job {
+    /// Its number.
+    pub id: Id,
+    pub(super) fitted: Vec<Id>,
+    pub(super) recordings: Vec<Recording>,
+    pub(super) options: BTreeMap<String, String>,
+    pub(super) hold_out: Option<HoldOut>,
+    pub(super) words: String,
+    pub(super) validated: Vec<Id>,
+    pub(super) watch: Arc<Watch>,
+}
+
+impl std::fmt::Debug for Job {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Job {}", self.id)
+    }
+}
+
+/// A job that has ended, for [`Session::finish`].
+#[derive(Debug)]
+pub struct Finished {
+    pub(super) id: Id,
+    pub(super) found: Result<Box<Fitted>, Fault>,
+}
+
+impl Finished {
+    /// A job that was ended from outside before it found anything.
+    #[must_use]
+    pub fn without(job: Id, why: Fault) -> Self {
+        let found = Err(why);
+        Self { id: job, found }
+    }
+}
+
+/// How far a job is, and whether it shall end.
+#[derive(Debug, Default)]
+pub(super) struct Watch {
+    cancelled: AtomicBool,
+    stage: Mutex<(Cow<'static, str>, f64)>,
+}
+
+/// A job as the page shows it.
+#[derive(Debug, Clone, Serialize)]
+pub struct JobView {
+    /// Its number.
+    pub id: Id,
+    /// What it does now.
+    pub stage: Cow<'static, str>,
+    /// The share of that which is done, 0 to 1; `None` where it is not known.
+    pub share: Option<f64>,
+}
+
+impl Watch {
+    pub(super) fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn view(&self, id: Id) -> JobView {
+        let (stage, share) = self
+            .stage
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
+        JobView {
+            id,
+            stage,
+            share: Some(share).filter(|share| share.is_finite()),
+        }
+    }
+
+    pub(super) fn at(&self, stage: Cow<'static, str>, share: f64) {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = (stage, share);
+    }
+
+    fn tell(&self, stage: &'static str, share: f64) -> hysteron::Result<()> {
+        self.at(stage.into(), share);
+        match self.is_cancelled() {
+            true => Err(hysteron::Error::Fit("cancelled".into())),
+            false => Ok(()),
+        }
+    }
+}
+
+/// A fit with these options.
+pub(super) fn build(options: &BTreeMap<String, String>) -> Result<Fit<'static>, Fault> {
+    let mut fit = Fit::new();
+    for (name, text) in options {
+        fit = fit.with(name, text)?;
+    }
+    Ok(fit)
+}
+
+impl Job {
+    /// Does the work. This takes seconds to minutes.
+    #[must_use]
+    pub fn run(self) -> Finished {
+        self.run_telling(&|_, _| ())
+    }
+
+    /// As [`Job::run`]. `told` gets each stage, and the share of it that is done; not a number where
+    /// that is not known.
+    #[must_use]
+    pub fn run_telling(self, told: &(dyn Fn(&'static str, f64) + Sync)) -> Finished {
+        let id = self.id;
+        let watch = self.watch.clone();
+        let found = catch_unwind(AssertUnwindSafe(|| self.fit(told)));
+        let found = found.unwrap_or_else(|_| Err(Fault::defect("a fit ended in a panic")));
+        let found = match watch.is_cancelled() {
+            true => Err(Fault::cancelled()),
+            false => found.map(Box::new),
+        };
+        Finished { id, found }
+    }
+
+    fn fit(self, tell: &(dyn Fn(&'static str, f64) + Sync)) -> Result<Fitted, Fault> {
+        // One that was cancelled while it waited does nothing.
+        self.watch.tell("beginning", f64::NAN)?;
+        let told = |stage, share| {
+            tell(stage, share);
+            self.watch.tell(stage, share)
+        };
+        let fit = build(&self.options)?.progress(Progress::new(&told));
+        let (model, held_out) = match &self.hold_out {
+            None => (fit.run(&self.recordings)?, None),
+            Some(what) => {
+                let (model, held_out) = fit_holding_out(&fit, &self.recordings, what)?;
+                (model, Some(held_out))
+            }
+        };
+        let mut told: Vec<Advice> = advice(&model, &self.recordings)?;
+        told.extend(held_out.iter().flat_map(HeldOut::advice));
+        let told = told.iter();
+        let advice = told.map(|advice| format!("{advice}: {}", advice.remedy().spelt(spelt)));
+        let advice = advice.collect();
+        let ends = |of: fn(&Recording) -> &[f64]| {
+            let ranges = self.recordings.iter().map(|r| hysteron::range(of(r)));
+            ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |all, one| {
+                (all.0.min(one.0), all.1.max(one.1))
+            })
+        };
+        let time = self.recordings.iter().find_map(|r| r.time.as_deref());
+        Ok(Fitted {
+            id: self.id,
+            input: ends(|r| &r.input),
+            output: ends(|r| &r.output),
+            dt: time.and_then(median_step),
+            files: self.fitted,
+            options: self.options,
+            words: self.words,
+            validated: self.validated,
+            model: Arc::new(model),
+            held_out,
+            advice,
+            courses: BTreeMap::new(),
+            reached: None,
+        })
+    }
+}
+
+fn median_step(time: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps
+        .get(steps.len() / 2)
+        .copied()
+        .filter(|step| *step > 0.0)
+}
