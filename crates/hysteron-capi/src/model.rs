@@ -205,12 +205,14 @@ pub unsafe extern "C" fn hysteron_model_quantity(
             )
         };
         let model = MODELS.get(model, "model")?;
+        let load = model.load.as_ref();
         let quantity = match quantity {
-            0 => &model.input,
-            1 => &model.output,
-            2 if let Some(load) = &model.load => &load.quantity,
-            _ => return Err(Fault::Call(HYSTERON_VALUE, "quantity")),
+            0 => Some(&model.input),
+            1 => Some(&model.output),
+            2 => load.map(|load| &load.quantity),
+            _ => None,
         };
+        let quantity = quantity.ok_or(Fault::Call(HYSTERON_VALUE, "quantity"))?;
         needed.set(text.write_text(&quantity.to_column()));
         Ok(())
     })
