@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::policy::Policy;
-use crate::model::preview::Preview;
+use crate::model::Preview;
 use crate::model::{Model, Operators, Sample, Sign, State, Surroundings};
 use hysteron_core::{Direction, Solution, Target};
 

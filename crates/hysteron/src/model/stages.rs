@@ -120,6 +120,7 @@ impl Model {
     }
 
     /// Whether time and load of a sample can be, whatever the state is.
+    #[cfg(feature = "data")]
     pub(crate) fn accepts(&self, sample: Sample) -> Result<()> {
         let accepted = self.stages().accepts(&StageState::default(), sample);
         accepted.map_err(|error| self.worded(error))?;
