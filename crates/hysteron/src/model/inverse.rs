@@ -1,8 +1,8 @@
 //! The inverse of a model: the input for a wanted output, for one target or a series of them.
 
 use crate::error::{Error, Result};
-use crate::model::policy::Policy;
 use crate::model::Preview;
+use crate::model::policy::Policy;
 use crate::model::{Model, Operators, Sample, Sign, State, Surroundings};
 use hysteron_core::{Direction, Solution, Target};
 

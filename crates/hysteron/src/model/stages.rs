@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::model::after::After;
-use crate::model::{CreepTerm, Model, Sample};
-use hysteron_core::{Axis, Load, StageState, Stages};
+use crate::model::{CreepTerm, Model};
+use hysteron_core::{Axis, Load, Stages};
 
 impl Model {
     /// The constants of the stages around the operators, as the core takes them. The offset is that
@@ -117,17 +117,6 @@ impl Model {
         let body = body.core();
         self.drive
             .unwrap_or_else(|| (body.hold(low), body.hold(high)))
-    }
-
-    /// Whether time and load of a sample can be, whatever the state is.
-    #[cfg(feature = "data")]
-    pub(crate) fn accepts(&self, sample: Sample) -> Result<()> {
-        let accepted = self.stages().accepts(&StageState::default(), sample);
-        accepted.map_err(|error| self.worded(error))?;
-        match (&self.load, sample.load) {
-            (Some(dependence), Some(load)) => dependence.factors(load).map(|_| ()),
-            _ => Ok(()),
-        }
     }
 
     /// The error of the core in words that name the model's stage.

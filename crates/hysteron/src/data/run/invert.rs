@@ -8,7 +8,7 @@ use crate::data::table::{Block, TableReader};
 use crate::error::Result;
 use crate::model::{Inverse, Model, Policy, Preview, Sample, State, Wanted};
 use crate::series::Headings;
-use hysteron_core::Status;
+use hysteron_core::{StageState, Status};
 use std::collections::VecDeque;
 
 /// The columns and options of an inversion.
@@ -110,7 +110,7 @@ impl Work for Inverting<'_> {
             let sample = self.samples.next(block, row);
             // A time or a load that cannot be is told with its row.
             if !plain {
-                let accepted = self.model.accepts(sample);
+                let accepted = accepts(self.model, sample);
                 accepted.map_err(|error| self.samples.fault(block, row, &error))?;
             }
             let Some(headings) = &mut self.headings else {
@@ -192,5 +192,15 @@ impl Solving<'_> {
         }
         cells.words.push(status.name());
         Ok(())
+    }
+}
+
+/// Whether time and load of a sample can be, whatever the state is.
+fn accepts(model: &Model, sample: Sample) -> Result<()> {
+    let accepted = model.stages().accepts(&StageState::default(), sample);
+    accepted.map_err(|error| model.worded(error))?;
+    match (&model.load, sample.load) {
+        (Some(dependence), Some(load)) => dependence.factors(load).map(|_| ()),
+        _ => Ok(()),
     }
 }
