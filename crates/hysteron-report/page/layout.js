@@ -12,7 +12,7 @@ const LOOK = {
   ticks: "outside",
   tickfont: { size: 12.5 },
   exponentformat: "power",
-  minexponent: 4,
+  minexponent: 5,
 };
 
 /** @param {number} width of a page in pixels */

@@ -58,14 +58,14 @@ async function build(overview) {
           el("button", { "data-key": "drive-again", onclick: () => begin(overview) }, "Start again")),
         slider("input", `Input: ${fit.input}`, now.view.inputs),
         slider("output", `Output wanted: ${fit.output}`, now.view.outputs),
+        el("p", { id: "drive-status", role: "status" }),
         fit.inverse
           ? el("label", { class: "field" }, el("span", {}, "When the output reverses"), el("select", { "data-key": "policy", onchange: (/** @type {any} */ e) => (now.policy = e.target.value) },
               el("option", { value: "hold", selected: now.policy === "hold" }, "hold: the input stays until the output has to move"),
               el("option", { value: "anticipate", selected: now.policy === "anticipate" }, "anticipate: cross the dead band at once")))
           : el("p", { class: "problem" }, "This model has weights below zero, and so no inverse. Move the input."),
         hand.form(fit.inverse, (what) => move(what), () => now.view),
-        number("dt", "Time step [s]"), number("load", "Load"),
-        el("p", { id: "drive-status", role: "status" })),
+        number("dt", "Time step [s]"), number("load", "Load")),
       el("figure", {}, el("div", { id: "plot-drive", class: "plot tall" }), el("figcaption", {}, "The way so far, over what was measured (grey). The bar is the dead band: between its ends the output stands still. Drag in the picture."),
         el("div", { id: "plot-moves", class: "plot low", hidden: true }), el("figcaption", { id: "moves-caption", hidden: true }, "The input of both policies for the same outputs, since the input was moved by hand."))),
   );
@@ -104,7 +104,7 @@ async function answer(fit) {
   if (active !== "drive-input") by("drive-input").value = String(input);
   if (active !== "drive-output") by("drive-output").value = String(output);
   by("value-input").textContent = shown(input);
-  by("value-output").textContent = shown(output);
+  by("value-output").textContent = `reached: ${shown(output)}`;
   const parts = [];
   if (wanted !== null) parts.push(`Wanted ${shown(wanted)}: ${STATUS[status] ?? status}.`);
   if (rival) parts.push(`Input with “${now.policy}”: ${shown(input)}, with “${rival.policy}”: ${shown(rival.input)}.`);
@@ -122,5 +122,5 @@ async function answer(fit) {
   hand.drags(by("plot-drive"), Boolean(known?.inverse), (what) => move(what));
   by("plot-moves").hidden = by("moves-caption").hidden = moves.length === 0;
   const line = (/** @type {number} */ place, /** @type {string} */ name) => ({ x: moves.map((/** @type {number[]} */ _, /** @type {number} */ n) => n + 1), y: moves.map((/** @type {number[]} */ move) => move[place]), mode: "lines", name, line: stroke(place - 1) });
-  if (moves.length > 0) await draw(by("plot-moves"), [line(1, "hold"), line(2, "anticipate")], { x: "pull", y: known?.input ?? "input" });
+  if (moves.length > 0) await draw(by("plot-moves"), [line(1, "hold"), line(2, "anticipate")], { x: "move", y: known?.input ?? "input" });
 }

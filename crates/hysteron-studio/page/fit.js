@@ -95,6 +95,7 @@ export function show(overview, drawn, draw, changed) {
   by("begin").disabled = !overview.files.some((file) => file.purpose === "fit" && !file.problem);
   if (overview.fits.length === 0) return fill(by("fits"));
   const error = (/** @type {number | null | undefined} */ percent) => (percent === null || percent === undefined ? "–" : `${shown(percent)} %`);
+  const wins = (/** @type {import("./api.js").Fit} */ fit) => fit.held_out?.rivals.some((rival) => rival.rmse < (fit.held_out?.model.rmse ?? 0));
   const row = (/** @type {import("./api.js").Fit} */ fit, /** @type {number} */ place) => {
     const options = Object.entries(fit.options).map(([name, text]) => `${name} ${text}`).join(", ") || "defaults";
     const rival = fit.held_out?.rivals.reduce((a, b) => (a.rmse < b.rmse ? a : b));
@@ -103,7 +104,7 @@ export function show(overview, drawn, draw, changed) {
       "tr",
       { class: fit.id === overview.best ? "best" : null },
       el("td", {}, el("label", { style: "white-space:nowrap" }, el("input", { type: "checkbox", "data-key": `draw-${fit.id}`, checked: drawn.has(fit.id), onchange: toggle, "aria-label": `Draw fit ${place + 1}` }), " ", el("span", { class: "swatch", style: `border-color:${colour(place)}` }), `Fit ${place + 1}`), fit.id === overview.best && el("div", {}, el("span", { class: "badge", title: `By ${overview.best_by}` }, "best"))),
-      el("td", { class: "number" }, error(fit.held_out?.model.nrmse_percent), rival && el("div", { class: "quiet" }, `${rival.name} ${error(rival.nrmse_percent)}`)),
+      el("td", { class: "number" }, error(fit.held_out?.model.nrmse_percent), rival && el("div", { class: wins(fit) ? "worse" : "quiet" }, `${wins(fit) ? "worse than " : ""}${rival.name} ${error(rival.nrmse_percent)}`)),
       el("td", { class: "number" }, error(fit.nrmse_percent)),
       el("td", {}, options, el("div", { class: "quiet" }, `${fit.levels} levels`)),
       el("td", {}, fit.hold_out || "nothing"),

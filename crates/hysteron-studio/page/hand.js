@@ -22,13 +22,17 @@ export function form(inverse, move, ends) {
   const typed = (/** @type {any} */ event) => {
     event.preventDefault();
     const numbers = String(new FormData(event.target).get("path")).split(/[\s,;]+/).filter(Boolean).map(Number);
-    if (numbers.length > 0 && numbers.every(Number.isFinite)) move({ [now.path]: numbers });
+    const isPath = numbers.length > 0 && numbers.every(Number.isFinite);
+    const field = event.target.elements.path;
+    field.setCustomValidity(isPath ? "" : "Numbers with a point, apart by spaces: 20 60.5 30");
+    field.reportValidity();
+    if (isPath) move({ [now.path]: numbers });
   };
   return el("div", {},
     choice("moves", "Dragging in the picture moves", [["input", "the input: to the side"], ["output", "the output: up and down"]]),
     choice("path", "A path drawn here is", [["inputs", "the input over time"], ["outputs", "the output wanted over time"]]),
     pad(move, ends),
-    el("form", { class: "row", onsubmit: typed }, el("label", {}, "or as numbers ", el("input", { name: "path", type: "text", placeholder: "20 60 30", autocomplete: "off", "data-key": "hand-numbers" })), el("button", {}, "Follow")));
+    el("form", { class: "row", onsubmit: typed }, el("label", {}, "or as numbers ", el("input", { name: "path", type: "text", oninput: (/** @type {any} */ event) => event.target.setCustomValidity(""), placeholder: "20 60 30", autocomplete: "off", "data-key": "hand-numbers" })), el("button", {}, "Follow")));
 }
 
 /**

@@ -50,7 +50,7 @@ export async function show(overview) {
       el("span", { class: "quiet" }, "A session holds recordings and fits. Drop it here to go on.")),
     fit ? el("div", { class: "card" },
       el("div", { class: "row" }, el("strong", {}, "The same without clicking"), language("command", "Command line"), language("python", "Python"), language("rust", "Rust"),
-        el("button", { onclick: () => navigator.clipboard?.writeText(now.seen) }, "Copy")),
+        el("button", { onclick: (/** @type {any} */ event) => navigator.clipboard?.writeText(now.seen).then(() => (event.target.textContent = "Copied")) }, "Copy")),
       code) : null,
   );
   if (fit) {

@@ -8,7 +8,7 @@ import * as looking from "./look.js";
 import * as driving from "./drive.js";
 import * as designing from "./design.js";
 import * as home from "./home.js";
-import { isDark } from "./plot.js";
+import * as theme from "./theme.js";
 
 /** The fits that are drawn. @type {Set<number>} */
 const drawn = new Set();
@@ -24,6 +24,8 @@ async function show(found) {
   by("files-stay").textContent = about.files;
   by("where").textContent = about.where;
   by("anew").hidden = !anew || !about.stays || found.files.length === 0;
+  // What was wrong with a file that is gone, or before a fit that was made, is past.
+  if (overview && (found.files.length < overview.files.length || found.fits.length > overview.fits.length)) by("fault").hidden = true;
   overview = found;
   seen = JSON.stringify(found);
   const ids = new Set(found.fits.map((fit) => fit.id));
@@ -50,17 +52,16 @@ const draw = () => overview && looking.show(overview, drawn, show);
 // The page that made a change has drawn it already.
 const refresh = () => ask("overview").then((found) => (JSON.stringify(found) === seen ? undefined : show(found)), () => {});
 
-whenRefused((fault) => {
+/** @param {import("./api.js").Fault} fault */
+function say({ problem, remedy }) {
   const node = by("fault");
   node.hidden = false;
-  fill(node, el("span", {}, `${fault.problem}${fault.remedy ? `. What helps: ${fault.remedy}.` : ""}`), el("button", { onclick: () => (node.hidden = true) }, "Close"));
-});
+  fill(node, el("span", {}, `${problem}${remedy ? `. What helps: ${remedy}.` : ""}`), el("button", { onclick: () => (node.hidden = true) }, "Close"));
+}
 
-by("theme").addEventListener("click", () => {
-  document.documentElement.dataset.theme = isDark() ? "light" : "dark";
-  if (overview) show(overview);
-});
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => overview && show(overview));
+whenRefused(say);
+
+theme.start(() => overview && show(overview));
 by("reload").addEventListener("click", () => reload().then(show, () => {}));
 by("anew").addEventListener("click", () => confirm("Forget files, fits and marks?") && anew?.());
 
@@ -79,9 +80,7 @@ listen((told) => {
   const fault = told.failed ? JSON.stringify(told.failed) : null;
   // What was cancelled is known to whoever cancelled it.
   if (told.failed && fault !== failed && told.failed.code !== 103) {
-    const { problem, remedy } = told.failed;
-    by("fault").hidden = false;
-    fill(by("fault"), el("span", {}, `${problem}${remedy ? `. What helps: ${remedy}.` : ""}`), el("button", { onclick: () => (by("fault").hidden = true) }, "Close"));
+    say(told.failed);
   }
   failed = fault;
   if (told.changes !== changes) {

@@ -10,10 +10,7 @@ const DASHES = ["solid", "dash", "dot", "dashdot"];
 /** @param {number} id */
 export const colour = (id) => COLOURS[isDark() ? "dark" : "light"][id % 6];
 
-export const isDark = () => {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-};
+export const isDark = () => document.documentElement.dataset.theme === "dark";
 
 /** @param {string} name */
 export const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
@@ -35,7 +32,7 @@ export function stroke(place) {
  */
 export function draw(node, traces, { x, y, xaxis = {}, yaxis = {}, ...more }) {
   const narrow = node.clientWidth < 480;
-  const axis = { gridcolor: ink("line"), zerolinecolor: ink("line"), linecolor: ink("line"), automargin: true, exponentformat: "power" };
+  const axis = { gridcolor: ink("line"), zerolinecolor: ink("line"), linecolor: ink("line"), automargin: true, exponentformat: "power", minexponent: 5 };
   const layout = {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",

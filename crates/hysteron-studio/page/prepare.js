@@ -42,7 +42,7 @@ export function form(file, send) {
 
 /** @param {any} done */
 function report({ samples_before, samples, input_noise, output_noise, spikes, resampled, low_pass, lag, dead_band }) {
-  const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} signs${repairs.first.length > 0 ? ` (rows ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
+  const of = (/** @type {any} */ repairs) => `${repairs.spikes} spikes, ${repairs.signs} lost signs${repairs.first.length > 0 ? ` (rows ${repairs.first.join(", ")}${repairs.spikes + repairs.signs > repairs.first.length ? ", …" : ""})` : ""}`;
   const filter = (/** @type {any} */ one) => (one ? `cut-off ${shown(one.cutoff)} ${low_pass.in_hertz ? "Hz" : "cycles a sample"}, removed ${shown(one.removed)} (root mean square)` : "not needed");
   const rows = [
     ["Samples", samples === samples_before ? String(samples) : `${samples_before} before, ${samples} after`],

@@ -44,6 +44,7 @@ const SHARED: &[File] = files![
     "hand.js" as SCRIPT,
     "home.js" as SCRIPT,
     "plot.js" as SCRIPT,
+    "theme.js" as SCRIPT,
 ];
 
 /// The way to a session in the command.

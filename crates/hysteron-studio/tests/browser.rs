@@ -428,6 +428,50 @@ fn a_call_that_fails_leaves_the_session_as_it_was(way: Way) {
     studio.end();
 }
 
+/// The page is as the system has it, until a person chooses; a click is enough.
+#[test]
+fn dark_and_light_are_of_the_whole_page() {
+    let Some((mut browser, studio, tab)) = Way::Server.open(1 << 26, (900, 700)) else {
+        return;
+    };
+    browser.drop_file(&tab, "play.csv", &play());
+    let drawn = "document.querySelector('#plot-loop .scatterlayer path')";
+    browser.wait(&tab, drawn);
+    let shade = |browser: &mut Chromium| {
+        let ground = "getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g)";
+        let line = "getComputedStyle(document.querySelector('#plot-loop .js-line')).stroke.match(/[0-9]+/g)";
+        let bright = |of: &str| format!("{of}.slice(0, 3).reduce((a, b) => a + Number(b), 0) / 3");
+        let both = format!("[{}, {}]", bright(ground), bright(line));
+        serde_json::from_value::<[f64; 2]>(browser.value(&tab, &both)).unwrap()
+    };
+    let is_dark = |[ground, line]: [f64; 2]| {
+        // What is drawn stands out from the page.
+        assert!((ground - line).abs() > 90.0, "{ground} {line}");
+        ground < 60.0
+    };
+    assert!(!is_dark(shade(&mut browser)));
+    browser.scheme(&tab, "dark");
+    browser.wait(&tab, "document.documentElement.dataset.theme === 'dark'");
+    browser.wait(
+        &tab,
+        "document.querySelector('#theme').textContent === 'Light'",
+    );
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert!(is_dark(shade(&mut browser)));
+    browser.value(&tab, "document.querySelector('#theme').click()");
+    browser.wait(
+        &tab,
+        "document.querySelector('#theme').textContent === 'Dark'",
+    );
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert!(!is_dark(shade(&mut browser)));
+    // The choice stays.
+    browser.value(&tab, "{ window.before = true; location.reload(); }");
+    browser.wait(&tab, &format!("!window.before && {drawn}"));
+    assert!(!is_dark(shade(&mut browser)));
+    studio.end();
+}
+
 /// The browser keeps the session of a folder. One page has it; another one has a session of its own.
 #[test]
 fn a_page_of_a_folder_that_is_loaded_again_goes_on() {

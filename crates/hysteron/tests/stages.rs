@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use hysteron::{
-    Auto, CreepTerm, Fit, FitOptions, FittedStart, LoadLaw, Model, Operator, Plane, Policy,
-    Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target, Wanted, evaluate,
-    evaluate_from,
+    Auto, CreepTerm, Fit, FitOptions, FittedStart, HoldOut, LoadLaw, Model, Operator, Plane,
+    Policy, Recording, Sample, Sign, Spacing, Start, Status, Surroundings, Target, Wanted,
+    evaluate, evaluate_from, fit_holding_out,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -421,4 +421,23 @@ fn a_start_that_was_found_is_kept() {
         input: 0.0,
     };
     assert!(file.with_start(Some(wrong)).is_err());
+}
+
+#[test]
+fn the_noise_of_a_load_cell_is_not_another_load() {
+    let fitted = [50.0, 100.0, 150.0].map(under_load);
+    let fit = Fit::new().levels(8).bootstrap(0);
+    // A hundredth of the range of 100 beyond an end is taken for that end.
+    for (load, accepted) in [(49.01, true), (150.99, true), (48.9, false), (151.1, false)] {
+        let others = HoldOut::Recordings(vec![under_load(load)]);
+        let found = fit_holding_out(&fit, &fitted, &others);
+        match found {
+            Ok((_, held_out)) => {
+                assert!(accepted, "{load}");
+                let error = held_out.model.nrmse_percent.unwrap();
+                assert!(error < 5.0, "{load}: {error}");
+            }
+            Err(error) => assert!(!accepted, "{load}: {error}"),
+        }
+    }
 }

@@ -77,7 +77,7 @@ impl Fault {
 pub(crate) fn spelt(setting: &Setting) -> String {
     let name = match setting.name {
         "repair" => "Repair rows",
-        "prepare" => return "`hysteron prepare`".into(),
+        "prepare" => "Prepare",
         name => name,
     };
     match setting.value {

@@ -91,30 +91,40 @@ impl Fitted {
         }
     }
 
+    /// What tested it.
+    fn test(&self) -> (&str, &[Id], &[Id]) {
+        // Files for validation test whatever was fitted; parts are those of the files fitted.
+        match self.validated.as_slice() {
+            [] => (&self.words, &[], &self.files),
+            validated => (&self.words, validated, &[]),
+        }
+    }
+
     fn tested(&self) -> Option<&Errors> {
         self.held_out.as_ref().map(|held_out| &held_out.model)
     }
 }
 
-/// The best fit, and by what. Errors on what was held out count, and those of fits alone only where
-/// nothing was held out from any.
+/// The best fit, and by what. Errors on what was held out count: of the fits that were tested on the
+/// same as the newest of them. Errors of fits alone count only where nothing was held out from any.
 pub(super) fn best(fits: &[Fitted]) -> (Option<Id>, &'static str) {
-    let tested = fits
-        .iter()
-        .filter_map(|fit| Some((fit.tested()?.rmse, fit.id)));
     let least = |errors: &mut dyn Iterator<Item = (f64, Id)>| {
         errors.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
     };
-    let mut tested = tested.peekable();
-    if tested.peek().is_some() {
-        return (
-            least(&mut tested),
-            "the smallest error on what was held out",
-        );
-    }
-    let mut fitted = fits.iter().map(|fit| (fit.view().rmse, fit.id));
-    (
-        least(&mut fitted),
-        "the smallest error of the fit: nothing was held out",
-    )
+    let tested = fits
+        .iter()
+        .filter_map(|fit| Some((fit.tested()?.rmse, fit)));
+    let Some((_, newest)) = tested.clone().next_back() else {
+        let mut fitted = fits.iter().map(|fit| (fit.view().rmse, fit.id));
+        let by = "the smallest error of the fit: nothing was held out";
+        return (least(&mut fitted), by);
+    };
+    let alike = tested
+        .clone()
+        .filter(|(_, fit)| fit.test() == newest.test());
+    let by = match alike.clone().count() == tested.count() {
+        true => "the smallest error on what was held out",
+        false => "the smallest error on what was held out from the newest fit, too",
+    };
+    (least(&mut alike.map(|(error, fit)| (error, fit.id))), by)
 }

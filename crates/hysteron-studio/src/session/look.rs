@@ -18,7 +18,7 @@ pub enum Picture {
     Output,
     /// The output over the input.
     Loop,
-    /// Measured minus modelled output over time.
+    /// Modelled minus measured output over time.
     Residuals,
     /// The same over the input.
     ResidualsOverInput,
@@ -181,7 +181,7 @@ impl Session {
         if let Some(raw) = self.file(view.file)?.raw().filter(|_| view.raw) {
             lines.extend(before(raw, view));
         }
-        let residual = |course: &Arc<Vec<f64>>, n: usize| recording.output[n] - course[n];
+        let residual = |course: &Arc<Vec<f64>>, n: usize| course[n] - recording.output[n];
         match view.picture {
             Picture::Input => lines.push(line(None, over_time(&|n| recording.input[n]))),
             Picture::Output => lines.push(line(None, over_time(&measured))),

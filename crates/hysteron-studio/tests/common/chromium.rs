@@ -152,6 +152,13 @@ impl Chromium {
         self.call(Some(tab), "Emulation.setEmulatedMedia", params);
     }
 
+    /// Shows a page as where the system is `light` or `dark`.
+    pub fn scheme(&mut self, tab: &Tab, name: &str) {
+        let features = json!([{"name": "prefers-color-scheme", "value": name}]);
+        let params = json!({"features": features});
+        self.call(Some(tab), "Emulation.setEmulatedMedia", params);
+    }
+
     /// The value of an expression, once its promise is kept.
     pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
         self.value_if_there(tab, expression)

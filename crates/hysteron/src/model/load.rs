@@ -8,6 +8,9 @@ use crate::remedy::{Remedy, Setting};
 use hysteron_core::Operator;
 use serde::{Deserialize, Serialize};
 
+/// The part of the range of a load that the readings of a load cell wander: not another load.
+const NOISE: f64 = 0.01;
+
 /// Offset and weights that belong to one Bernstein polynomial of the load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
@@ -272,14 +275,14 @@ impl LoadDependence {
         (&self.joined.0, &self.joined.1)
     }
 
-    /// The factor of each part at a load: the values of the Bernstein polynomials.
+    /// The factor of each part at a load: the values of the Bernstein polynomials. A load that is
+    /// outside the range by at most a hundredth of it is taken for that end.
     ///
     /// # Errors
-    /// [`Error::Fit`] for a load outside the range, because weights could be negative there.
+    /// [`Error::Fit`] for a load further outside, because weights could be negative there.
     pub fn factors(&self, load: f64) -> Result<Vec<f64>> {
         let (low, high) = self.range;
-        // A difference of a millionth of the range is rounding in print, not another load.
-        let slack = 1e-6 * (high - low);
+        let slack = NOISE * (high - low);
         if !(load >= low - slack && load <= high + slack) {
             return Err(Error::Fit(format!(
                 "the {} {load} is outside the range {low} to {high} that the model was identified \
