@@ -30,7 +30,7 @@ impl std::fmt::Debug for Job {
     }
 }
 
-/// A job that has ended, for [`Session::finish`].
+/// A job that has ended, for [`Session::finish`](super::Session::finish).
 #[derive(Debug)]
 pub struct Finished {
     pub(super) id: Id,
