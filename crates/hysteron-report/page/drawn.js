@@ -16,10 +16,6 @@ const trace = (line, n, listed) => {
     [xs, ys] = [xs, ys].map((values) =>
       values.slice(placeOf(line, part[0]), placeOf(line, part[1]) + 1),
     );
-  const dash = line.stroke.dash
-    .split(" ")
-    .filter(Boolean)
-    .map((length) => `${Math.max(1.5, Number(length))}px`);
   return {
     type: "scatter",
     mode: xs.length === 1 ? "markers" : "lines",
@@ -30,12 +26,31 @@ const trace = (line, n, listed) => {
     name: plain(line.name),
     legendgroup: plain(line.name),
     showlegend: listed,
-    line: { color: line.stroke.colour, width: line.stroke.width, dash: dash.join(",") || "solid" },
+    line: { color: line.stroke.colour, width: line.stroke.width, dash: dashOf(line.stroke) },
     fill: line.fill ? "tonexty" : "none",
     fillcolor: line.fill ?? undefined,
     hoverinfo: line.name ? "all" : "skip",
     connectgaps: false,
   };
+};
+
+/**
+ * Where x goes back, the area between two lines is one of pieces, all of which turn the same way:
+ * what turns the other way would be a hole.
+ * @param {any} upper @param {any} lower @param {Line} line
+ */
+const between = (upper, lower, line) => {
+  if (!line.fill || line.forward) return upper;
+  /** @type {(number | null)[]} */
+  const xs = [];
+  /** @type {(number | null)[]} */
+  const ys = [];
+  for (let k = 0; k + 1 < upper.x.length; k++) {
+    const [a, b] = upper.x[k] <= upper.x[k + 1] ? [k, k + 1] : [k + 1, k];
+    xs.push(upper.x[a], upper.x[b], upper.x[b], upper.x[a], null);
+    ys.push(lower.y[a], lower.y[b], upper.y[b], upper.y[a], null);
+  }
+  return { ...upper, x: xs, y: ys, fill: "toself", line: { width: 0 } };
 };
 
 /** A figure: its picture, and the node that it is drawn in. */
@@ -62,7 +77,7 @@ class Drawn {
     this.shapes = [];
     new IntersectionObserver(
       (entries) => {
-        this.seen = entries.some((entry) => entry.isIntersecting);
+        this.seen = entries[entries.length - 1].isIntersecting;
         if (this.seen && this.stale) this.draw();
       },
       { rootMargin: "300px" },
@@ -72,52 +87,45 @@ class Drawn {
 
   /** Whether it still has to be drawn as it should be shown now. */
   get stale() {
-    return this.node.getAttribute("aria-busy") === "true";
+    return this.node.dataset.stale === "true";
   }
   set stale(stale) {
-    this.node.setAttribute("aria-busy", String(stale));
+    this.node.dataset.stale = String(stale);
   }
 
   traces() {
     const listed = new Set();
     const { plots, areas } = this.figure;
-    const filled = new Set(
-      plots.flatMap(({ bands, lines }) => [
-        ...bands.map(([, , fill]) => fill),
-        ...lines.map(({ fill }) => fill),
-      ]),
-    );
     const lines = plots.flatMap(({ lines }, n) =>
-      lines.map((line) => {
+      lines.map((line, l) => {
         const first = line.name !== "" && !listed.has(line.name);
         listed.add(line.name);
-        return trace(line, n, first);
+        return between(trace(line, n, first), trace(lines[Math.max(0, l - 1)], n, false), line);
       }),
     );
-    // An area has no line of its own: these are for the legend alone.
-    const keys = areas
-      .filter(([fill]) => filled.has(fill))
-      .map(([fill, name]) => ({
-        type: "scatter",
-        mode: "markers",
-        x: [null],
-        y: [null],
-        xaxis: "x1",
-        yaxis: "y1",
-        name: plain(name),
-        marker: { symbol: "square", size: 12, color: fill, line: { width: 0.5, color: AXIS } },
-      }));
+    // Areas and marks have no line of samples: these are for the legend alone.
+    const keys = areas.map(([fill, name]) => ({
+      type: "scatter",
+      mode: "markers",
+      x: [null],
+      y: [null],
+      xaxis: "x1",
+      yaxis: "y1",
+      name: plain(name),
+      marker: { symbol: "square", size: 12, color: fill, line: { width: 0.5, color: AXIS } },
+    }));
     return [...lines, ...keys];
   }
 
   /** Marks of the sample that is pointed at. */
   marks() {
-    if (!pointed) return [];
+    if (!pointed || !isRecording(pointed.samples)) return [];
     const { sample, samples } = pointed;
-    return this.figure.plots.flatMap(({ lines }, n) => {
-      const line = lines.find((line) => line.name && line.samples === samples);
-      const at = line ? placeOf(line, sample) : -1;
-      const [x, y] = [line?.xs[at], line?.ys[at]];
+    const lines = this.figure.plots.flatMap(({ lines }, n) => lines.map((line) => ({ line, n })));
+    return lines.flatMap(({ line, n }) => {
+      if (!line.name || line.samples !== samples) return [];
+      const at = placeOf(line, sample);
+      const [x, y] = [line.xs[at], line.ys[at]];
       if (x == null || y == null) return [];
       return [
         {
@@ -138,7 +146,7 @@ class Drawn {
     });
   }
 
-  /** Marks the sample that is pointed at, and no other. */
+  /** Replaces the marks. */
   remark() {
     plotly().relayout(this.node, { shapes: [...this.shapes, ...this.marks()] });
   }
@@ -173,7 +181,7 @@ class Drawn {
         ])) {
           const [low, high] = [event[`${name}.range[0]`], event[`${name}.range[1]`]];
           if (low === undefined || high === undefined) continue;
-          shown.set(axis.label, [low, high]);
+          shown.set(axis.key, [low, high]);
           changed = true;
         }
       });

@@ -20,11 +20,13 @@ const isNarrow = (width) => width < 520;
 
 /** Names come from files: markup in them is text. @param {string} text */
 const plain = (text) =>
-  text
-    .replaceAll("&", "&amp;")
-    .replaceAll("<", "&lt;")
-    .replaceAll(">", "&gt;")
-    .replaceAll("$", "＄");
+  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+
+/** The dashes of a line. @param {Stroke} stroke */
+const dashOf = ({ dash }) => {
+  const lengths = dash.split(" ").filter(Boolean);
+  return lengths.map((length) => `${Math.max(1.5, Number(length))}px`).join(",") || "solid";
+};
 
 /** Axes, lines, areas and words of a figure, as plotly takes them. */
 class Frame {
@@ -44,7 +46,8 @@ class Frame {
     this.left = Math.min(...areas.map(({ x }) => x));
     this.top = Math.min(...areas.map(({ y }) => y));
     this.right = Math.max(...areas.map(({ x, width }) => x + width));
-    this.bottom = Math.max(...areas.map(({ y, height }) => y + height));
+    this.lowest = Math.max(...areas.map(({ y, height }) => y + height));
+    this.bottom = Math.max(this.lowest, ...plots.map(({ foot }) => foot ?? 0));
   }
 
   /** The share of the width at a pixel of the paper. @param {number} x */
@@ -63,17 +66,19 @@ class Frame {
     /** @param {Axis} axis @param {boolean} here whether its label stands here */
     const shared = (axis, here) => ({
       ...LOOK,
-      range: [...(shown.get(axis.label) ?? axis.range)],
+      range: [...partOf(axis)],
       title: here ? { text: plain(axis.label), font: { size: 13.5 }, standoff: 8 } : undefined,
     });
-    const pairs = this.plots.map(({ area, x, y }, n) => {
-      const isLowest = area.y + area.height >= this.bottom - 1;
+    const pairs = this.plots.map(({ area, x, y, foot }, n) => {
+      const isLowest = area.y + area.height >= this.lowest - 1;
+      const place =
+        foot === null ? { anchor: `y${n + 1}` } : { anchor: "free", position: this.up(foot) };
       return [
         [
           `xaxis${n + 1}`,
           {
             ...shared(x, x.labelled || isLowest),
-            anchor: `y${n + 1}`,
+            ...place,
             domain: [this.across(area.x), this.across(area.x + area.width)],
             showticklabels: x.numbered || isLowest,
           },
@@ -93,10 +98,10 @@ class Frame {
 
   /** Filled areas, and lines across a panel. */
   shapes() {
-    const line = (/** @type {Stroke} */ { colour, width, dash }) => ({
-      color: colour,
-      width,
-      dash: dash ? "dash" : "solid",
+    const line = (/** @type {Stroke} */ stroke) => ({
+      color: stroke.colour,
+      width: stroke.width,
+      dash: dashOf(stroke),
     });
     const high = (/** @type {Area} */ { y, height }) => ({
       yref: "paper",
@@ -112,9 +117,12 @@ class Frame {
       };
       const below = { layer: "below" };
       return [
-        ...bands.map(([[x0, x1], at, fillcolor]) => {
-          const look = { ...below, fillcolor, line: { width: 0 } };
-          return { type: "rect", xref, x0, x1, ...high(at), ...look };
+        ...bands.map(([ends, at, fill]) => {
+          const [y0, y1] = [this.up(at.y + at.height), this.up(at.y)];
+          const path = ends.map(([a, b]) => `M${a},${y0}V${y1}H${b}V${y0}Z`).join("");
+          // A pixel wide at least.
+          const look = { ...below, fillcolor: fill, line: { width: 1, color: fill } };
+          return { type: "path", path, xref, yref: "paper", ...look };
         }),
         ...levels.map(([y, stroke]) => {
           const look = { ...below, line: line(stroke) };
@@ -139,7 +147,8 @@ class Frame {
     const stays = (/** @type {Words} */ words) =>
       words.anchor === "end" ? isTitle(words) || fits(words) : !isTitle(words);
     const kept = this.narrow ? this.words.filter(stays) : this.words;
-    return kept.map(({ at: [x, y], anchor, size, colour, text }) => {
+    const said = kept.filter(({ text }) => text);
+    return said.map(({ at: [x, y], anchor, size, colour, text }) => {
       const share = Math.min(1, Math.max(0, this.across(x)));
       return {
         text: plain(text),
@@ -206,7 +215,10 @@ class Frame {
         y: narrow ? below : above,
         yanchor: "top",
         font: { size: narrow ? 12 : 13.5 },
+        // What was chosen stays when the figure is drawn again.
+        uirevision: "kept",
       },
+      modebar: { uirevision: "kept" },
       hovermode: isOverTime ? "x" : "closest",
       hoverlabel: { namelength: -1 },
       // A finger scrolls the page.

@@ -2,13 +2,13 @@
 
 /** @typedef {[number, number]} Ends */
 /** @typedef {{x: number, y: number, width: number, height: number}} Area */
-/** @typedef {{label: string, range: Ends, labelled: boolean, numbered: boolean}} Axis */
+/** @typedef {{label: string, key: string, range: Ends, labelled: boolean, numbered: boolean}} Axis */
 /** @typedef {{colour: string, width: number, dash: string}} Stroke */
 /**
  * @typedef {object} Line
  * @property {string} name
  * @property {Stroke} stroke
- * @property {string | null} fill to the line before
+ * @property {string | null} fill colour of the area between this line and the one before
  * @property {boolean} forward whether x only grows, as time does
  * @property {number} samples that it was drawn from
  * @property {number[]} kept which of them are here; all, where empty
@@ -21,7 +21,8 @@
  * @property {Axis} x
  * @property {Axis} y
  * @property {Line[]} lines
- * @property {[Ends, Area, string][]} bands
+ * @property {[Ends[], Area, string][]} bands
+ * @property {number | null} foot where the x axis stands, if that is below the panel
  * @property {[number, Stroke][]} levels
  * @property {[number, Stroke, string][]} uprights
  */
@@ -43,7 +44,7 @@ const unpacked = async (id) => {
 const figures = [];
 
 /**
- * The part of each axis that is shown, by its label; all of it, where there is none.
+ * The part of each axis that is shown, by its key; all of it, where there is none.
  * @type {Map<string, Ends>}
  */
 const shown = new Map();
@@ -75,17 +76,17 @@ const sampleAt = ({ kept }, at) => (kept.length ? kept[at] : at);
 const placeOf = ({ kept }, sample) => (kept.length ? place(kept, sample) : sample);
 
 /**
- * Which samples the part of the time that is shown has, for recordings of so many.
+ * First and last sample within the time that is shown, of a recording of so many.
  * @param {number} samples
  * @returns {Ends | null}
  */
 const windowOf = (samples) => {
   for (const { x, lines } of figures.flatMap(({ plots }) => plots)) {
-    const part = shown.get(x.label);
+    const part = shown.get(x.key);
     const line = lines.find(
       (line) => line.forward && line.samples === samples && line.xs.length > 1,
     );
-    if (part && line)
+    if (part && line && part[0] < x.range[1] && part[1] > x.range[0])
       return [
         sampleAt(line, Math.max(0, place(line.xs, part[0]) - 1)),
         sampleAt(line, Math.min(line.xs.length - 1, place(line.xs, part[1]))),
@@ -93,3 +94,15 @@ const windowOf = (samples) => {
   }
   return null;
 };
+
+/** The part of an axis that is shown: all, where it has nothing of the part. @param {Axis} axis */
+const partOf = ({ key, range }) => {
+  const part = shown.get(key);
+  return part && part[0] < range[1] && part[1] > range[0] ? part : range;
+};
+
+/** Whether lines of so many samples are over the time of a recording. @param {number} samples */
+const isRecording = (samples) =>
+  figures.some(({ plots }) =>
+    plots.some(({ lines }) => lines.some((line) => line.forward && line.samples === samples)),
+  );

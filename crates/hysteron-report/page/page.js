@@ -1,4 +1,4 @@
-// Draws the figures of a page again, so that they zoom together. Axes with the same label show the
+// Draws the figures of a page again, so that they zoom together. Axes of the same quantity show the
 // same part of it, a part of the time is shown in the loops too, and the sample that one points at
 // is marked in all figures. Paper, and a page without this script, keep the pictures.
 
@@ -7,8 +7,7 @@ const drawn = [];
 
 /** Draws what is shown now. */
 function everywhere() {
-  for (const button of document.querySelectorAll(".tools .all"))
-    /** @type {HTMLButtonElement} */ (button).disabled = shown.size === 0;
+  document.querySelector(".tools .all")?.setAttribute("aria-disabled", String(shown.size === 0));
   for (const figure of drawn) {
     figure.stale = true;
     if (figure.seen) figure.draw();
@@ -35,13 +34,14 @@ function showAll() {
  * @param {number} move by that share of it
  */
 function showPart(axis, share, move) {
-  const [low, high] = shown.get(axis.label) ?? axis.range;
-  const middle = (low + high) / 2 + move * (high - low);
-  const half = ((high - low) / 2) * share;
-  shown.set(axis.label, [
-    Math.max(axis.range[0], middle - half),
-    Math.min(axis.range[1], middle + half),
-  ]);
+  const [low, high] = shown.get(axis.key) ?? axis.range;
+  const [first, last] = axis.range;
+  const whole = last - first;
+  const half = Math.min(whole, Math.max((high - low) * share, 1e-6 * whole)) / 2;
+  const wanted = (low + high) / 2 + move * (high - low);
+  const middle = Math.min(last - half, Math.max(first + half, wanted));
+  if (2 * half < whole) shown.set(axis.key, [middle - half, middle + half]);
+  else shown.delete(axis.key);
   everywhere();
 }
 
@@ -54,17 +54,18 @@ function tools() {
       title,
       onclick,
     });
-    made.setAttribute("aria-label", title);
+    if (sign !== title) made.setAttribute("aria-label", title);
     return made;
   };
-  const nav = document.createElement("nav");
-  nav.className = "tools";
-  nav.setAttribute("aria-label", "Part of the figures that is shown");
+  const bar = document.createElement("div");
+  bar.className = "tools";
+  bar.setAttribute("role", "toolbar");
+  bar.setAttribute("aria-label", "Part of the figures that is shown");
   const time = figures
     .flatMap(({ plots }) => plots)
     .find(({ lines }) => lines.some(({ forward }) => forward))?.x;
   if (time) {
-    nav.append(
+    bar.append(
       button("+", "Zoom in", () => showPart(time, 0.5, 0)),
       button("−", "Zoom out", () => showPart(time, 2, 0)),
       button("◀", "Earlier", () => showPart(time, 1, -0.25)),
@@ -73,9 +74,11 @@ function tools() {
   }
   const all = button("Show all", "Show all", showAll);
   all.className = "all";
-  all.disabled = true;
-  nav.append(all);
-  document.body.append(nav);
+  all.setAttribute("aria-disabled", "true");
+  bar.append(all);
+  document.body.append(bar);
+  // A phone that is turned has another layout.
+  matchMedia("(max-width: 44rem)").addEventListener("change", everywhere);
   addEventListener("keydown", ({ key }) => key === "Escape" && showAll());
 }
 
@@ -93,6 +96,7 @@ function tools() {
     textContent: await unpacked("plotly"),
   });
   document.head.append(script);
+  if (!plotly()) return;
   drawn.push(...figures.map((figure) => new Drawn(figure)));
   tools();
 })();

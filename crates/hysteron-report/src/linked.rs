@@ -18,7 +18,7 @@ const SCRIPTS: [&str; 4] = [
 ];
 const PLOTLY: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/plotly.js.gz"));
 
-/// Digits of a value on a page, over the range of its series: finer than any zoom shows.
+/// Digits of a value on a page, over the range of its axis.
 const DIGITS: f64 = 7.0;
 
 /// [plotly.js](https://plotly.com/javascript/), which the pages draw with.
@@ -95,12 +95,13 @@ impl Columns {
     fn of(&mut self, plot: &Plot) -> Vec<[usize; 2]> {
         let lines = plot.lines.iter();
         lines
-            .map(|line| [&line.xs, &line.ys].map(|values| self.place(values)))
+            .map(|line| [(&line.xs, &plot.x), (&line.ys, &plot.y)])
+            .map(|both| both.map(|(values, axis)| self.place(values, axis.range)))
             .collect()
     }
 
-    fn place(&mut self, values: &[f64]) -> usize {
-        let column = rounded(values);
+    fn place(&mut self, values: &[f64], axis: [f64; 2]) -> usize {
+        let column = rounded(values, axis);
         let bits = column.iter().map(|value| value.to_bits()).collect();
         *self.places.entry(bits).or_insert_with(|| {
             self.all.push(column);
@@ -109,12 +110,8 @@ impl Columns {
     }
 }
 
-/// Values to [`DIGITS`] digits of their range; what is not finite becomes a gap.
-fn rounded(values: &[f64]) -> Vec<f64> {
-    let finite = values.iter().filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(*value), high.max(*value))
-    });
+/// Values to [`DIGITS`] digits of the range of their axis; what is not finite becomes a gap.
+fn rounded(values: &[f64], [low, high]: [f64; 2]) -> Vec<f64> {
     let power = 10f64.powf((DIGITS - (high - low).log10()).floor());
     let round = |value: f64| {
         let rounded = (value * power).round() / power;
@@ -132,20 +129,26 @@ mod tests {
     fn numbers_keep_the_digits_that_a_zoom_shows() {
         let clock = [1.76e9, 1.76e9 + 0.001_234_567, 1.76e9 + 0.01];
         // The spacing of doubles there is 2.4e-7.
-        for (value, told) in clock.iter().zip(rounded(&clock)) {
+        for (value, told) in clock.iter().zip(rounded(&clock, [clock[0], clock[2]])) {
             assert!((value - told).abs() <= 2.4e-7, "{value} {told}");
         }
-        assert_eq!(rounded(&[1.0 / 3.0, 1.0, 0.0]), [0.333_333_3, 1.0, 0.0]);
-        for hostile in [
-            &[][..],
-            &[0.1 + 0.2],
-            &[1e300, -1e300],
-            &[0.0, 5e-324],
-            &[f64::MAX],
+        let unit = [0.0, 1.0];
+        assert_eq!(
+            rounded(&[1.0 / 3.0, 1.0, 0.0], unit),
+            [0.333_333_3, 1.0, 0.0]
+        );
+        // What lies far off the axis does not take the digits of what lies on it.
+        assert_eq!(rounded(&[0.125, 5e300], unit), [0.125, 5e300]);
+        for (hostile, axis) in [
+            (&[1e300, -1e300][..], [-1e300, 1e300]),
+            (&[0.0, 5e-324], [0.0, 1.0]),
+            (&[f64::MAX], [0.0, 1e300]),
         ] {
-            assert_eq!(rounded(hostile), hostile);
+            let told = rounded(hostile, axis);
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-7 * (axis[1] - axis[0]);
+            assert!(hostile.iter().zip(&told).all(near), "{hostile:?} {told:?}");
         }
-        assert!(rounded(&[0.0, f64::NAN, 1.0])[1].is_nan());
+        assert!(rounded(&[0.0, f64::NAN, 1.0], unit)[1].is_nan());
     }
 
     #[test]

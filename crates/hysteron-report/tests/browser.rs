@@ -58,7 +58,7 @@ fn show(browser: &mut Chromium, tab: &Tab, figure: &str) {
     let node = format!("document.querySelector('#{figure} .plot')");
     browser.value(tab, &format!("{node}.scrollIntoView({{block: 'center'}})"));
     let drawn =
-        format!("{node}.querySelector('.scatterlayer path') && {node}.ariaBusy === 'false'");
+        format!("{node}.querySelector('.scatterlayer path') && {node}.dataset.stale === 'false'");
     browser.wait(tab, &drawn);
 }
 
@@ -101,7 +101,7 @@ fn figures_zoom_together() {
     browser.drag(&tab, &along);
     browser.wait(
         &tab,
-        "!document.querySelector('.tools button:last-child').disabled",
+        "document.querySelector('.tools .all').ariaDisabled === 'false'",
     );
     let part = range(&mut browser, &tab, TIME, "xaxis");
     let share = |at: f64| whole[0] + at * (whole[1] - whole[0]);

@@ -92,6 +92,8 @@ impl Span {
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
     quantity: Labelled,
+    /// Tells quantities apart that have the same label.
+    told_apart: &'static str,
     pub(crate) span: Span,
     /// Tick labels are in units of `10^exponent`.
     exponent: i32,
@@ -117,6 +119,7 @@ impl Axis {
         };
         Self {
             quantity: quantity.clone(),
+            told_apart: "",
             span,
             exponent,
             names: Vec::new(),
@@ -148,6 +151,16 @@ impl Axis {
         }
         let factor = (self.exponent != 0).then(|| power_of_ten(self.exponent));
         self.quantity.axis(factor.as_deref())
+    }
+
+    /// The same axis of a quantity that is another one than its label says.
+    pub(crate) fn told_apart(self, told_apart: &'static str) -> Self {
+        Self { told_apart, ..self }
+    }
+
+    /// What the quantity is; axes with the same key show the same.
+    pub(crate) fn key(&self) -> String {
+        format!("{}{}", self.told_apart, self.whole_label())
     }
 
     /// Name and unit, without a factor and also where the label stands elsewhere.

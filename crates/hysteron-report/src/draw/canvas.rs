@@ -3,6 +3,7 @@
 use super::plot::{Plot, Words};
 use super::style::{INK, Stroke};
 use super::text::FAMILIES;
+use hysteron::printable;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -124,7 +125,8 @@ impl Canvas {
     }
 
     /// Text that a page keeps when it draws the panels again.
-    pub(crate) fn words(&mut self, words: Words) {
+    pub(crate) fn words(&mut self, mut words: Words) {
+        words.text = printable(&words.text).into_owned();
         self.text_in(
             words.at,
             words.anchor,

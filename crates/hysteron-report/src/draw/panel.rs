@@ -7,6 +7,7 @@ use super::style::{AXIS, GRID, LABEL, SHADE, Stroke, TICK};
 use super::text;
 use crate::decimate;
 use crate::quantity::Labelled;
+use hysteron::printable;
 
 /// Space below a panel for tick labels and the axis label.
 pub(crate) const BELOW: f64 = 46.0;
@@ -65,6 +66,9 @@ impl Panel {
     /// An `x` axis without a panel, at the foot of `area`.
     pub(crate) fn x_alone(canvas: &mut Canvas, area: Rect, x: Axis) {
         let (y, plot) = (x.clone(), None);
+        if let Some(last) = canvas.plots.last_mut() {
+            last.foot = Some(area.y);
+        }
         Self { area, x, y, plot }.x_axis(canvas, true);
     }
 
@@ -116,8 +120,7 @@ impl Panel {
         fill: &'static str,
     ) {
         let bands: Vec<[f64; 2]> = bands.into_iter().collect();
-        let merged = self.merged(bands.iter().copied());
-        for &[from, to] in &merged {
+        for [from, to] in self.merged(bands.iter().copied()) {
             let width = (to - from).max(1.0);
             canvas.rect(
                 Rect {
@@ -128,12 +131,7 @@ impl Panel {
                 fill,
             );
         }
-        let back = |px: f64| {
-            let share = (px - self.area.x) / self.area.width;
-            self.x.span.low + share * (self.x.span.high - self.x.span.low)
-        };
-        let shown = merged.into_iter().map(|band| band.map(back)).collect();
-        self.plot(canvas, |plot| plot.fill(bands, shown, area, fill));
+        self.plot(canvas, |plot| plot.bands.push((bands, area, fill)));
     }
 
     /// Pixels of bands from x to x; bands less than a pixel apart become one.
@@ -191,7 +189,8 @@ impl Panel {
         if (self.area.x..=self.area.right()).contains(&at) {
             canvas.line([at, self.area.y], [at, self.area.bottom()], stroke);
             self.plot(canvas, |plot| {
-                plot.uprights.push((x, *stroke, words.to_owned()))
+                plot.uprights
+                    .push((x, *stroke, printable(words).into_owned()))
             });
         }
     }

@@ -3,22 +3,23 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Rect};
 use super::style::Stroke;
+use hysteron::printable;
 use serde::Serialize;
 
 /// Samples of a line that a page holds, at most about so many.
-pub(crate) const MOST: usize = 20_000;
-/// Filled bands of a panel, at most; where there are more, those that a figure shows.
-const BANDS: usize = 300;
+const MOST: usize = 20_000;
 
 /// A panel, as numbers.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Plot {
     area: Rect,
-    x: Shown,
-    y: Shown,
+    pub(crate) x: Shown,
+    pub(crate) y: Shown,
     pub(crate) lines: Vec<Line>,
-    /// Bands over x: from, to, and where they are filled.
-    bands: Vec<([f64; 2], Rect, &'static str)>,
+    /// Bands from x to x, between top and bottom of an area, in a colour.
+    pub(crate) bands: Vec<(Vec<[f64; 2]>, Rect, &'static str)>,
+    /// Where the x axis stands, if that is below the panel.
+    pub(crate) foot: Option<f64>,
     /// Lines at a y.
     pub(crate) levels: Vec<(f64, Stroke)>,
     /// Lines at an x with their words.
@@ -28,9 +29,11 @@ pub(crate) struct Plot {
 /// An axis, as numbers.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Shown {
-    /// Name and unit. Axes with the same label are zoomed together.
+    /// Name and unit.
     label: String,
-    range: [f64; 2],
+    /// Axes with the same key are zoomed together.
+    key: String,
+    pub(crate) range: [f64; 2],
     /// Whether the label stands here, and whether the axis has numbers.
     labelled: bool,
     numbered: bool,
@@ -69,7 +72,8 @@ pub(crate) struct Words {
 impl Shown {
     pub(crate) fn new(axis: &Axis, numbered: bool) -> Self {
         Self {
-            label: axis.whole_label(),
+            label: printable(&axis.whole_label()).into_owned(),
+            key: axis.key(),
             range: [axis.span.low, axis.span.high],
             labelled: numbered && !axis.label().is_empty(),
             numbered,
@@ -85,30 +89,21 @@ impl Plot {
             y,
             lines: Vec::new(),
             bands: Vec::new(),
+            foot: None,
             levels: Vec::new(),
             uprights: Vec::new(),
         }
     }
 
-    /// Bands from x to x between top and bottom of `area`; `shown` are those of the figure, where
-    /// near ones are one.
-    pub(crate) fn fill(
-        &mut self,
-        bands: Vec<[f64; 2]>,
-        shown: Vec<[f64; 2]>,
-        area: Rect,
-        fill: &'static str,
-    ) {
-        let bands = if bands.len() > BANDS { shown } else { bands };
-        self.bands
-            .extend(bands.into_iter().map(|band| (band, area, fill)));
-    }
-
     /// The area between two lines.
-    pub(crate) fn band(&mut self, xs: &[f64], edges: [&[f64]; 2], fill: &'static str) {
-        let [low, high] = edges.map(|ys| Line::edge(xs, ys));
+    pub(crate) fn band(&mut self, xs: &[f64], [low, high]: [&[f64]; 2], fill: &'static str) {
+        const UNSEEN: Stroke = Stroke::solid("rgba(0,0,0,0)", 0.0);
+        let forward = xs.windows(2).all(|pair| pair[0] <= pair[1]);
+        // The edges belong together: what is kept of one is kept of the other.
+        let kept = kept(xs, low, forward);
+        let edge = |ys| Line::of(xs, ys, UNSEEN, forward, kept.clone());
         let fill = Some(fill);
-        self.lines.extend([low, Line { fill, ..high }]);
+        self.lines.extend([edge(low), Line { fill, ..edge(high) }]);
     }
 }
 
@@ -123,20 +118,21 @@ impl Line {
         Self::new(xs, ys, stroke, false)
     }
 
-    /// An edge of an area, which is not drawn itself.
-    fn edge(xs: &[f64], ys: &[f64]) -> Self {
-        const UNSEEN: Stroke = Stroke::solid("rgba(0,0,0,0)", 0.0);
-        let forward = xs.windows(2).all(|pair| pair[0] <= pair[1]);
-        Self::new(xs, ys, UNSEEN, forward)
-    }
-
     fn new(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool) -> Self {
         let samples = xs.len().min(ys.len());
-        let (xs, ys) = (&xs[..samples], &ys[..samples]);
-        let kept = kept(xs, ys, forward);
+        let kept = kept(&xs[..samples], &ys[..samples], forward);
+        Self::of(xs, ys, stroke, forward, kept)
+    }
+
+    /// A line of which these samples are kept; all, where there are none.
+    fn of(xs: &[f64], ys: &[f64], stroke: Stroke, forward: bool, kept: Vec<u32>) -> Self {
+        let samples = xs.len().min(ys.len());
         let part = |all: &[f64]| match kept.as_slice() {
-            [] => all.to_vec(),
-            kept => kept.iter().map(|k| all[*k as usize]).collect(),
+            [] => all[..samples].to_vec(),
+            kept => kept
+                .iter()
+                .filter_map(|k| all.get(*k as usize).copied())
+                .collect(),
         };
         Self {
             name: String::new(),
@@ -161,7 +157,8 @@ fn kept(xs: &[f64], ys: &[f64], forward: bool) -> Vec<u32> {
     if xs.len() <= MOST {
         return Vec::new();
     }
-    let each = if forward { 2 } else { 4 };
+    // Two ends of each series, and a gap.
+    let each = if forward { 3 } else { 6 };
     let length = xs.len().div_ceil(MOST / each);
     let mut kept = vec![0];
     for from in (0..xs.len()).step_by(length) {

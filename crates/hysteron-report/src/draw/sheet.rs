@@ -5,6 +5,7 @@ use super::marker::Marker;
 use super::plot::{Plot, Words};
 use super::style::{AXIS, FAINT, INK, LABEL, Stroke, TITLE};
 use super::text;
+use hysteron::printable;
 
 /// Space around everything.
 pub(crate) const MARGIN: f64 = 14.0;
@@ -88,6 +89,7 @@ impl Sheet {
 
     /// Adds a legend, in as many rows as it takes.
     pub(crate) fn legend(&mut self, keys: &[Key]) {
+        let told = |words: &str| printable(words).into_owned();
         let (mut x, mut y) = (MARGIN, self.top + 0.5 * ROW);
         for key in keys {
             let (sample, words, subscript) = match key {
@@ -104,8 +106,8 @@ impl Sheet {
             }
             self.sample(key, [x, y]);
             match key {
-                Key::Line(stroke, words) => self.lines.push((*stroke, words.clone())),
-                Key::Area(fill, words) => self.areas.push((*fill, words.clone())),
+                Key::Line(stroke, words) => self.lines.push((*stroke, told(words))),
+                Key::Area(fill, words) => self.areas.push((*fill, told(words))),
                 Key::Marker(..) | Key::Text(_) => {}
             }
             self.canvas
@@ -153,6 +155,16 @@ impl Sheet {
                 .find(|(stroke, _)| *stroke == line.stroke());
             line.name = named.map_or(String::new(), |(_, words)| words.clone());
         }
+        // Lines of the legend that are none of samples: marks, and levels.
+        let drawn = |stroke| {
+            plots
+                .iter()
+                .flat_map(|plot| &plot.lines)
+                .any(|l| l.stroke() == stroke)
+        };
+        let marks = self.lines.iter().filter(|(stroke, _)| !drawn(*stroke));
+        let marks = marks.map(|(stroke, words)| (stroke.colour, words.clone()));
+        self.areas.extend(marks.collect::<Vec<_>>());
         Drawing {
             words: std::mem::take(&mut self.canvas.words),
             svg: self

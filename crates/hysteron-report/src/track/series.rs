@@ -4,6 +4,7 @@ use super::figure::Figure;
 use super::report::NamedTrace;
 use super::view::View;
 use crate::draw::axis::{Axis, Span};
+use crate::draw::canvas::Rect;
 use crate::draw::panel::Panel;
 use crate::draw::sheet::{Drawing, Key, Sheet};
 use crate::draw::stretches::extent;
@@ -81,7 +82,11 @@ pub(super) fn prediction(view: &View<'_>) -> Option<Drawing> {
 
 fn differences(figure: Figure, view: &View<'_>, runs: &[(NamedTrace<'_>, Vec<f64>)]) -> Drawing {
     let (span, cut) = robust(runs.iter().map(|(_, values)| values.as_slice()));
-    let y = Axis::new(&view.output.renamed("error"), span);
+    let told_apart = match figure {
+        Figure::Prediction => "predicted ",
+        _ => "",
+    };
+    let y = Axis::new(&view.output.renamed("error"), span).told_apart(told_apart);
     let mut sheet = view.sheet(figure, WIDTH);
     let difference = match figure {
         Figure::Prediction => "predicted − reached output",
@@ -175,15 +180,18 @@ pub(super) fn beyond(sheet: &mut Sheet, panel: &Panel, time: &[f64], values: &[f
     let area = panel.area;
     type Leaves = fn(f64, Span) -> bool;
     let edges: [(f64, Leaves); 2] = [
-        (area.y + 1.5, |value, span| value > span.high),
-        (area.bottom() - 1.5, |value, span| value < span.low),
+        (area.y, |value, span| value > span.high),
+        (area.bottom() - BEYOND.width, |value, span| value < span.low),
     ];
     for (y, leaves) in edges {
         let inside: Vec<bool> = values.iter().map(|value| !leaves(*value, span)).collect();
         let bands = stretches(&inside);
-        for [from, to] in panel.merged(bands.iter().map(|stretch| extent(time, stretch))) {
-            let to = to.max(from + 3.0);
-            sheet.canvas.line([from, y], [to, y], &BEYOND);
-        }
+        let edge = Rect {
+            y,
+            height: BEYOND.width,
+            ..area
+        };
+        let times = bands.iter().map(|stretch| extent(time, stretch));
+        panel.fill(&mut sheet.canvas, times, edge, BEYOND.colour);
     }
 }

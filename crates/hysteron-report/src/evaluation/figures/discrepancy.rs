@@ -51,7 +51,8 @@ pub(super) fn input(view: &View<'_>) -> Option<Drawing> {
     let y = Axis::new(
         &view.input.renamed("discrepancy"),
         around_zero(hold.iter().chain(&anticipate)),
-    );
+    )
+    .told_apart("input ");
     let (panel, height) = plot(&mut sheet, view, y, &curves, &inverse.moving, PLOT_HEIGHT);
     panel.level(&mut sheet.canvas, 0.0, &ZERO);
     Some(view.finish(Figure::InputDiscrepancy, sheet, height))
