@@ -27,7 +27,7 @@ use crate::draw::sheet::Drawing;
 use crate::evaluation::figure::Figure;
 use crate::evaluation::view::View;
 
-/// The figure as SVG; `None` where this report has no such figure.
+/// The figure; `None` where this report has no such figure.
 pub(crate) fn svg(figure: Figure, view: &View<'_>) -> Option<Drawing> {
     match figure {
         Figure::PlaneEvolution => Some(evolution::svg(view)),
