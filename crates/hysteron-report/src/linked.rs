@@ -3,6 +3,7 @@
 
 use crate::draw::plot::{Plot, Words};
 use crate::draw::sheet::Drawing;
+use crate::number::magnitude;
 use base64::{Engine, prelude::BASE64_STANDARD};
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use maud::{Markup, PreEscaped, html};
@@ -19,7 +20,7 @@ const SCRIPTS: [&str; 4] = [
 const PLOTLY: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/plotly.js.gz"));
 
 /// Digits of a value on a page, over the range of its axis.
-const DIGITS: f64 = 7.0;
+const DIGITS: i32 = 7;
 
 /// [plotly.js](https://plotly.com/javascript/), which the pages draw with.
 ///
@@ -112,7 +113,10 @@ impl Columns {
 
 /// Values to [`DIGITS`] digits of the range of their axis; what is not finite becomes a gap.
 fn rounded(values: &[f64], [low, high]: [f64; 2]) -> Vec<f64> {
-    let power = 10f64.powf((DIGITS - (high - low).log10()).floor());
+    // Read, not computed: the same bits on every machine.
+    let power: f64 = format!("1e{}", DIGITS - magnitude(high - low))
+        .parse()
+        .unwrap_or(f64::INFINITY);
     let round = |value: f64| {
         let rounded = (value * power).round() / power;
         // Ranges of zero, or too large or too small for this, stay as they are.
