@@ -35,12 +35,12 @@ const trace = (line, n, listed) => {
 };
 
 /**
- * Where x goes back, the area between two lines is one of pieces, all of which turn the same way:
- * what turns the other way would be a hole.
- * @param {any} upper @param {any} lower @param {Line} line
+ * The area between two lines on which x goes back. Its pieces all turn the same way: one that turns
+ * the other way would be a hole.
+ * @param {any} upper
+ * @param {any} lower
  */
-const between = (upper, lower, line) => {
-  if (!line.fill || line.forward) return upper;
+const between = (upper, lower) => {
   /** @type {(number | null)[]} */
   const xs = [];
   /** @type {(number | null)[]} */
@@ -100,7 +100,9 @@ class Drawn {
       lines.map((line, l) => {
         const first = line.name !== "" && !listed.has(line.name);
         listed.add(line.name);
-        return between(trace(line, n, first), trace(lines[Math.max(0, l - 1)], n, false), line);
+        const drawn = trace(line, n, first);
+        // Only an area that turns back needs the line before it once more.
+        return line.fill && !line.forward ? between(drawn, trace(lines[l - 1], n, false)) : drawn;
       }),
     );
     // Areas and marks have no line of samples: these are for the legend alone.

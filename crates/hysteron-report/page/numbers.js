@@ -75,6 +75,12 @@ const sampleAt = ({ kept }, at) => (kept.length ? kept[at] : at);
  */
 const placeOf = ({ kept }, sample) => (kept.length ? place(kept, sample) : sample);
 
+/** The part to which an axis is zoomed, where it has any of that. @param {Axis} axis */
+const zoomed = ({ key, range }) => {
+  const part = shown.get(key);
+  return part && part[0] < range[1] && part[1] > range[0] ? part : null;
+};
+
 /**
  * First and last sample within the time that is shown, of a recording of so many.
  * @param {number} samples
@@ -82,11 +88,11 @@ const placeOf = ({ kept }, sample) => (kept.length ? place(kept, sample) : sampl
  */
 const windowOf = (samples) => {
   for (const { x, lines } of figures.flatMap(({ plots }) => plots)) {
-    const part = shown.get(x.key);
+    const part = zoomed(x);
     const line = lines.find(
       (line) => line.forward && line.samples === samples && line.xs.length > 1,
     );
-    if (part && line && part[0] < x.range[1] && part[1] > x.range[0])
+    if (part && line)
       return [
         sampleAt(line, Math.max(0, place(line.xs, part[0]) - 1)),
         sampleAt(line, Math.min(line.xs.length - 1, place(line.xs, part[1]))),
@@ -95,11 +101,8 @@ const windowOf = (samples) => {
   return null;
 };
 
-/** The part of an axis that is shown: all, where it has nothing of the part. @param {Axis} axis */
-const partOf = ({ key, range }) => {
-  const part = shown.get(key);
-  return part && part[0] < range[1] && part[1] > range[0] ? part : range;
-};
+/** The part of an axis that is shown. @param {Axis} axis */
+const partOf = (axis) => zoomed(axis) ?? axis.range;
 
 /** Whether lines of so many samples are over the time of a recording. @param {number} samples */
 const isRecording = (samples) =>
