@@ -35,8 +35,9 @@ impl<T: Real> Branch<T> {
         };
         // The outermost extreme, with index `kind`, is the end of the plane. It counts as met.
         let count = (turns.len() - 1 - kind) / 2;
-        let passed = first_true(1, count, |n| !met(turns[2 * n + kind].y));
-        let end = 2 * passed.map_or(count, |n| n - 1) + kind;
+        let at = |inner: usize| 2 * (count + 1 - inner) + kind;
+        let passed = first_true(1, count, |n| met(turns[at(n)].y));
+        let end = passed.map_or(kind, at);
         Self {
             began: turns.get(end + 1).copied().unwrap_or(here),
             start: turns.get(end + 2).map_or(here.x, |turn| turn.x),
@@ -114,14 +115,19 @@ pub(crate) fn along<T: Real>(rise: T, slope: T, length: T) -> T {
 
 /// The smallest number in `first..=last` for which `test` holds; `None` for none. Where `test`
 /// holds for a number, it has to hold for all larger ones.
+///
+/// It is mostly near `first`. So the steps from there double until one is too far (Bentley and Yao
+/// 1976); the rest is a bisection.
 pub(crate) fn first_true(first: usize, last: usize, test: impl Fn(usize) -> bool) -> Option<usize> {
-    let (mut low, mut high) = (first, last + 1);
+    let (mut low, mut high, mut step) = (first, last + 1, 1_usize);
     while low < high {
-        let middle = low + (high - low) / 2;
+        // After the first success the half is always less than the step.
+        let middle = low + (step - 1).min((high - low) / 2);
         if test(middle) {
             high = middle
         } else {
-            low = middle + 1
+            low = middle + 1;
+            step = step.saturating_mul(2);
         }
     }
     (low <= last).then_some(low)
@@ -134,5 +140,40 @@ pub(crate) fn ceil_index<T: Real>(x: T, levels: usize) -> usize {
         (floor + 1).min(levels)
     } else {
         floor
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every range of up to 70 numbers, and every place in it.
+    #[test]
+    fn the_first_success_is_found() {
+        for first in [0, 1, 5] {
+            for count in 0..70 {
+                let last = first + count;
+                for from in first..=last + 1 {
+                    let expected = (from <= last).then_some(from);
+                    assert_eq!(first_true(first, last, |n| n >= from), expected);
+                }
+            }
+        }
+        assert_eq!(first_true(1, 0, |_| true), None);
+    }
+
+    /// Two searches of 20 steps are enough for a million numbers.
+    #[test]
+    fn a_search_takes_few_tests() {
+        for from in [0, 1, 2, 1000, 65_536, 999_998, 999_999, 1_000_000] {
+            let tests = core::cell::Cell::new(0);
+            let test = |n| {
+                tests.set(tests.get() + 1);
+                n >= from
+            };
+            first_true(0, 999_999, test);
+            assert!(tests.get() <= 40, "{from}: {}", tests.get());
+            assert!(from > 2 || tests.get() <= 3, "{from}: {}", tests.get());
+        }
     }
 }

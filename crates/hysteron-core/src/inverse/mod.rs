@@ -4,7 +4,8 @@
 //! follow:
 //!
 //! 1. The outputs stored at the turning points tell which of the nested branches has the target.
-//! 2. A bisection over one row or column of the Everett table finds the grid cell.
+//! 2. A search over one row or column of the Everett table, from the present cell on, finds the grid
+//!    cell.
 //! 3. Inside the cell the output is piecewise linear, with two pieces.
 //!
 //! The result is the first crossing of the target. It equals the minimum (10) and the maximum (13)
