@@ -45,26 +45,34 @@ pub(crate) fn push_number(out: &mut Vec<u8>, number: f64) {
     if number == 0.0 || (1e-5..1e16).contains(&number.abs()) {
         let mut digits = zmij::Buffer::new();
         let digits = digits.format_finite(number).as_bytes();
+        let last = last_bit(number);
+        if last < -1 - MOST_DECIMALS && number != 0.0 {
+            return out.extend_from_slice(digits);
+        }
         if let Some(whole) = digits.strip_suffix(b".0") {
             return out.extend_from_slice(whole);
         }
+        // A number may lie halfway between two texts with so many decimals. The standard library
+        // then takes the one further from zero, and `zmij` the even one.
+        //
+        // `(2k + 1) / 2 · 10⁻ⁿ` is an odd multiple of `2⁻ⁿ⁻¹`: that is the last bit that is set.
         let point = digits.iter().position(|byte| *byte == b'.');
-        if point.is_some_and(|point| !is_halfway(number, digits.len() - 1 - point)) {
+        if point.is_some_and(|point| last != -((digits.len() - point) as i32)) {
             return out.extend_from_slice(digits);
         }
     }
     out.extend_from_slice(number.to_string().as_bytes());
 }
 
-/// Whether a number may lie halfway between two texts with so many decimals. The standard library
-/// then takes the one further from zero, and `zmij` the even one.
-///
-/// `(2k + 1) / 2 · 10⁻ⁿ` is an odd multiple of `2⁻ⁿ⁻¹`: that is the last bit that is set.
-fn is_halfway(number: f64, decimals: usize) -> bool {
+/// Most decimals of a number from 1e-5 on: 17 digits, the first one at the fifth decimal.
+const MOST_DECIMALS: i32 = 21;
+
+/// The exponent of two of the last bit that is set in a number that is not subnormal.
+#[inline]
+fn last_bit(number: f64) -> i32 {
     let bits = number.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32 - 1075;
-    let mantissa = bits | 1 << 52;
-    exponent + mantissa.trailing_zeros() as i32 == -1 - decimals as i32
+    exponent + (bits | 1 << 52).trailing_zeros() as i32
 }
 
 #[cfg(test)]

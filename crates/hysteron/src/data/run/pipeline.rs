@@ -37,7 +37,7 @@ pub(super) struct Parcel {
 }
 
 /// Blocks that may wait before a thread.
-const AHEAD: usize = 2;
+const AHEAD: usize = 1;
 
 /// Copies `table` to `out` with the columns `added`, whose cells `work` finds. Reads the numbers of
 /// `columns`.

@@ -19,6 +19,7 @@ use crate::error::{Error, Place, Result};
 use crate::remedy::{Remedy, Setting};
 use commas::Commas;
 use dialect::Dialect;
+use marks::Marks;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +37,8 @@ pub(super) struct Text {
     /// A line as it stands in the file, and the number of bytes of the row before it.
     raw: Vec<u8>,
     before: u64,
+    /// Of the bytes that are in memory.
+    marks: Marks,
     splitter: Splitter,
     /// The line on which the row begins, and the number of its lines.
     line: u64,
@@ -80,12 +83,13 @@ impl Text {
         };
         let mut text = Self {
             path: path.to_owned(),
-            lines: BufReader::with_capacity(1 << 16, decoded),
+            lines: BufReader::with_capacity(1 << 17, decoded),
             dialect,
             units: Vec::new(),
             row: Row::default(),
             raw: Vec::new(),
             before: 0,
+            marks: Marks::default(),
             splitter: Splitter::default(),
             line: 1,
             height: 0,

@@ -1,65 +1,56 @@
-//! Finds the ends of cells and lines in a text, sixteen bytes at a time. Cells are so short that a
-//! search that starts anew for each of them costs more.
+//! Finds the ends of cells and lines in a text, 64 bytes at a time. Cells are so short that a search
+//! that starts anew for each of them costs more.
 
 use wide::u8x16;
 
 /// The places of four bytes in a text, in order.
-pub(super) struct Marks<'t> {
-    words: &'t [[u8; SIZE]],
-    rest: &'t [u8],
-    bytes: [u8x16; 4],
-    /// Where the next word begins.
-    at: usize,
-    /// A bit for each byte of the word before that is one of them.
-    found: u32,
+#[derive(Default)]
+pub(super) struct Marks {
+    places: Vec<u32>,
 }
 
-const SIZE: usize = 16;
+const LANES: usize = 16;
 
-impl<'t> Marks<'t> {
-    /// The bytes are not 0.
-    pub(super) fn new(text: &'t [u8], bytes: [u8; 4]) -> Self {
-        let (words, rest) = text.as_chunks();
-        Self {
-            words,
-            rest,
-            bytes: bytes.map(u8x16::splat),
-            at: 0,
-            found: 0,
-        }
+impl Marks {
+    pub(super) fn places(&self) -> &[u32] {
+        &self.places
     }
 
+    /// Finds the places of `bytes` in a text of less than 4 GiB.
+    pub(super) fn find(&mut self, text: &[u8], bytes: [u8; 4]) {
+        self.places.clear();
+        let bytes = bytes.map(u8x16::splat);
+        let (words, rest) = text.as_chunks::<{ 4 * LANES }>();
+        let mut start = 0;
+        for word in words {
+            self.push(start, found(word, bytes));
+            start += word.len() as u32;
+        }
+        let mut last = [0; 4 * LANES];
+        last[..rest.len()].copy_from_slice(rest);
+        self.push(start, found(&last, bytes) & !(u64::MAX << rest.len()));
+    }
+
+    /// Adds the place of each bit that is set.
     #[inline]
-    fn search(&mut self, word: [u8; SIZE]) {
-        let word = u8x16::new(word);
-        let [a, b, c, d] = self.bytes.map(|byte| word.simd_eq(byte));
-        self.found = (a | b | c | d).to_bitmask();
-        self.at += SIZE;
+    fn push(&mut self, start: u32, mut found: u64) {
+        while found != 0 {
+            self.places.push(start + found.trailing_zeros());
+            found &= found - 1;
+        }
     }
 }
 
-impl Iterator for Marks<'_> {
-    type Item = usize;
-
-    #[inline]
-    fn next(&mut self) -> Option<usize> {
-        while self.found == 0 {
-            if let Some((word, words)) = self.words.split_first() {
-                self.words = words;
-                self.search(*word);
-            } else if self.rest.is_empty() {
-                return None;
-            } else {
-                let mut word = [0; SIZE];
-                word[..self.rest.len()].copy_from_slice(self.rest);
-                self.rest = &[];
-                self.search(word);
-            }
-        }
-        let place = self.at - SIZE + self.found.trailing_zeros() as usize;
-        self.found &= self.found - 1;
-        Some(place)
-    }
+/// A bit for each byte of the word that is one of the bytes.
+#[inline]
+fn found(word: &[u8; 4 * LANES], bytes: [u8x16; 4]) -> u64 {
+    let (lanes, _) = word.as_chunks::<LANES>();
+    let bits = lanes.iter().zip([0, 16, 32, 48]).map(|(lane, shift)| {
+        let lane = u8x16::new(*lane);
+        let [a, b, c, d] = bytes.map(|byte| lane.simd_eq(byte));
+        u64::from((a | b | c | d).to_bitmask()) << shift
+    });
+    bits.fold(0, |all, bits| all | bits)
 }
 
 #[cfg(test)]
@@ -84,17 +75,18 @@ mod tests {
             b'a',
             b'\n' | 0x80,
         ];
+        let mut marks = Marks::default();
         for round in 0..20_000 {
-            let length = round % 40;
+            let length = round % 200;
             let byte = |_| match random.next_u32() % 4 {
                 0 => random.next_u32() as u8,
                 _ => alphabet[random.next_u32() as usize % alphabet.len()],
             };
             let text: Vec<u8> = (0..length).map(byte).collect();
-            let is_mark = |n: &usize| matches!(text[*n], b',' | b'\n' | b'\r' | b'"');
-            let expected: Vec<usize> = (0..length).filter(is_mark).collect();
-            let found: Vec<usize> = Marks::new(&text, [b',', b'\n', b'\r', b'"']).collect();
-            assert_eq!(found, expected, "{text:?}");
+            let is_mark = |n: &u32| matches!(text[*n as usize], b',' | b'\n' | b'\r' | b'"');
+            let expected: Vec<u32> = (0..length).filter(is_mark).collect();
+            marks.find(&text, [b',', b'\n', b'\r', b'"']);
+            assert_eq!(marks.places(), expected, "{text:?}");
         }
     }
 }
