@@ -147,10 +147,13 @@ fn evaluate_inverse(
     let run = |policy: Policy| -> Result<InverseRun> {
         let mut state = begin.clone();
         let targets = &recording.output;
-        let solutions = inverse.series_in(&mut state, targets, policy, tolerance, around)?;
-        let missed = |solution: &&Solution<f64>| solution.status.is_out_of_reach();
-        let out_of_reach = solutions.iter().filter(missed).count();
-        let input_model: Vec<f64> = solutions.iter().map(|solution| solution.input).collect();
+        let headings = policy.headings(targets, tolerance);
+        let (mut input_model, mut out_of_reach) = (Vec::with_capacity(targets.len()), 0);
+        let take = |solution: Solution<f64>| {
+            input_model.push(solution.input);
+            out_of_reach += usize::from(solution.status.is_out_of_reach());
+        };
+        inverse.each_headed(&mut state, targets, &headings, tolerance, around, take)?;
         Ok(InverseRun {
             all: compare(&recording.input, &input_model),
             moving: Errors::between(&recording.input, &input_model, |n| moving[n]),

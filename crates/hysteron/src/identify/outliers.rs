@@ -80,19 +80,25 @@ fn judged(
     mended: &[Recording],
     options: &FitOptions,
 ) -> Result<Vec<Outlier>> {
-    let mut problem = Problem::new(mended, options)?;
-    let fitted = problem.solve(None, Progress::NONE)?;
+    let mut residual = {
+        let mut problem = Problem::new(mended, options)?;
+        let fitted = problem.solve(None, Progress::NONE)?;
+        let mut residual = fitted.solution.residual;
+        residual.iter_mut().for_each(|r| *r *= fitted.sign.factor());
+        residual
+    };
+    let mut rest = residual.as_mut_slice();
     let mut found = Vec::new();
-    for (recording, part) in problem.experiment.recordings.iter().enumerate() {
-        let left = fitted.solution.residual[part.clone()].iter();
-        let own = recordings[recording].output.iter();
-        let moved = own.zip(&mended[recording].output).map(|(y, m)| y - m);
-        let residual: Vec<f64> = left
+    for (recording, (own, mended)) in recordings.iter().zip(mended).enumerate() {
+        let (residual, after) = rest.split_at_mut(own.len());
+        rest = after;
+        let moved = own.output.iter().zip(&mended.output).map(|(y, m)| y - m);
+        residual
+            .iter_mut()
             .zip(moved)
-            .map(|(r, moved)| fitted.sign.factor() * r + moved)
-            .collect();
-        let (low, high) = usual_range(recordings[recording].output.clone());
-        let own = isolated(&residual, DEVIATIONS, SMALLEST * (high - low));
+            .for_each(|(r, moved)| *r += moved);
+        let (low, high) = usual_range(own.output.clone());
+        let own = isolated(residual, DEVIATIONS, SMALLEST * (high - low));
         found.extend(own.into_iter().map(|(sample, by)| Outlier {
             recording,
             sample,

@@ -397,12 +397,29 @@ impl Inverse<'_> {
         tolerance: f64,
         surroundings: Surroundings<'_>,
     ) -> Result<Vec<Solution<f64>>> {
+        let mut found = Vec::with_capacity(targets.len());
+        let push = |solution| found.push(solution);
+        self.each_headed(state, targets, headings, tolerance, surroundings, push)?;
+        Ok(found)
+    }
+
+    /// As [`Inverse::headed_in`], without memory for the solutions: `take` gets one after the other.
+    pub(crate) fn each_headed(
+        &self,
+        state: &mut State,
+        targets: &[f64],
+        headings: &[Option<Direction>],
+        tolerance: f64,
+        surroundings: Surroundings<'_>,
+        mut take: impl FnMut(Solution<f64>),
+    ) -> Result<()> {
         self.check_targets(targets.iter().copied())?;
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
         let samples = surroundings.samples(self.model, targets)?.zip(headings);
-        samples
-            .map(|((_, sample), heading)| self.step(state, Wanted::of(sample, heading, tolerance)))
-            .collect()
+        for ((_, sample), heading) in samples {
+            take(self.step(state, Wanted::of(sample, heading, tolerance))?);
+        }
+        Ok(())
     }
 
     /// As [`Inverse::series`], with all that is wanted of each sample.

@@ -16,4 +16,5 @@ mod turning;
 
 pub use errors::Errors;
 pub use spread::{mean_and_deviation, range};
+pub(crate) use turning::branch_of_each;
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};

@@ -32,7 +32,10 @@ pub fn noise(values: &[f64]) -> f64 {
     let mut gain = 1.0;
     let mut smallest: Option<f64> = None;
     for order in 1..=*ORDERS.end() {
-        differences = differences.windows(2).map(|d| d[1] - d[0]).collect();
+        for n in 1..differences.len() {
+            differences[n - 1] = differences[n] - differences[n - 1];
+        }
+        differences.pop();
         gain *= (4 * order - 2) as f64 / order as f64;
         if differences.len() < FEWEST {
             break;

@@ -50,28 +50,28 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
     let sigma = noise(values);
     // No threshold is lower, so what cannot reach this one needs no line.
     let least = (deviations * sigma).max(floor);
-    // For each sample its signed distance from the line, if that is too large.
-    let mut off = vec![None; values.len()];
-    for (place, window) in off[REACH.min(values.len())..]
-        .iter_mut()
-        .zip(values.windows(2 * REACH + 1))
-    {
+    // The samples that are too far from the line.
+    let mut off: Vec<Off> = Vec::new();
+    for (sample, window) in (REACH..).zip(values.windows(2 * REACH + 1)) {
         if furthest(window) <= least {
             continue;
         }
         let (residual, spread) = against_neighbours(window);
         let threshold = (deviations * spread.max(sigma)).max(floor);
-        *place = (residual.abs() > threshold).then_some((residual.signum(), threshold));
+        if residual.abs() > threshold {
+            let side = residual.signum();
+            off.push(Off {
+                sample,
+                side,
+                threshold,
+            });
+        }
     }
     let mut replaced = Vec::new();
-    let mut start = 0;
-    while start < values.len() {
-        let Some((side, _)) = off[start] else {
-            start += 1;
-            continue;
-        };
-        let same = |place: &&Option<(f64, f64)>| place.is_some_and(|(other, _)| other == side);
-        let end = start + off[start..].iter().take_while(same).count();
+    let next_to = |a: &Off, b: &Off| a.sample + 1 == b.sample && a.side == b.side;
+    for run in off.chunk_by(next_to) {
+        let (start, end) = (run[0].sample, run[0].sample + run.len());
+        let side = run[0].side;
         // The first and last REACH samples are never spikes, so there is a neighbour on either
         // side.
         let (before, after) = (values[start - 1], values[end]);
@@ -80,8 +80,8 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
         } else {
             before.min(after)
         };
-        let sticks_out = (start..end)
-            .all(|n| off[n].is_some_and(|(_, threshold)| side * (values[n] - outer) > threshold));
+        let above = |off: &Off| side * (values[off.sample] - outer) > off.threshold;
+        let sticks_out = run.iter().all(above);
         if sticks_out {
             let length = (end - start + 1) as f64;
             for (n, value) in (1_u32..).zip(&mut values[start..end]) {
@@ -89,9 +89,16 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
             }
             replaced.extend(start..end);
         }
-        start = end;
     }
     replaced
+}
+
+/// A sample that is too far from the line through its neighbours.
+struct Off {
+    sample: usize,
+    /// 1 above the line, -1 below it.
+    side: f64,
+    threshold: f64,
 }
 
 /// Number of neighbours of a sample, and number of pairs of them.

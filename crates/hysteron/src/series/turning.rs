@@ -90,20 +90,28 @@ impl Turning {
 /// ```
 #[must_use]
 pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
+    branch_of_each(series, tolerance).collect()
+}
+
+/// As [`branches`], one after the other.
+pub(crate) fn branch_of_each(
+    series: &[f64],
+    tolerance: f64,
+) -> impl Iterator<Item = usize> + use<> {
     let mut turning = Turning::new(tolerance);
     let turns = series.iter().filter_map(|&x| turning.push(x));
     // The start is reported as a turning point, but it ends no branch.
     let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
     let mut ended = turns.into_iter().peekable();
     let mut branch = 0;
-    let of_sample = |n: usize| {
+    let of_sample = move |n: usize| {
         let here = branch;
         if ended.next_if(|turn| *turn == n).is_some() {
             branch += 1;
         }
         here
     };
-    (0..series.len()).map(of_sample).collect()
+    (0..series.len()).map(of_sample)
 }
 
 /// The indices of the samples that hysteresis operators remember at the end of a series, ascending.

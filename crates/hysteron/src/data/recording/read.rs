@@ -156,7 +156,7 @@ impl Recording {
         let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
         let mut of_rows = samples.mend(&table, time_at, repair)?;
         if interpolated.is_some() {
-            let places = samples.places.iter().copied().collect();
+            let places = samples.places.iter().collect();
             of_rows.push((NoteKind::Interpolated, places));
         }
         if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {

@@ -1,6 +1,7 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
 use crate::data::recording::others::Others;
+use crate::data::recording::positions::Positions;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};
@@ -19,7 +20,7 @@ pub(super) struct Samples {
     /// The series in the order in which they were asked for.
     pub(super) series: Vec<Vec<f64>>,
     /// Position of each row.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Positions,
     /// All cells of the rows, if they are wanted.
     pub(super) others: Option<Others>,
     /// The rows that have more or fewer cells than the header.
@@ -44,7 +45,7 @@ impl Samples {
             samples.push(table, asked, outputs.as_mut().map(Iterator::next))?;
         }
         samples.ragged = table.ragged();
-        if samples.places.is_empty() && samples.fault.is_none() {
+        if samples.places.len() == 0 && samples.fault.is_none() {
             let place = Some(table.row_place()).filter(|place| *place != Place::Row(0));
             let problem = "there are no rows below the header".into();
             return Err(table.fault_at(place, None, problem));
@@ -56,7 +57,7 @@ impl Samples {
     pub(super) fn none(count: usize, others: Option<Others>) -> Self {
         Self {
             series: vec![Vec::new(); count],
-            places: Vec::new(),
+            places: Positions::default(),
             others,
             ragged: Places::default(),
             missing: Places::default(),
@@ -89,8 +90,11 @@ impl Samples {
         for (series, value) in self.series.iter_mut().zip(row.iter().flatten()) {
             series.push(*value);
         }
+        let before = self.places.bytes();
         self.places.push(table.row_place());
-        Ok(())
+        let more = 2 * (self.places.bytes() - before) as u128;
+        let taken = table.budget().take(more, "the recording");
+        taken.map_err(|problem| table.fault(None, problem))
     }
 
     /// Notes rows that were dropped because of their length; `refused` is the error for them.
@@ -104,15 +108,14 @@ impl Samples {
     /// Takes memory for another row from the table's budget. Sorting needs a copy.
     fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
         let count = self.places.len();
-        let capacity = self.places.capacity();
+        let capacity = self.series.first().map_or(0, Vec::capacity);
         if count == capacity {
             let more = capacity.max(FIRST);
-            let row = size_of::<f64>() * self.series.len() + size_of::<Place>();
+            let row = size_of::<f64>() * self.series.len();
             let taken = table
                 .budget()
                 .take(2 * (row * more) as u128, "the recording");
             taken.map_err(|problem| table.fault(None, problem))?;
-            self.places.reserve_exact(more);
             for series in &mut self.series {
                 series.reserve_exact(more);
             }
@@ -162,7 +165,7 @@ impl Samples {
         }
         match self.fault.take() {
             Some(fault) if repair == Repair::Refuse => return Err(refusal(fault, &notes)),
-            Some(_) if self.places.is_empty() => {
+            Some(_) if self.places.len() == 0 => {
                 let problem = "no row has a number in every column asked for";
                 return Err(table.fault_at(None, None, problem.into()));
             }
@@ -171,7 +174,7 @@ impl Samples {
         if let (Some(_), Some((_, gaps))) = (time_at, self.series.get(TIME).and_then(|t| gaps(t)))
             && !gaps.is_empty()
         {
-            let places = gaps.into_iter().map(|n| self.places[n]).collect();
+            let places = gaps.into_iter().map(|n| self.places.at(n)).collect();
             notes.push((NoteKind::Gap, places));
         }
         Ok(notes)
@@ -192,9 +195,9 @@ impl Samples {
                 true => format!("the time is {} again", time[n]),
                 false => format!("time goes back from {} to {}", time[n - 1], time[n]),
             };
-            table.fault_at(Some(self.places[n]), time_at, problem)
+            table.fault_at(Some(self.places.at(n)), time_at, problem)
         });
-        (rows().map(|n| self.places[n]).collect(), fault)
+        (rows().map(|n| self.places.at(n)).collect(), fault)
     }
 
     /// Sorts the rows by time. Rows with equal time stay in their order.
@@ -210,7 +213,7 @@ impl Samples {
 
     /// Keeps the positions and other cells of these rows, in this order.
     fn pick(&mut self, order: &[usize]) {
-        self.places = order.iter().map(|&n| self.places[n]).collect();
+        self.places = order.iter().map(|&n| self.places.at(n)).collect();
         if let Some(others) = &mut self.others {
             others.keep(order);
         }

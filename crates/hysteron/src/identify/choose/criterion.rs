@@ -1,6 +1,7 @@
 //! How good a candidate is: one number of levels with one smoothness.
 
 use crate::error::Result;
+use crate::identify::choose::validate::Folds;
 use crate::identify::options::Prior;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::sums::{Reduced, Sums, centred};
@@ -32,17 +33,16 @@ struct Fold {
 pub(super) type Starts = Vec<Vec<f64>>;
 
 impl<'a> Level<'a> {
-    /// `folds` has the fold of each sample, `None` for samples that do not count.
     pub(super) fn new(
         problem: Problem<'a>,
         sign: Sign,
-        folds: &[Option<usize>],
+        folds: &Folds,
         progress: Progress<'a>,
     ) -> Result<Self> {
         let target = centred(&problem, sign);
-        let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
         let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
-        let own = Sums::of_groups(&problem, &target, folds, count, Progress::new(&told))?;
+        let told = Progress::new(&told);
+        let own = Sums::of_groups(&problem, &target, |n| folds.of(n), folds.count, told)?;
         let mut all = own[0].clone();
         own[1..].iter().for_each(|fold| all.add(fold));
         let folds = own.into_iter().map(|own| {

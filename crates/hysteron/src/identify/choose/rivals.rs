@@ -2,30 +2,25 @@
 //! little.
 
 use crate::error::Result;
+use crate::identify::choose::validate::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
 use crate::rivals::{Rival, RivalKind};
 use crate::series::range;
 
-/// The errors of simple rivals on samples that their `folds` left out: one fold for each sample of
-/// all recordings.
+/// The errors of simple rivals on samples that their `folds` left out.
 ///
 /// Where only parts of branches are left out, both neighbours of a gap are known, and interpolation
 /// would be asked nothing. Then the straight line is the only rival.
-pub(super) fn left_out(
-    recordings: &[Recording],
-    folds: &[Option<usize>],
-    whole_branches: bool,
-) -> Result<Vec<RivalScore>> {
+pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<RivalScore>> {
     // A load that changes moves the output by itself, so these rivals say nothing then.
     if recordings.iter().any(|recording| recording.load.is_some()) {
         return Ok(Vec::new());
     }
-    let kinds: &[RivalKind] = match whole_branches {
+    let kinds: &[RivalKind] = match folds.units.whole_branches {
         true => &[RivalKind::Line, RivalKind::Interpolation],
         false => &[RivalKind::Line],
     };
-    let count = folds.iter().flatten().max().map_or(0, |fold| fold + 1);
     let outputs = recordings.iter().map(|recording| range(&recording.output));
     let (low, high) = outputs.fold((f64::INFINITY, f64::NEG_INFINITY), |all, own| {
         (all.0.min(own.0), all.1.max(own.1))
@@ -33,14 +28,14 @@ pub(super) fn left_out(
     let mut scores = Vec::new();
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
-        for fold in 0..count {
+        for fold in 0..folds.count {
             let Ok(rival) = Rival::fit(kind, &pieces(recordings, folds, fold)) else {
                 continue;
             };
-            for (recording, folds) in with_folds(recordings, folds) {
+            for (recording, first) in with_first(recordings) {
                 let predicted = rival.predict(recording)?;
                 for (n, predicted) in predicted.into_iter().enumerate() {
-                    if folds[n] == Some(fold) {
+                    if folds.of(first + n) == Some(fold) {
                         squares += (recording.output[n] - predicted).powi(2);
                         samples += 1;
                     }
@@ -57,27 +52,24 @@ pub(super) fn left_out(
     Ok(scores)
 }
 
-/// Each recording with the folds of its samples.
-fn with_folds<'a>(
-    recordings: &'a [Recording],
-    folds: &'a [Option<usize>],
-) -> impl Iterator<Item = (&'a Recording, &'a [Option<usize>])> {
-    let mut rest = folds;
-    recordings.iter().map(move |recording| {
-        let (own, others) = rest.split_at(recording.len());
-        rest = others;
-        (recording, own)
+/// Each recording with the number of its first sample among those of all.
+fn with_first(recordings: &[Recording]) -> impl Iterator<Item = (&Recording, usize)> {
+    recordings.iter().scan(0, |next, recording| {
+        let first = *next;
+        *next += recording.len();
+        Some((recording, first))
     })
 }
 
 /// The runs of samples that a fold keeps.
-fn pieces(recordings: &[Recording], folds: &[Option<usize>], fold: usize) -> Vec<Recording> {
+fn pieces(recordings: &[Recording], folds: &Folds, fold: usize) -> Vec<Recording> {
     let mut pieces = Vec::new();
-    for (recording, folds) in with_folds(recordings, folds) {
+    for (recording, first) in with_first(recordings) {
         let mut start = 0;
         // One more than there are, so that the last run ends.
-        for (n, other) in folds.iter().chain([&None]).enumerate() {
-            if other.is_none_or(|other| other == fold) {
+        for n in 0..=recording.len() {
+            let is_kept = n < recording.len() && folds.of(first + n).is_some_and(|of| of != fold);
+            if !is_kept {
                 // A single sample has no direction.
                 if n > start + 1 {
                     pieces.extend(recording.only(|k| (start..n).contains(&k)));

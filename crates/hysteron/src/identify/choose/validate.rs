@@ -11,6 +11,7 @@ use crate::identify::choose::rivals;
 use crate::identify::choose::search::{ALONG_AXES, AROUND, Place, Step, best, smooth_at, walk};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
+use crate::identify::weights::units::Units;
 use crate::identify::weights::problem::Problem;
 use crate::model::{Criterion, Score, Smooth, Solver, Validation};
 use crate::progress::Progress;
@@ -99,20 +100,20 @@ pub(super) fn validated(
     } = choose(seen, options, candidates, None, progress)?;
     let problem = Problem::new(seen.operators, &options)?;
     let (low, high) = range(&problem.experiment.output);
-    let rivals = rivals::left_out(seen.measured, &folds.of, folds.whole_branches)?;
+    let rivals = rivals::left_out(seen.measured, &folds)?;
     // What the choice is worth is the error on what was left out, whatever chose.
     let rmse = match criterion {
         Criterion::LeftOut => chosen.rmse,
         Criterion::Evidence => {
             let sign = options.sign.unwrap_or_default();
-            let level = Level::new(problem, sign, &folds.of, progress)?;
+            let level = Level::new(problem, sign, &folds, progress)?;
             level.left_out_rmse(chosen.smooth, &mut level.starts())?
         }
     };
     let validation = Validation {
         criterion,
         folds: folds.count,
-        whole_branches: folds.whole_branches,
+        whole_branches: folds.units.whole_branches,
         rmse,
         nrmse_percent: 100.0 * rmse / (high - low),
         scores,
@@ -121,12 +122,17 @@ pub(super) fn validated(
     Ok((options, validation))
 }
 
-/// What was left out together.
+/// What is left out together: every so many units.
 pub(super) struct Folds {
-    /// For each sample the fold that leaves it out, `None` for samples that do not count.
-    of: Vec<Option<usize>>,
-    count: usize,
-    whole_branches: bool,
+    pub(super) units: Units,
+    pub(super) count: usize,
+}
+
+impl Folds {
+    /// The fold that leaves a sample out; `None` if the sample does not count.
+    pub(super) fn of(&self, sample: usize) -> Option<usize> {
+        self.units.of(sample).map(|unit| unit % self.count)
+    }
 }
 
 /// The candidate that was chosen, and how.
@@ -168,14 +174,10 @@ pub(super) fn choose(
     }
     let sign = options.sign.unwrap_or_default();
     let even = Experiment::new(seen.even, &options)?;
-    let (unit, units, whole_branches) = even.units(kept, ENOUGH_BRANCHES);
-    let count = units.min(FOLDS);
-    let folds = Folds {
-        of: unit.into_iter().map(|u| u.map(|u| u % count)).collect(),
-        count,
-        whole_branches,
-    };
-    let criterion = match whole_branches {
+    let units = Units::new(&even, kept, ENOUGH_BRANCHES);
+    let count = units.count.min(FOLDS);
+    let folds = Folds { units, count };
+    let criterion = match folds.units.whole_branches {
         true => Criterion::LeftOut,
         false => Criterion::Evidence,
     };
@@ -189,7 +191,7 @@ pub(super) fn choose(
     };
     let is_large = |problem: &Problem<'_>| problem.regressor.columns().len() > MOST_COLUMNS;
     if candidates.smooth.is_none() && first > COARSE && is_large(&problem) {
-        let level = Level::new(at(COARSE, &options)?, sign, &folds.of, progress)?;
+        let level = Level::new(at(COARSE, &options)?, sign, &folds, progress)?;
         search.rate(&level, COARSE)?;
         search.near = &ALONG_AXES;
     }
@@ -204,7 +206,7 @@ pub(super) fn choose(
         if n > 0 && is_large(&problem) {
             break;
         }
-        let level = Level::new(problem, sign, &folds.of, progress)?;
+        let level = Level::new(problem, sign, &folds, progress)?;
         let found = search.rate(&level, levels)?;
         let values = found.iter().map(|score| criterion.value(score));
         let value = values.fold(f64::INFINITY, f64::min);

@@ -3,10 +3,11 @@
 use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::gram::dot;
+use crate::identify::weights::units::Units;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
 use crate::identify::weights::sums::{Coefficients, Sums, centred};
-use crate::identify::weights::units::UnitSums;
+use crate::identify::weights::unit_sums::UnitSums;
 use crate::model::LoadPart;
 use crate::model::Solver;
 use crate::parallel;
@@ -53,14 +54,9 @@ pub(crate) fn replicates(
         Solver::Ols => Some(equations.penalised.factor()?),
         Solver::Nnls => None,
     };
-    let LeftOutErrors {
-        unit,
-        units,
-        errors,
-        ..
-    } = left_out;
-    let sums = UnitSums::new(regressor, experiment, errors, unit)?;
-    let of_free = free.unit_products(errors, unit, *units);
+    let LeftOutErrors { units, errors } = left_out;
+    let sums = UnitSums::new(regressor, experiment, errors, units)?;
+    let of_free = free.unit_products(errors, units);
     let mixed = free.mixed(regressor, experiment)?;
     // The penalty shrinks the solution again. Subtract that effect, so that the replicates stay
     // around the fit.
@@ -70,7 +66,7 @@ pub(crate) fn replicates(
         let count = done.fetch_add(1, Ordering::Relaxed);
         progress.tell("confidence", count as f64 / options.bootstrap as f64)?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
-        let signs: Vec<f64> = (0..*units)
+        let signs: Vec<f64> = (0..units.count)
             .map(|_| if rng.next_u32() & 1 == 1 { 1.0 } else { -1.0 })
             .collect();
         let pull = equations.penalised.draw(regressor, || {
@@ -116,18 +112,17 @@ pub(crate) fn left_out_errors(
     progress: Progress<'_>,
 ) -> Result<LeftOutErrors> {
     let (regressor, experiment) = (&problem.regressor, &problem.experiment);
-    let (unit, units, whole) = experiment.units(None, enough_branches);
-    let groups = units.min(GROUPS);
-    let group: Vec<Option<usize>> = unit.iter().map(|unit| unit.map(|u| u % groups)).collect();
+    let units = Units::new(experiment, None, enough_branches);
+    let groups = units.count.min(GROUPS);
+    let group = |n: usize| units.of(n).map(|unit| unit % groups);
     let target = centred(problem, fitted.sign);
     let told = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
     let progress = Progress::new(&told);
     // All samples are one group. Its sums less those of a group are the sums of the others.
-    let one = vec![Some(0); unit.len()];
-    let all = Sums::of_groups(problem, &target, &one, 1, progress)?;
+    let all = Sums::of_groups(problem, &target, |_| Some(0), 1, progress)?;
     let mut solved: Vec<Coefficients> = Vec::new();
     for groups in Sums::passes(problem, groups) {
-        let own = Sums::of_some(problem, &target, &group, groups, progress)?;
+        let own = Sums::of_some(problem, &target, group, groups, progress)?;
         solved.extend(parallel::map(own.len(), |n| {
             progress.tell("confidence", 0.0)?;
             let rest = all[0].without(&own[n]).reduced()?;
@@ -137,30 +132,21 @@ pub(crate) fn left_out_errors(
         })?);
     }
     let (x, free): (Vec<_>, Vec<_>) = solved.into_iter().map(|at| (at.x, at.free)).unzip();
-    let predicted = regressor.forwards(experiment, &x, |n| group[n])?;
-    let mut errors = vec![0.0; unit.len()];
+    let mut errors = regressor.forwards(experiment, &x, group)?;
     for (n, error) in errors.iter_mut().enumerate() {
-        let Some(group) = group[n] else {
+        let Some(group) = group(n) else {
             continue;
         };
         let level = experiment.offsets.iter().zip(&free[group]);
         let level: f64 = level.map(|(z, value)| value * z[n]).sum();
-        *error = target[n] - predicted[n] - level;
+        *error = target[n] - *error - level;
     }
-    Ok(LeftOutErrors {
-        unit,
-        units,
-        whole,
-        errors,
-    })
+    Ok(LeftOutErrors { units, errors })
 }
 
 /// Errors of fits that left the sample's unit out, and the units.
 pub(crate) struct LeftOutErrors {
-    unit: Vec<Option<usize>>,
-    units: usize,
-    /// Whether the units are whole branches.
-    whole: bool,
+    units: Units,
     errors: Vec<f64>,
 }
 
@@ -168,15 +154,18 @@ impl LeftOutErrors {
     /// Numbers and errors of the samples that show what the model errs by on a new branch, and the
     /// number of their units. The first branch of a recording is not among them, because no other
     /// comes from where it comes, unless there are only first branches.
-    pub(crate) fn of_new_branches(&self, problem: &Problem) -> (Vec<(usize, f64)>, usize) {
-        let experiment = &problem.experiment;
-        let begins = experiment.recordings.iter().map(|own| own.start);
-        let first: Vec<Option<usize>> = begins.map(|n| self.unit[n]).collect();
-        let all = !self.whole || first.len() == self.units;
-        let counts = |n: &usize| all || !first.contains(&self.unit[*n]);
+    pub(crate) fn of_new_branches(
+        &self,
+        problem: &Problem,
+    ) -> (impl Iterator<Item = (usize, f64)>, usize) {
+        let units = &self.units;
+        let begins = problem.experiment.recordings.iter().map(|own| own.start);
+        let first: Vec<Option<usize>> = begins.map(|n| units.of(n)).collect();
+        let all = !units.whole_branches || first.len() == units.count;
+        let count = units.count - if all { 0 } else { first.len() };
         let errors = self.errors.iter().copied().enumerate();
-        let errors = errors.filter(|(n, _)| counts(n)).collect();
-        (errors, self.units - if all { 0 } else { first.len() })
+        let counts = move |n: usize| all || !first.contains(&units.of(n));
+        (errors.filter(move |(n, _)| counts(*n)), count)
     }
 }
 

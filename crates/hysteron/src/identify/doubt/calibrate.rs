@@ -14,15 +14,13 @@ const SHARE: f64 = 0.95;
 /// the number of units.
 pub(super) fn calibrate(
     factors: &[LoadPart],
-    (errors, units): (Vec<(usize, f64)>, usize),
+    (errors, units): (impl Iterator<Item = (usize, f64)>, usize),
     sensor: f64,
     problem: &Problem,
     sign: Sign,
 ) -> Result<f64> {
     let variance = variance(factors, problem, sign)?;
-    let missing = errors
-        .into_iter()
-        .map(|(n, error)| missing(error, variance[n]));
+    let missing = errors.map(|(n, error)| missing(error, variance[n]));
     Ok(quantile(missing.collect(), units).sqrt().max(sensor))
 }
 

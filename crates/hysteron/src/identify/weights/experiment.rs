@@ -10,7 +10,7 @@ use crate::model::bernstein;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::range;
-use crate::series::{branches, usual_tolerance};
+use crate::series::{branch_of_each, usual_tolerance};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -117,60 +117,15 @@ impl<'a> Experiment<'a> {
         let band = usual_tolerance(&self.input);
         for range in &self.recordings {
             let before = self.branches();
-            let own = branches(&self.input[range.clone()], band);
+            let own = branch_of_each(&self.input[range.clone()], band);
             // No more branches than samples, and of these no memory holds 2³².
             self.branch
-                .extend(own.iter().map(|branch| (before + branch) as u32));
+                .extend(own.map(|branch| (before + branch) as u32));
         }
     }
 
     pub(crate) fn branches(&self) -> usize {
         self.branch.last().map_or(0, |last| *last as usize + 1)
-    }
-
-    /// Groups the samples that are kept into units, which are left out or drawn as a whole. A unit
-    /// is a branch. With fewer than `enough` branches it is a part of one, and there are at least
-    /// twice as many units.
-    ///
-    /// Returns the unit of each sample, the number of units, and whether they are whole branches.
-    pub(crate) fn units(
-        &self,
-        kept: Option<&[f64]>,
-        enough: usize,
-    ) -> (Vec<Option<usize>>, usize, bool) {
-        let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
-        let mut unit = vec![None; self.input.len()];
-        let (mut units, mut last) = (0, None);
-        for (n, &branch) in self.branch.iter().enumerate() {
-            if is_kept(n) {
-                units += usize::from(last != Some(branch));
-                last = Some(branch);
-                unit[n] = Some(units - 1);
-            }
-        }
-        if units >= enough {
-            return (unit, units, true);
-        }
-        let parts = (2 * enough).div_ceil(units.max(1));
-        // Divide by the path of the input, not by the number of samples, because the input may
-        // rest.
-        let mut travel = vec![0.0; units];
-        let mut at = vec![0.0; unit.len()];
-        for n in 0..unit.len() {
-            if let Some(u) = unit[n] {
-                if n > 0 && unit[n - 1] == Some(u) {
-                    travel[u] += (self.input[n] - self.input[n - 1]).abs();
-                }
-                at[n] = travel[u];
-            }
-        }
-        for (unit, at) in unit.iter_mut().zip(at) {
-            if let Some(u) = unit {
-                let part = (parts as f64 * at / travel[*u].max(f64::MIN_POSITIVE)) as usize;
-                *u = *u * parts + part.min(parts - 1);
-            }
-        }
-        (unit, units * parts, false)
     }
 
     /// The plane of the options; by default the one for the range of all inputs.

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::dot;
 use crate::identify::weights::of_load::OfLoad;
+use crate::identify::weights::units::Units;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::Mixed;
 use faer::linalg::solvers::Solve;
@@ -77,18 +78,13 @@ impl FreeColumns {
         self.columns.iter().map(product).collect()
     }
 
-    /// `Zᵀ r` over the samples of each of `units` units.
-    pub(crate) fn unit_products(
-        &self,
-        residual: &[f64],
-        unit: &[Option<usize>],
-        units: usize,
-    ) -> Vec<Vec<f64>> {
+    /// `Zᵀ r` over the samples of each unit.
+    pub(crate) fn unit_products(&self, residual: &[f64], units: &Units) -> Vec<Vec<f64>> {
         let of = |z: &OfLoad| {
-            let mut sums = vec![0.0; units];
-            for ((z, r), unit) in z.iter().zip(residual).zip(unit) {
-                if let Some(unit) = unit {
-                    sums[*unit] += z * r;
+            let mut sums = vec![0.0; units.count];
+            for (n, (z, r)) in z.iter().zip(residual).enumerate() {
+                if let Some(unit) = units.of(n) {
+                    sums[unit] += z * r;
                 }
             }
             sums

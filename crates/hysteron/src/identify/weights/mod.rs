@@ -2,10 +2,11 @@
 //!
 //! `experiment` joins the recordings and `problem` sets up the fit. `sparse` and `rows` apply the
 //! regressor of one recording without forming it; `regressor` combines recordings, starts and
-//! loads. `sums` are the products of groups of samples, from which a fit and its error follow without
-//! the samples. `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal
-//! equations with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept sparse,
-//! over Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`.
+//! loads. `units` divides the samples into branches or parts of them; `sums` and `unit_sums` are
+//! products of groups of samples, from which fits and their errors follow without the samples.
+//! `smoothness` is the penalty and `free` eliminates the offset. `solve` solves the normal equations
+//! with `nnls`, `pivoting` and `cholesky`. With many levels the Gram matrix is kept sparse, over
+//! Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`.
 
 pub(super) mod cholesky;
 pub(super) mod corner_gram;
@@ -26,4 +27,5 @@ pub(super) mod smoothness;
 pub(super) mod solve;
 pub(super) mod sparse;
 pub(super) mod sums;
+pub(super) mod unit_sums;
 pub(super) mod units;

@@ -335,7 +335,7 @@ impl<'a> NormalEquations<'a> {
     /// `start` and takes at most `steps` proximal steps.
     pub(crate) fn solve(
         &self,
-        target: &[f64],
+        target: impl Iterator<Item = f64> + Clone,
         solver: Solver,
         start: Option<&[f64]>,
         steps: usize,
@@ -347,11 +347,13 @@ impl<'a> NormalEquations<'a> {
             Solver::Nnls => None,
         };
         let start = start.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
-        let mut best = self.solution(target, start)?;
-        let nothing = NOTHING_LEFT * target.iter().map(|y| y * y).sum::<f64>();
+        let mut best = self.solution(target.clone(), start)?;
+        let nothing = NOTHING_LEFT * target.clone().map(|y| y * y).sum::<f64>();
         for _ in 0..steps {
             progress.tell("weights", 0.0)?;
             let gradient = self.descent(&best)?;
+            // There is memory for one residual only.
+            best.residual = Vec::new();
             let x = match &full {
                 Some(_) => {
                     let step =
@@ -365,7 +367,7 @@ impl<'a> NormalEquations<'a> {
                     self.penalised.minimum(&right, &best.x, None, progress)?
                 }
             };
-            let next = self.solution(target, x)?;
+            let next = self.solution(target.clone(), x)?;
             let (before, after) = (best.objective, next.objective);
             if after < before {
                 best = next;
@@ -374,11 +376,14 @@ impl<'a> NormalEquations<'a> {
                 break;
             }
         }
+        if best.residual.is_empty() {
+            best = self.solution(target, best.x)?;
+        }
         Ok(best)
     }
 
     /// `Aᵀ y` of the target without its free part, and the sum of squares of that.
-    pub(crate) fn right(&self, target: &[f64]) -> Result<(Vec<f64>, f64)> {
+    pub(crate) fn right(&self, target: impl Iterator<Item = f64>) -> Result<(Vec<f64>, f64)> {
         let none = vec![0.0; self.regressor.columns().len()];
         let residual = self.solution(target, none)?.residual;
         let squares = residual.iter().map(|r| r * r).sum();
@@ -387,7 +392,7 @@ impl<'a> NormalEquations<'a> {
 
     /// The solution `x` with its residual from `target`, after the best free columns are
     /// subtracted.
-    fn solution(&self, target: &[f64], x: Vec<f64>) -> Result<Solution> {
+    fn solution(&self, target: impl Iterator<Item = f64>, x: Vec<f64>) -> Result<Solution> {
         let mut residual = self.regressor.forward(self.experiment, &x)?;
         let all = residual.iter_mut().zip(target);
         all.for_each(|(h, y)| *h = y - *h);

@@ -47,13 +47,13 @@ impl Sums {
     pub(crate) fn of_groups(
         problem: &Problem,
         target: &[f64],
-        group: &[Option<usize>],
+        group: impl Fn(usize) -> Option<usize> + Sync,
         count: usize,
         progress: Progress<'_>,
     ) -> Result<Vec<Self>> {
         let passes = Self::passes(problem, count);
         let all = parallel::map(passes.len(), |n| {
-            Self::of_some(problem, target, group, passes[n].clone(), progress)
+            Self::of_some(problem, target, &group, passes[n].clone(), progress)
         })?;
         Ok(all.into_iter().flatten().collect())
     }
@@ -70,7 +70,7 @@ impl Sums {
     pub(crate) fn of_some(
         problem: &Problem,
         target: &[f64],
-        group: &[Option<usize>],
+        group: impl Fn(usize) -> Option<usize>,
         groups: Range<usize>,
         progress: Progress<'_>,
     ) -> Result<Vec<Self>> {
@@ -81,7 +81,7 @@ impl Sums {
         };
         let count = groups.len();
         let own = |n: usize| {
-            let group = group[n]?.checked_sub(groups.start)?;
+            let group = group(n)?.checked_sub(groups.start)?;
             (group < count).then_some(group)
         };
         let grams = regressor.compact_grams(experiment, count, own, progress)?;

@@ -1,141 +1,82 @@
-//! `Aᵀ r` over units of samples, such as branches. With other signs of the units it is summed anew
-//! without a pass over the samples.
-//!
-//! A unit touches few triangles of the plane, so its sums are kept sparse, before the prefix sums
-//! ([`SparseForm::operators_of`](super::sparse::SparseForm::operators_of)). Those are linear, and
-//! taken once for all units together.
+//! Units of samples: what is left out of a fit, or drawn for a replicate, as a whole.
 
-use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
-use crate::identify::weights::regressor::Regressor;
-use crate::identify::weights::rows::Term;
-use crate::identify::weights::sparse::Initial;
 
-/// The sums of every unit.
-pub(crate) struct UnitSums {
-    slots: Vec<Slot>,
+/// The unit of each sample. A unit is a branch, or a part of one.
+pub(crate) struct Units {
+    /// [`NONE`] for samples that do not count.
+    of: Vec<u32>,
+    /// Number of units.
+    pub(crate) count: usize,
+    /// Whether each is a whole branch.
+    pub(crate) whole_branches: bool,
 }
 
-/// The sums over recordings in which every column starts in the same way, for one function of the
-/// load and one start.
-struct Slot {
-    part: usize,
-    recording: usize,
-    from: Initial,
-    /// Units and their sums; a unit may occur several times.
-    units: Vec<(usize, Vec<Term>)>,
-}
+/// No more units than samples, and of these no memory holds 2³².
+const NONE: u32 = u32::MAX;
 
-impl UnitSums {
-    /// `unit` has the unit of each sample, `None` for samples that do not count. The samples of a
-    /// unit are next to each other.
-    pub(crate) fn new(
-        regressor: &Regressor,
-        experiment: &Experiment,
-        residual: &[f64],
-        unit: &[Option<usize>],
-    ) -> Result<Self> {
-        let mut slots = Vec::new();
-        for recordings in regressor.alike(experiment) {
-            for (part, values) in experiment.parts.iter().enumerate() {
-                for from in regressor.starts(recordings.start) {
-                    let mut units = Vec::new();
-                    for range in &experiment.recordings[recordings.clone()] {
-                        let mut scratch = Scratch::new(regressor.form().operators());
-                        let mut rows = regressor.form().rows(from)?;
-                        let (mut held, mut at) = (0.0, None);
-                        for n in range.clone() {
-                            let left_branch = rows.leaves_branch(experiment.input[n])?;
-                            if left_branch || unit[n] != at {
-                                scratch.add(rows.memory(), held);
-                                held = 0.0;
-                            }
-                            if unit[n] != at {
-                                units.extend(at.map(|unit| (unit, scratch.take())));
-                                at = unit[n];
-                            }
-                            if left_branch {
-                                rows.remember();
-                            }
-                            if at.is_some() {
-                                let r = values[n] * residual[n];
-                                held += r;
-                                scratch.add(&rows.branch(), r);
-                            }
-                        }
-                        scratch.add(rows.memory(), held);
-                        units.extend(at.map(|unit| (unit, scratch.take())));
-                    }
-                    slots.push(Slot {
-                        part,
-                        recording: recordings.start,
-                        from,
-                        units,
-                    });
-                }
+impl Units {
+    /// The units of the samples that are kept. They are branches. With fewer than `enough` branches
+    /// they are parts of them, and there are at least twice as many units.
+    pub(crate) fn new(experiment: &Experiment<'_>, kept: Option<&[f64]>, enough: usize) -> Self {
+        let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
+        let (mut count, mut last) = (0, None);
+        let branches = experiment.branch.iter().enumerate();
+        let of = branches.map(|(n, &branch)| match is_kept(n) {
+            true => {
+                count += u32::from(last != Some(branch));
+                last = Some(branch);
+                count - 1
             }
-        }
-        Ok(Self { slots })
-    }
-
-    /// `Aᵀ (s r)`, where `s` at each sample is the number in `signs` of its unit.
-    pub(crate) fn with_signs(&self, regressor: &Regressor, signs: &[f64]) -> Vec<f64> {
-        let columns = regressor.columns();
-        let mut result = vec![0.0; columns.len()];
-        let mut sums = vec![0.0; regressor.form().operators()];
-        for slot in &self.slots {
-            sums.fill(0.0);
-            for (unit, terms) in &slot.units {
-                for term in terms {
-                    sums[term.place as usize] += signs[*unit] * term.factor;
-                }
-            }
-            regressor.form().operators_of(&mut sums);
-            for (result, column) in result.iter_mut().zip(columns) {
-                if column.part == slot.part && column.initial_in(slot.recording) == slot.from {
-                    *result += sums[column.operator];
-                }
-            }
-        }
-        result
-    }
-}
-
-/// Sums of one unit, and which of them are in use.
-struct Scratch {
-    sums: Vec<f64>,
-    used: Vec<bool>,
-    places: Vec<u32>,
-}
-
-impl Scratch {
-    fn new(count: usize) -> Self {
-        Self {
-            sums: vec![0.0; count],
-            used: vec![false; count],
-            places: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, terms: &[Term], scale: f64) {
-        for term in terms {
-            let place = term.place as usize;
-            self.sums[place] += scale * term.factor;
-            if !self.used[place] {
-                self.used[place] = true;
-                self.places.push(term.place);
-            }
-        }
-    }
-
-    /// The sums, which begin anew.
-    fn take(&mut self) -> Vec<Term> {
-        let places = std::mem::take(&mut self.places);
-        let term = |place: u32| {
-            self.used[place as usize] = false;
-            let factor = std::mem::take(&mut self.sums[place as usize]);
-            Term { place, factor }
+            false => NONE,
+        });
+        let of: Vec<u32> = of.collect();
+        let whole = Self {
+            of,
+            count: count as usize,
+            whole_branches: true,
         };
-        places.into_iter().map(term).collect()
+        match whole.count >= enough {
+            true => whole,
+            false => whole.divided(
+                &experiment.input,
+                (2 * enough).div_ceil(count.max(1) as usize),
+            ),
+        }
+    }
+
+    /// Each unit in so many parts. They divide the path of the input, not the number of samples,
+    /// because the input may rest.
+    fn divided(mut self, input: &[f64], parts: usize) -> Self {
+        let step = |n: usize| match n > 0 && self.of[n - 1] == self.of[n] {
+            true => (input[n] - input[n - 1]).abs(),
+            false => 0.0,
+        };
+        let mut path = vec![0.0; self.count];
+        for n in 0..input.len() {
+            if let Some(unit) = self.of(n) {
+                path[unit] += step(n);
+            }
+        }
+        let mut travelled = vec![0.0; self.count];
+        let of = (0..input.len()).map(|n| match self.of(n) {
+            Some(unit) => {
+                travelled[unit] += step(n);
+                let part = parts as f64 * travelled[unit] / path[unit].max(f64::MIN_POSITIVE);
+                let part = part as usize;
+                (unit * parts + part.min(parts - 1)) as u32
+            }
+            None => NONE,
+        });
+        self.of = of.collect();
+        self.count *= parts;
+        self.whole_branches = false;
+        self
+    }
+
+    /// The unit of a sample; `None` if the sample does not count.
+    pub(crate) fn of(&self, sample: usize) -> Option<usize> {
+        let unit = self.of[sample];
+        (unit != NONE).then_some(unit as usize)
     }
 }

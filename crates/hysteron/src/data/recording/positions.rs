@@ -1,0 +1,87 @@
+//! The positions of rows in their file. Nearly all rows follow one another, so runs are kept.
+
+use crate::error::Place;
+
+/// The positions of rows, in the order of the rows.
+#[derive(Default)]
+pub(super) struct Positions {
+    /// The number of the first row of each run, and its position.
+    runs: Vec<(usize, Place)>,
+    len: usize,
+}
+
+impl Positions {
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Bytes of memory in use.
+    pub(super) fn bytes(&self) -> usize {
+        self.runs.capacity() * size_of::<(usize, Place)>()
+    }
+
+    /// Adds the position of the next row.
+    pub(super) fn push(&mut self, place: Place) {
+        let last = self.runs.last();
+        if last.is_none_or(|run| place_in(*run, self.len) != place) {
+            self.runs.push((self.len, place));
+        }
+        self.len += 1;
+    }
+
+    /// The position of a row that was added.
+    pub(super) fn at(&self, row: usize) -> Place {
+        let run = self.runs.partition_point(|(first, _)| *first <= row) - 1;
+        place_in(self.runs[run], row)
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = Place> {
+        (0..self.len).map(|row| self.at(row))
+    }
+}
+
+impl FromIterator<Place> for Positions {
+    fn from_iter<I: IntoIterator<Item = Place>>(places: I) -> Self {
+        let mut all = Self::default();
+        places.into_iter().for_each(|place| all.push(place));
+        all
+    }
+}
+
+/// The position of a row in a run that begins before it.
+fn place_in((first, place): (usize, Place), row: usize) -> Place {
+    let after = (row - first) as u64;
+    match place {
+        Place::Line(line) => Place::Line(line + after),
+        Place::Row(number) => Place::Row(number + after),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    #[test]
+    fn positions_are_those_that_were_added() {
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        for _ in 0..1000 {
+            let mut place = 0;
+            let places = (0..random.next_u32() % 50).map(|_| {
+                place = match random.next_u32() % 8 {
+                    0 => u64::from(random.next_u32() % 60),
+                    _ => place + 1,
+                };
+                match random.next_u32() % 16 {
+                    0 => Place::Row(place),
+                    _ => Place::Line(place),
+                }
+            });
+            let places: Vec<Place> = places.collect();
+            let kept: Positions = places.iter().copied().collect();
+            assert_eq!(kept.len(), places.len());
+            assert!(kept.iter().eq(places.iter().copied()), "{places:?}");
+        }
+    }
+}
