@@ -35,7 +35,8 @@ def table(path, part, random):
         y[:, n] = (weight * play).sum(axis=1)
     y += 0.01 * random.normal(size=y.shape)
     names = np.repeat(np.arange(part * EACH, (part + 1) * EACH), ROWS)
-    columns = {"id": names, "x": np.tile(x, EACH), "y": y.ravel()}
+    times = np.tile(np.arange(ROWS), EACH)
+    columns = {"id": names, "t": times, "x": np.tile(x, EACH), "y": y.ravel()}
     pyarrow.parquet.write_table(pyarrow.table(columns), path)
 
 

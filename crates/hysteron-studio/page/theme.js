@@ -34,8 +34,9 @@ export function start(changed) {
   const system = () => (SYSTEM.matches ? "dark" : "light");
   take(kept.theme ?? system());
   by("theme").addEventListener("click", () => {
-    kept.theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-    take(document.documentElement.dataset.theme === "dark" ? "light" : "dark");
+    const other = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    kept.theme = other;
+    take(other);
     changed();
   });
   SYSTEM.addEventListener("change", () => {

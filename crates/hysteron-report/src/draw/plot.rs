@@ -99,8 +99,12 @@ impl Plot {
     pub(crate) fn band(&mut self, xs: &[f64], [low, high]: [&[f64]; 2], fill: &'static str) {
         const UNSEEN: Stroke = Stroke::solid("rgba(0,0,0,0)", 0.0);
         let forward = xs.windows(2).all(|pair| pair[0] <= pair[1]);
+        let samples = xs.len().min(low.len()).min(high.len());
         // The edges belong together: what is kept of one is kept of the other.
-        let kept = kept(xs, low, forward);
+        let of = |edge: &[f64]| kept(&xs[..samples], &edge[..samples], forward);
+        let mut kept = [of(low), of(high)].concat();
+        kept.sort_unstable();
+        kept.dedup();
         let edge = |ys| Line::of(xs, ys, UNSEEN, forward, kept.clone());
         let fill = Some(fill);
         self.lines.extend([edge(low), Line { fill, ..edge(high) }]);

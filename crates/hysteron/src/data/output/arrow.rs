@@ -108,14 +108,8 @@ impl ArrowCopy {
         let of_source = source.schema().clone();
         let names = of_source.fields().iter().map(|field| field.name().clone());
         distinct(names.chain(added.iter().map(|column| column.name().to_owned())))?;
-        let kinds: Vec<(&str, Kind)> = added
-            .iter()
-            .map(|column| match column {
-                Added::Numbers(name) => (*name, Kind::Numbers),
-                Added::Words(name) => (*name, Kind::Text),
-            })
-            .collect();
-        let new = schema_of(&kinds);
+        let kinds = added.iter().map(|column| (column.name(), column.into()));
+        let new = schema_of(&kinds.collect::<Vec<_>>());
         let fields = of_source.fields().iter().chain(new.fields()).cloned();
         let fields: Vec<_> = fields.collect();
         let schema = Schema::new_with_metadata(fields, of_source.metadata().clone());

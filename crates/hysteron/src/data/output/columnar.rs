@@ -78,10 +78,7 @@ impl ColumnsWriter {
         added: &[Added],
     ) -> io::Result<Self> {
         let copied = header.iter().map(|name| (name.as_str(), Kind::Numbers));
-        let new = added.iter().map(|column| match column {
-            Added::Numbers(name) => (*name, Kind::Numbers),
-            Added::Words(name) => (*name, Kind::Text),
-        });
+        let new = added.iter().map(|column| (column.name(), column.into()));
         let columns: Vec<(&str, Kind)> = copied.chain(new).collect();
         let computed: Vec<&str> = added.iter().map(Added::name).collect();
         Self::start(out, format, &columns, &computed)

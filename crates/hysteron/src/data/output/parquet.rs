@@ -1,5 +1,6 @@
 //! Writes columns of Parquet files: types, and the cells of a row group.
 
+use super::added::Added;
 use arrow_array::{ArrayRef, BinaryArray, Float64Array, StringArray};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
@@ -33,6 +34,15 @@ pub(super) enum Kind {
     Text,
     /// Bytes that are not UTF-8, stored unchanged.
     Bytes,
+}
+
+impl From<&Added> for Kind {
+    fn from(column: &Added) -> Self {
+        match column {
+            Added::Numbers(_) => Self::Numbers,
+            Added::Words(_) => Self::Text,
+        }
+    }
 }
 
 /// A column with optional cells.

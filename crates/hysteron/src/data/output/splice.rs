@@ -68,11 +68,7 @@ impl Splice {
         let names: Vec<String> = there.map(|field| field.name().to_owned()).collect();
         let new = added.iter().map(|column| column.name().to_owned());
         distinct(names.into_iter().chain(new))?;
-        let kinds = added.iter().map(|column| match column {
-            Added::Numbers(_) => Kind::Numbers,
-            Added::Words(_) => Kind::Text,
-        });
-        let kinds: Vec<Kind> = kinds.collect();
+        let kinds: Vec<Kind> = added.iter().map(Kind::from).collect();
         let new = added
             .iter()
             .zip(&kinds)

@@ -3,11 +3,11 @@
 use crate::error::Result;
 use crate::identify::weights::free::FreeColumns;
 use crate::identify::weights::gram::dot;
-use crate::identify::weights::units::Units;
 use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
 use crate::identify::weights::sums::{Coefficients, Sums, centred};
 use crate::identify::weights::unit_sums::UnitSums;
+use crate::identify::weights::units::Units;
 use crate::model::LoadPart;
 use crate::model::Solver;
 use crate::parallel;

@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::dot;
 use crate::identify::weights::of_load::OfLoad;
-use crate::identify::weights::units::Units;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::solve::Mixed;
+use crate::identify::weights::units::Units;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
