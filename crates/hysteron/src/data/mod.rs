@@ -3,9 +3,10 @@
 //!
 //! `table` reads CSV, Parquet, Arrow and MATLAB files. `recording` turns their columns into recordings.
 //! `output` writes files so that they appear complete or not at all. `cells` writes cells as CSV.
-//! `run` simulates and inverts tables, a block of rows at a time. `model`, `design`, `adapted` and
-//! `trace` read and write what their names say. `columns` summarises a table, `guess` guesses the
-//! roles of its columns, and `printable` makes text safe to show and to paste.
+//! `positions` keeps where rows are. `run` simulates and inverts tables, a block of rows at a time.
+//! `model`, `design`, `adapted` and `trace` read and write what their names say. `columns` summarises
+//! a table, `guess` guesses the roles of its columns, and `printable` makes text safe to show and to
+//! paste.
 
 mod adapted;
 mod cells;
@@ -14,6 +15,7 @@ mod design;
 mod guess;
 mod model;
 mod output;
+mod positions;
 mod printable;
 mod recording;
 mod run;

@@ -1,7 +1,7 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
+use crate::data::positions::Positions;
 use crate::data::recording::others::Others;
-use crate::data::recording::positions::Positions;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
 use crate::error::{Error, Place, Result};

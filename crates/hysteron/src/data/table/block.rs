@@ -3,6 +3,7 @@
 use super::{Column, Source, TableReader};
 use crate::data::cells;
 use crate::data::output::Needs;
+use crate::data::positions::Positions;
 use crate::error::{Place, Result};
 use std::ops::Range;
 
@@ -13,9 +14,7 @@ pub(crate) struct Block {
     text: Vec<u8>,
     /// Where each row begins and ends in `text`, which is small.
     rows: Vec<(u32, u32)>,
-    /// The lines of the rows, or their numbers.
-    places: Vec<u64>,
-    by_line: bool,
+    places: Positions,
     /// A series for each column asked for.
     numbers: Vec<Vec<f64>>,
     /// A series for each column, if they are needed.
@@ -61,19 +60,13 @@ impl Block {
     }
 
     pub(crate) fn place(&self, n: usize) -> Option<Place> {
-        let place = self.places.get(n).copied();
-        place.map(if self.by_line {
-            Place::Line
-        } else {
-            Place::Row
-        })
+        (n < self.len()).then(|| self.places.at(n))
     }
 
     fn clear(&mut self, columns: usize) {
         self.text.clear();
         self.rows.clear();
-        self.places.clear();
-        self.by_line = false;
+        self.places.truncate(0);
         self.numbers.resize_with(columns, Vec::new);
         self.numbers.iter_mut().for_each(Vec::clear);
     }
@@ -99,20 +92,12 @@ impl Block {
     pub(super) fn push_row(&mut self, place: Place, write: impl FnOnce(&mut Vec<u8>)) {
         let start = self.text.len();
         write(&mut self.text);
-        let place = match place {
-            Place::Line(line) => {
-                self.by_line = true;
-                line
-            }
-            Place::Row(row) => row,
-        };
         self.push_row_at(place, start..self.text.len());
     }
 
-    /// Adds a row whose text is at `row`, or will be with [`Block::push_text`]. The place is of the
-    /// kind of the rows before it.
+    /// Adds a row whose text is at `row`, or will be with [`Block::push_text`].
     #[inline]
-    pub(super) fn push_row_at(&mut self, place: u64, row: Range<usize>) {
+    pub(super) fn push_row_at(&mut self, place: Place, row: Range<usize>) {
         self.rows.push((row.start as u32, row.end as u32));
         self.places.push(place);
     }
@@ -134,9 +119,9 @@ impl Block {
         }
     }
 
-    /// Adds rows without text, whose numbers were added before.
-    pub(super) fn push_places(&mut self, rows: Range<u64>) {
-        self.places.extend(rows);
+    /// Adds so many rows without text, whose numbers were added before.
+    pub(super) fn push_places(&mut self, first: Place, count: usize) {
+        self.places.push_run(first, count);
     }
 
     /// Drops the rows from `len` on.

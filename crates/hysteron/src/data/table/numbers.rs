@@ -140,7 +140,7 @@ impl Numbers {
         }
         let rows = self.at - 1..self.length().min(self.at - 1 + ROWS);
         self.at = rows.end;
-        let places = self.before + rows.start as u64 + 1..self.before + rows.end as u64 + 1;
+        let place = |row: usize| Place::Row(self.before + row as u64 + 1);
         for (slot, column) in asked.iter().enumerate() {
             let column = self.group.get(*column).map_or(&[][..], Vec::as_slice);
             for row in rows.clone() {
@@ -148,14 +148,14 @@ impl Numbers {
             }
         }
         if needs != Needs::Text {
+            block.push_places(place(rows.start), rows.len());
             if needs == Needs::Numbers {
                 block.copy(&self.group, rows);
             }
-            block.push_places(places);
             return Ok(());
         }
-        for (row, place) in rows.zip(places) {
-            block.push_row(Place::Row(place), |out| {
+        for row in rows {
+            block.push_row(place(row), |out| {
                 for (n, column) in self.group.iter().enumerate() {
                     if n > 0 {
                         out.push(b',');

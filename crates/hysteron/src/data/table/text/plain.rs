@@ -3,6 +3,7 @@
 
 use super::Text;
 use crate::data::table::block::Block;
+use crate::error::Place;
 use memchr::memchr;
 use std::io::BufRead;
 
@@ -54,7 +55,7 @@ impl Text {
                 };
                 block.push_number(*slot, value);
             }
-            block.push_row_at(line, text + row.start..text + row.end);
+            block.push_row_at(Place::Line(line), text + row.start..text + row.end);
             (marks, taken, line) = (rest, end + 1, line + 1);
         }
         block.drop_numbers();

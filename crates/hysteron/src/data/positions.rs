@@ -4,24 +4,24 @@ use crate::error::Place;
 
 /// The positions of rows, in the order of the rows.
 #[derive(Default)]
-pub(super) struct Positions {
+pub(crate) struct Positions {
     /// The number of the first row of each run, and its position.
     runs: Vec<(usize, Place)>,
     len: usize,
 }
 
 impl Positions {
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.len
     }
 
     /// Bytes of memory in use.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.runs.capacity() * size_of::<(usize, Place)>()
     }
 
     /// Adds the position of the next row.
-    pub(super) fn push(&mut self, place: Place) {
+    pub(crate) fn push(&mut self, place: Place) {
         let last = self.runs.last();
         if last.is_none_or(|run| place_in(*run, self.len) != place) {
             self.runs.push((self.len, place));
@@ -29,13 +29,28 @@ impl Positions {
         self.len += 1;
     }
 
+    /// Adds so many rows, of which the first is at `place`.
+    pub(crate) fn push_run(&mut self, place: Place, count: usize) {
+        if count > 0 {
+            self.push(place);
+            self.len += count - 1;
+        }
+    }
+
+    /// Drops the rows from `len` on.
+    pub(crate) fn truncate(&mut self, len: usize) {
+        self.runs
+            .truncate(self.runs.partition_point(|(first, _)| *first < len));
+        self.len = self.len.min(len);
+    }
+
     /// The position of a row that was added.
-    pub(super) fn at(&self, row: usize) -> Place {
+    pub(crate) fn at(&self, row: usize) -> Place {
         let run = self.runs.partition_point(|(first, _)| *first <= row) - 1;
         place_in(self.runs[run], row)
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = Place> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Place> {
         (0..self.len).map(|row| self.at(row))
     }
 }
@@ -64,6 +79,16 @@ mod tests {
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
     #[test]
+    fn runs_are_rows_that_follow_one_another() {
+        let mut positions = Positions::default();
+        for (place, count) in [(Place::Row(4), 3), (Place::Row(1), 0), (Place::Row(7), 2)] {
+            positions.push_run(place, count);
+        }
+        assert!(positions.iter().eq((4..9).map(Place::Row)));
+        assert_eq!(positions.runs.len(), 1);
+    }
+
+    #[test]
     fn positions_are_those_that_were_added() {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         for _ in 0..1000 {
@@ -79,9 +104,17 @@ mod tests {
                 }
             });
             let places: Vec<Place> = places.collect();
-            let kept: Positions = places.iter().copied().collect();
+            let mut kept: Positions = places.iter().copied().collect();
             assert_eq!(kept.len(), places.len());
             assert!(kept.iter().eq(places.iter().copied()), "{places:?}");
+            let left = random.next_u32() as usize % 60;
+            kept.truncate(left);
+            assert!(
+                kept.iter().eq(places.iter().copied().take(left)),
+                "{places:?}"
+            );
+            kept.push(Place::Line(7));
+            assert_eq!(kept.at(kept.len() - 1), Place::Line(7));
         }
     }
 }
