@@ -6,7 +6,7 @@ use crate::data::table::Block;
 use std::io::{self, Write};
 
 /// Rows are handed on when they take this many bytes.
-const BLOCK: usize = 1 << 16;
+const BLOCK: usize = 1 << 17;
 
 /// A stream of rows. Dropped before its end, it hands on the rows that it holds.
 pub(super) struct Csv<W: Write> {

@@ -93,22 +93,27 @@ pub(crate) fn minimise(
         let mut gradient = b.to_vec();
         a.take_from(&mut gradient, x, &set.members);
         let outside = |n: &usize| x[*n] == 0.0 && !tried[*n] && gradient[*n] > slack;
-        let mut wanted: Vec<usize> = (0..count).filter(outside).collect();
+        // The steepest first, in units of each variable's own curvature.
+        let steepness = |n: usize| (gradient[n] / a.diagonal(n).sqrt(), n);
+        let mut wanted: Vec<(f64, usize)> = (0..count).filter(outside).map(steepness).collect();
         if wanted.is_empty() {
             return Ok(());
         }
-        // The steepest first, in units of each variable's own curvature.
-        let steepness = |n: &usize| gradient[*n] / a.diagonal(*n).sqrt();
-        wanted.sort_by(|m, n| steepness(n).total_cmp(&steepness(m)));
-        wanted.truncate(1 + set.members.len() / STRIDE);
-        for &n in &wanted {
+        let order = |m: &(f64, usize), n: &(f64, usize)| n.0.total_cmp(&m.0).then(m.1.cmp(&n.1));
+        let few = 1 + set.members.len() / STRIDE;
+        if few < wanted.len() {
+            wanted.select_nth_unstable_by(few, order);
+            wanted.truncate(few);
+        }
+        wanted.sort_unstable_by(order);
+        for &(_, n) in &wanted {
             set.take(n, &a.row(n));
         }
         let moved = set.descend(b, x);
         if moved {
             tried.fill(false);
         }
-        for &n in wanted.iter().filter(|&&n| x[n] == 0.0) {
+        for &(_, n) in wanted.iter().filter(|(_, n)| x[*n] == 0.0) {
             tried[n] = true;
         }
     }
