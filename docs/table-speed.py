@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 ROWS = 1_000_000
-ROUNDS = 5
+ROUNDS = 15
 LEVELS = 20
 HEAD = """# CPU of tables
 

@@ -6,7 +6,7 @@ use super::style::Stroke;
 use hysteron::printable;
 use serde::Serialize;
 
-/// Samples of a line that a page holds, at most about so many.
+/// Samples of a line that a page holds, at most about so many; of a band, up to twice as many.
 const MOST: usize = 20_000;
 
 /// A panel, as numbers.
@@ -212,5 +212,32 @@ mod tests {
         }
         let short = Line::curve(&xs[..MOST], &ys, MEASURED);
         assert!(short.kept.is_empty() && short.xs.len() == MOST && short.samples == MOST);
+    }
+
+    #[test]
+    fn peaks_of_both_edges_of_a_band_are_kept() {
+        let xs: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let (mut low, mut high) = (vec![-1.0; xs.len()], vec![1.0; xs.len() + 1]);
+        (low[70_001], high[30_001]) = (-5.0, 5.0);
+        let area = Rect {
+            x: 0.0,
+            y: 0.0,
+            width: 1.0,
+            height: 1.0,
+        };
+        let axis = || Shown {
+            label: String::new(),
+            key: String::new(),
+            range: [0.0, 1.0],
+            labelled: false,
+            numbered: false,
+        };
+        let mut plot = Plot::new(area, axis(), axis());
+        plot.band(&xs, [&low, &high], "gray");
+        let [low, high] = plot.lines.as_slice() else {
+            unreachable!("a band has two edges");
+        };
+        assert_eq!(low.kept, high.kept);
+        assert!(low.ys.contains(&-5.0) && high.ys.contains(&5.0));
     }
 }

@@ -46,6 +46,7 @@ pub(crate) fn push_number(out: &mut Vec<u8>, number: f64) {
         let mut digits = zmij::Buffer::new();
         let digits = digits.format_finite(number).as_bytes();
         let last = last_bit(number);
+        // Whole numbers and those halfway have a larger last bit.
         if last < -1 - MOST_DECIMALS && number != 0.0 {
             return out.extend_from_slice(digits);
         }
@@ -67,7 +68,7 @@ pub(crate) fn push_number(out: &mut Vec<u8>, number: f64) {
 /// Most decimals of a number from 1e-5 on: 17 digits, the first one at the fifth decimal.
 const MOST_DECIMALS: i32 = 21;
 
-/// The exponent of two of the last bit that is set in a number that is not subnormal.
+/// The exponent of two of the last bit that is set in a number that is neither zero nor subnormal.
 #[inline]
 fn last_bit(number: f64) -> i32 {
     let bits = number.to_bits();

@@ -10,14 +10,20 @@ pub(crate) struct Positions {
     len: usize,
 }
 
+/// Bytes of a run.
+pub(crate) const RUN: usize = size_of::<(usize, Place)>();
+
 impl Positions {
     pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Bytes of memory in use.
-    pub(crate) fn bytes(&self) -> usize {
-        self.runs.capacity() * size_of::<(usize, Place)>()
+    /// Bytes of memory that one more row may take now, if it does not follow the one before.
+    pub(crate) fn growth(&self) -> usize {
+        match self.runs.len() < self.runs.capacity() {
+            true => 0,
+            false => self.runs.capacity().max(4) * RUN,
+        }
     }
 
     /// Adds the position of the next row.

@@ -1,8 +1,8 @@
 //! Makes recordings from tables, and tables from recordings.
 //!
 //! `columns` names the columns and `read` is the entry point; `groups` reads tables of several
-//! recordings. `samples` collects the rows; `repair` says what is done about bad rows. `others` keeps the columns that a recording does not use, and
-//! `write` writes recordings.
+//! recordings. `samples` collects the rows; `repair` says what is done about bad rows. `others`
+//! keeps the columns that a recording does not use, and `write` writes recordings.
 
 mod columns;
 mod groups;

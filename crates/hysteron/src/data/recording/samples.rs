@@ -1,6 +1,6 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
-use crate::data::positions::Positions;
+use crate::data::positions::{Positions, RUN};
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
@@ -90,11 +90,11 @@ impl Samples {
         for (series, value) in self.series.iter_mut().zip(row.iter().flatten()) {
             series.push(*value);
         }
-        let before = self.places.bytes();
-        self.places.push(table.row_place());
-        let more = 2 * (self.places.bytes() - before) as u128;
+        let more = self.places.growth() as u128;
         let taken = table.budget().take(more, "the recording");
-        taken.map_err(|problem| table.fault(None, problem))
+        taken.map_err(|problem| table.fault(None, problem))?;
+        self.places.push(table.row_place());
+        Ok(())
     }
 
     /// Notes rows that were dropped because of their length; `refused` is the error for them.
@@ -105,16 +105,19 @@ impl Samples {
         }
     }
 
-    /// Takes memory for another row from the table's budget. Sorting needs a copy.
+    /// Takes memory for another row from the table's budget. Sorting by time needs a copy, the order,
+    /// and the position of each row.
     fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
         let count = self.places.len();
         let capacity = self.series.first().map_or(0, Vec::capacity);
         if count == capacity {
             let more = capacity.max(FIRST);
-            let row = size_of::<f64>() * self.series.len();
-            let taken = table
-                .budget()
-                .take(2 * (row * more) as u128, "the recording");
+            let sorting = match self.series.len() > TIME {
+                true => size_of::<usize>() + RUN,
+                false => 0,
+            };
+            let row = 2 * size_of::<f64>() * self.series.len() + sorting;
+            let taken = table.budget().take((row * more) as u128, "the recording");
             taken.map_err(|problem| table.fault(None, problem))?;
             for series in &mut self.series {
                 series.reserve_exact(more);

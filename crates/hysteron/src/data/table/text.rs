@@ -37,7 +37,7 @@ pub(super) struct Text {
     /// A line as it stands in the file, and the number of bytes of the row before it.
     raw: Vec<u8>,
     before: u64,
-    /// Of the bytes that are in memory.
+    /// Memory for [`Text::plain_rows`].
     marks: Marks,
     splitter: Splitter,
     /// The line on which the row begins, and the number of its lines.

@@ -1,10 +1,10 @@
 //! How good a candidate is: one number of levels with one smoothness.
 
 use crate::error::Result;
-use crate::identify::choose::validate::Folds;
 use crate::identify::options::Prior;
 use crate::identify::weights::problem::Problem;
 use crate::identify::weights::sums::{Reduced, Sums, centred};
+use crate::identify::weights::units::Folds;
 use crate::model::{Sign, Smooth, Solver};
 use crate::parallel;
 use crate::progress::Progress;

@@ -2,7 +2,7 @@
 //! little.
 
 use crate::error::Result;
-use crate::identify::choose::validate::Folds;
+use crate::identify::weights::units::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
 use crate::rivals::{Rival, RivalKind};

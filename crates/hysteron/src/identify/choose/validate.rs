@@ -12,7 +12,7 @@ use crate::identify::choose::search::{ALONG_AXES, AROUND, Place, Step, best, smo
 use crate::identify::options::FitOptions;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::problem::Problem;
-use crate::identify::weights::units::Units;
+use crate::identify::weights::units::{Folds, Units};
 use crate::model::{Criterion, Score, Smooth, Solver, Validation};
 use crate::progress::Progress;
 use crate::recording::Recording;
@@ -122,19 +122,6 @@ pub(super) fn validated(
     Ok((options, validation))
 }
 
-/// What is left out together: every so many units.
-pub(super) struct Folds {
-    pub(super) units: Units,
-    pub(super) count: usize,
-}
-
-impl Folds {
-    /// The fold that leaves a sample out; `None` if the sample does not count.
-    pub(super) fn of(&self, sample: usize) -> Option<usize> {
-        self.units.of(sample).map(|unit| unit % self.count)
-    }
-}
-
 /// The candidate that was chosen, and how.
 pub(super) struct Choice {
     /// With its levels and smoothness.
@@ -174,9 +161,7 @@ pub(super) fn choose(
     }
     let sign = options.sign.unwrap_or_default();
     let even = Experiment::new(seen.even, &options)?;
-    let units = Units::new(&even, kept, ENOUGH_BRANCHES);
-    let count = units.count.min(FOLDS);
-    let folds = Folds { units, count };
+    let folds = Folds::new(Units::new(&even, kept, ENOUGH_BRANCHES), FOLDS);
     let criterion = match folds.units.whole_branches {
         true => Criterion::LeftOut,
         false => Criterion::Evidence,

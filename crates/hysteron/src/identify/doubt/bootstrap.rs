@@ -7,7 +7,7 @@ use crate::identify::weights::problem::{Fitted, Problem};
 use crate::identify::weights::solve::NormalEquations;
 use crate::identify::weights::sums::{Coefficients, Sums, centred};
 use crate::identify::weights::unit_sums::UnitSums;
-use crate::identify::weights::units::Units;
+use crate::identify::weights::units::{Folds, Units};
 use crate::model::LoadPart;
 use crate::model::Solver;
 use crate::parallel;
@@ -112,17 +112,15 @@ pub(crate) fn left_out_errors(
     progress: Progress<'_>,
 ) -> Result<LeftOutErrors> {
     let (regressor, experiment) = (&problem.regressor, &problem.experiment);
-    let units = Units::new(experiment, None, enough_branches);
-    let groups = units.count.min(GROUPS);
-    let group = |n: usize| units.of(n).map(|unit| unit % groups);
+    let folds = Folds::new(Units::new(experiment, None, enough_branches), GROUPS);
     let target = centred(problem, fitted.sign);
     let told = |_: &'static str, _: f64| progress.tell("confidence", 0.0);
     let progress = Progress::new(&told);
     // All samples are one group. Its sums less those of a group are the sums of the others.
     let all = Sums::of_groups(problem, &target, |_| Some(0), 1, progress)?;
     let mut solved: Vec<Coefficients> = Vec::new();
-    for groups in Sums::passes(problem, groups) {
-        let own = Sums::of_some(problem, &target, group, groups, progress)?;
+    for groups in Sums::passes(problem, folds.count) {
+        let own = Sums::of_some(problem, &target, |n| folds.of(n), groups, progress)?;
         solved.extend(parallel::map(own.len(), |n| {
             progress.tell("confidence", 0.0)?;
             let rest = all[0].without(&own[n]).reduced()?;
@@ -132,15 +130,16 @@ pub(crate) fn left_out_errors(
         })?);
     }
     let (x, free): (Vec<_>, Vec<_>) = solved.into_iter().map(|at| (at.x, at.free)).unzip();
-    let mut errors = regressor.forwards(experiment, &x, group)?;
+    let mut errors = regressor.forwards(experiment, &x, |n| folds.of(n))?;
     for (n, error) in errors.iter_mut().enumerate() {
-        let Some(group) = group(n) else {
+        let Some(fold) = folds.of(n) else {
             continue;
         };
-        let level = experiment.offsets.iter().zip(&free[group]);
+        let level = experiment.offsets.iter().zip(&free[fold]);
         let level: f64 = level.map(|(z, value)| value * z[n]).sum();
         *error = target[n] - *error - level;
     }
+    let units = folds.units;
     Ok(LeftOutErrors { units, errors })
 }
 

@@ -372,7 +372,8 @@ impl<'a> NormalEquations<'a> {
             if after < before {
                 best = next;
             }
-            if after >= before * (1.0 - ENOUGH) || after <= nothing {
+            let gains = after < before * (1.0 - ENOUGH);
+            if !gains || after <= nothing {
                 break;
             }
         }

@@ -12,7 +12,8 @@ pub(crate) struct Units {
     pub(crate) whole_branches: bool,
 }
 
-/// No more units than samples, and of these no memory holds 2³².
+/// There are fewer branches than samples, and no memory holds 2³² of these. Parts of branches are
+/// few.
 const NONE: u32 = u32::MAX;
 
 impl Units {
@@ -78,5 +79,24 @@ impl Units {
     pub(crate) fn of(&self, sample: usize) -> Option<usize> {
         let unit = self.of[sample];
         (unit != NONE).then_some(unit as usize)
+    }
+}
+
+/// What is left out together: every so many units.
+pub(crate) struct Folds {
+    pub(crate) units: Units,
+    pub(crate) count: usize,
+}
+
+impl Folds {
+    /// At most so many folds.
+    pub(crate) fn new(units: Units, most: usize) -> Self {
+        let count = units.count.min(most);
+        Self { units, count }
+    }
+
+    /// The fold that leaves a sample out; `None` if the sample does not count.
+    pub(crate) fn of(&self, sample: usize) -> Option<usize> {
+        self.units.of(sample).map(|unit| unit % self.count)
     }
 }

@@ -25,17 +25,19 @@ impl Text {
         let buffer = self.lines.buffer();
         let text = block.text_len();
         let (mut taken, mut line) = (0, self.line + self.height);
-        self.marks.find(buffer, [delimiter, b'\n', b'\r', b'"']);
-        let mut marks = self.marks.places();
+        let ends_of_cells = [delimiter, b'\n', b'\r', b'"'];
+        self.marks.begin();
         'rows: while !is_no_row(&buffer[taken..]) {
+            // One more than there are cells, because a line may end with two bytes.
+            let marks = self.marks.ahead(buffer, ends_of_cells, columns + 1);
             let Some((cells, rest)) = marks.split_at_checked(columns) else {
                 break;
             };
             let ends = |cell: usize| cells[cell] as usize;
             let last = ends(columns - 1);
-            let (end, rest) = match (buffer[last], rest) {
-                (b'\n', rest) => (last, rest),
-                (b'\r', [_, rest @ ..]) if buffer[last + 1] == b'\n' => (last + 1, rest),
+            let end = match (buffer[last], rest) {
+                (b'\n', _) => last,
+                (b'\r', [_, ..]) if buffer[last + 1] == b'\n' => last + 1,
                 _ => break,
             };
             if (0..columns - 1).any(|cell| buffer[ends(cell)] != delimiter) {
@@ -56,7 +58,8 @@ impl Text {
                 block.push_number(*slot, value);
             }
             block.push_row_at(Place::Line(line), text + row.start..text + row.end);
-            (marks, taken, line) = (rest, end + 1, line + 1);
+            self.marks.pass(columns + (end - last));
+            (taken, line) = (end + 1, line + 1);
         }
         block.drop_numbers();
         block.push_text(&buffer[..taken], delimiter);
