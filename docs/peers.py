@@ -3,7 +3,7 @@
 
     python docs/peers.py target/release/hysteron
 
-Prints Markdown. `cargo`, `mawk`, NumPy, SciPy and PyArrow are needed.
+Prints Markdown. `cargo`, `mawk`, `/usr/bin/time`, NumPy, SciPy and PyArrow are needed.
 """
 import json
 import os
@@ -30,7 +30,8 @@ This page is printed by
 
 Ours and the peer run in turn on the same machine, and the ratio is ours to the peer's. A *limit* is
 a program that only moves the same data. Times of processes are CPU seconds, user and system, if
-nothing else is said. An aim in bold is missed. Where none stands there is none.
+nothing else is said; memory is the most of a process. An aim in bold is missed. Where none stands
+there is none.
 
 | what | ours | peer | limit | ratio | aim |
 | --- | ---: | --- | --- | ---: | ---: |"""
@@ -148,6 +149,42 @@ def fleet(program, folder):
         f"{apart / 1e-9:.2g}", "1", "", apart / 1e-9, 1)
 
 
+def memory(program, folder):
+    """The most memory of whole processes on ten million rows of two columns."""
+    import pyarrow
+    import pyarrow.csv
+    data, model, out = (os.path.join(folder, name) for name in ("long.csv", "long.json", "out.csv"))
+    n = np.arange(10**7)
+    x = 50 + 29 * np.sin(1e-3 * n) * np.cos(1.7e-5 * n)
+    y = 0.1 * x + 1e-3 * np.random.default_rng(1).uniform(-0.5, 0.5, n.size)
+    columns = {"x": x.round(4), "y": y.round(6)}
+    pyarrow.csv.write_csv(pyarrow.table(columns), data)
+
+    def highest(command):
+        """In MB. `ru_maxrss` would count this script."""
+        told = ["/usr/bin/time", "-f", "%M", *command]
+        done = subprocess.run(told, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        return int(done.stderr.split()[-1]) * 1024 / 1e6
+
+    read = "import pyarrow.csv, sys; pyarrow.csv.read_csv(sys.argv[1])"
+    peer = highest([sys.executable, "-c", read, data])
+    both = ["--input", "x", "--output", "y"]
+    options = "--bootstrap 0 --robust off --start off --levels 20".split()
+    fit = [program, "fit", data, *both, *FITS["PLAIN"], *options, "-o", model]
+    for name, command in [
+        ("`fit`, 1e7 rows, K = 20, no choice", fit),
+        ("`evaluate`, 1e7 rows", [program, "evaluate", model, data, *both]),
+    ]:
+        ours = highest(command)
+        row(f"{name}, memory", f"{ours:.0f} MB", f"PyArrow reads: {peer:.0f} MB",
+            f"two columns: {16e-6 * n.size:.0f} MB", ours / peer, None)
+    limit = highest([program, "--version"])
+    for command, column in [("simulate", "--input=x"), ("invert", "--target=y")]:
+        ours = highest([program, command, model, data, column, "-o", out, "--force"])
+        row(f"`{command}`, 1e7 rows, CSV, memory", f"{ours:.1f} MB", "1 MB",
+            f"`--version`: {limit:.1f} MB", ours, 7)
+
+
 def main(program):
     print(HEAD)
     with tempfile.TemporaryDirectory() as folder:
@@ -155,6 +192,7 @@ def main(program):
         tables(program)
         core()
         fleet(program, folder)
+        memory(program, folder)
 
 
 if __name__ == "__main__":
