@@ -24,7 +24,11 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         load: load.as_deref(),
     };
     let recording = recording::read(&args.data, columns, &args.repair)?;
-    let evaluation = hysteron::evaluate_from(&model, &recording, args.start.into())?;
+    let evaluate = match folder {
+        Some(_) => hysteron::evaluate_from,
+        None => hysteron::evaluate_errors,
+    };
+    let evaluation = evaluate(&model, &recording, args.start.into())?;
     if let Some(mut folder) = folder {
         let title = format!("{} on {}", args.model.display(), args.data.display());
         let typed = Typed::now()?;

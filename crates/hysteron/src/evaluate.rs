@@ -14,7 +14,8 @@ use hysteron_core::Solution;
 /// output has moved further than the noise.
 const STILL: f64 = 2.0 * NOISE;
 
-/// Forward and inverse tests of a model on one recording.
+/// Forward and inverse tests of a model on one recording. The series are empty where only errors
+/// were asked for ([`evaluate_errors`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Modelled output, one value per sample.
@@ -85,6 +86,36 @@ pub fn evaluate(model: &Model, recording: &Recording) -> Result<Evaluation> {
 /// # Errors
 /// As [`evaluate`].
 pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
+    keeping(model, recording, start, |series| series)
+}
+
+/// As [`evaluate_from`], for the errors alone: no series of the model is kept, so that a long
+/// recording takes less memory.
+///
+/// ```
+/// use hysteron::{Model, Operator, Plane, Recording, Sign, Start, evaluate_errors, evaluate_from};
+/// let plane = Plane::new(20.0, 80.0, 3)?;
+/// let model = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive)?;
+/// let recording = Recording::new(vec![20.0, 60.0, 30.0], vec![0.0, 3.5, 2.0])?;
+/// let errors = evaluate_errors(&model, &recording, Start::Fitted)?;
+/// assert_eq!(errors.forward, evaluate_from(&model, &recording, Start::Fitted)?.forward);
+/// assert!(errors.output_model.is_empty());
+/// # Ok::<(), hysteron::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_errors(model: &Model, recording: &Recording, start: Start) -> Result<Evaluation> {
+    keeping(model, recording, start, |_| Vec::new())
+}
+
+/// The evaluation, with what `keep` keeps of each series of the model.
+fn keeping(
+    model: &Model,
+    recording: &Recording,
+    start: Start,
+    keep: fn(Vec<f64>) -> Vec<f64>,
+) -> Result<Evaluation> {
     recording.check()?;
     let (begin, estimated_from) = begin(model, recording, start)?;
     let around = Surroundings::of(model, recording);
@@ -96,13 +127,17 @@ pub fn evaluate_from(model: &Model, recording: &Recording, start: Start) -> Resu
         &mut output_model,
     )?;
     let forward = compare(&recording.output, &output_model);
+    let mut band = BandEvaluation::of(model, &begin, recording, &output_model)?;
+    if let Some(band) = &mut band {
+        band.half_width = keep(std::mem::take(&mut band.half_width));
+    }
+    let output_model = keep(output_model);
     let behind = model.behind_body(recording)?;
     let inner = model.without_body();
     let inverse = match inner.inverse() {
-        Ok(inverse) => Ok(evaluate_inverse(&inner, &inverse, &begin, &behind)?),
+        Ok(inverse) => Ok(evaluate_inverse(&inner, &inverse, &begin, &behind, keep)?),
         Err(error) => Err(error.to_string()),
     };
-    let band = BandEvaluation::of(model, &begin, recording, &output_model)?;
     let fit = model.fit.as_ref();
     Ok(Evaluation {
         was_fitted: fit.is_some_and(|fit| fit.was_fitted_to(recording)),
@@ -139,6 +174,7 @@ fn evaluate_inverse(
     inverse: &Inverse<'_>,
     begin: &State,
     recording: &Recording,
+    keep: fn(Vec<f64>) -> Vec<f64>,
 ) -> Result<InverseEvaluation> {
     let (low, high) = range(&recording.output);
     let tolerance = NOISE * (high - low);
@@ -158,7 +194,7 @@ fn evaluate_inverse(
             all: compare(&recording.input, &input_model),
             moving: Errors::between(&recording.input, &input_model, |n| moving[n]),
             dead_band: Errors::between(&recording.input, &input_model, |n| !moving[n]),
-            input_model,
+            input_model: keep(input_model),
             out_of_reach,
         })
     };

@@ -60,7 +60,9 @@ pub use data::{
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};
-pub use evaluate::{Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_from};
+pub use evaluate::{
+    Evaluation, InverseEvaluation, InverseRun, evaluate, evaluate_errors, evaluate_from,
+};
 #[cfg(feature = "data")]
 pub use fleet::{
     FleetFailure, FleetFitted, FleetOptions, FleetRow, Norm, Shape, Strangeness, fit_fleet,

@@ -7,7 +7,7 @@ use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::noise::noise;
-use crate::series::{branches, usual_tolerance};
+use crate::series::{branch_spans, usual_tolerance};
 use std::fmt;
 
 /// A warning about a fit. [`Advice::remedy`] suggests what may help.
@@ -223,14 +223,14 @@ const SOME: usize = 50;
 
 fn false_reversals(recording: &Recording) -> Option<Advice> {
     let input = &recording.input;
-    let all = branches(input, 0.0).last()? + 1;
+    let all = branch_spans(input, 0.0).count();
     if all < SOME {
         return None;
     }
     let noise = noise(input);
     // Gaussian noise hardly ever reverses by more than six deviations.
     let tolerance = usual_tolerance(input).max(6.0 * noise);
-    let real = branches(input, tolerance).last()? + 1;
+    let real = branch_spans(input, tolerance).count();
     (all > FALSE * real && noise > 0.0).then_some(Advice::FalseReversals { all, real, noise })
 }
 

@@ -201,8 +201,8 @@ impl WeightPrior {
     /// The most probable offset and weights.
     fn minimum(&self, problem: &Problem, progress: Progress<'_>) -> Result<Solution> {
         let (regressor, experiment) = (&problem.regressor, &problem.experiment);
-        let target = problem.target(self.model.sign());
-        let samples = target.len();
+        let sign = self.model.sign();
+        let samples = experiment.output.len();
         let mut grams = regressor.grams(experiment, 1, |_| Some(0), progress)?;
         let mut matrix = grams.pop().unwrap_or_default();
         // `σ²` times the objective. Several columns may belong to one weight, which is their sum.
@@ -222,13 +222,13 @@ impl WeightPrior {
         let tiny = TINY * diagonal.sum::<f64>() / count as f64;
         (0..count).for_each(|n| matrix[n * (count + 1)] += tiny);
         // The offset may have any sign, so it is eliminated.
-        let mut mixed = regressor.adjoint(experiment, &vec![1.0; samples])?;
+        let mut mixed = regressor.adjoint(experiment, |_| 1.0)?;
         let own = mixed.iter_mut().zip(&place);
         own.for_each(|(m, n)| *m += precision(*n, 0));
         let inverse = 1.0 / (samples as f64 + precision(0, 0));
-        let middle = inverse * (target.iter().sum::<f64>() + pull(0));
+        let middle = inverse * (problem.targets(sign).sum::<f64>() + pull(0));
         eliminate(&mut matrix, std::slice::from_ref(&mixed), &[vec![inverse]]);
-        let mut right = regressor.adjoint(experiment, &target)?;
+        let mut right = regressor.adjoint(experiment, |n| problem.target(sign, n))?;
         for ((b, m), n) in right.iter_mut().zip(&mixed).zip(&place) {
             *b += pull(*n) - middle * m;
         }
@@ -243,9 +243,9 @@ impl WeightPrior {
             }
         };
         let offset = middle - inverse * dot(&mixed, &x);
-        let modelled = regressor.forward(experiment, &x)?;
-        let residual = target.iter().zip(&modelled).map(|(y, h)| y - h - offset);
-        let residual: Vec<f64> = residual.collect();
+        let mut residual = regressor.forward(experiment, &x)?;
+        let all = residual.iter_mut().zip(problem.targets(sign));
+        all.for_each(|(h, y)| *h = y - *h - offset);
         Ok(Solution {
             objective: dot(&residual, &residual),
             residual,

@@ -113,6 +113,9 @@ impl Band {
     }
 }
 
+/// Samples of a block.
+const BLOCK: usize = 4096;
+
 /// Adds the variance of the output that a factor causes, at each sample of `input`.
 pub(crate) fn add_variance(
     factor: &Operators,
@@ -120,10 +123,17 @@ pub(crate) fn add_variance(
     input: &[f64],
     variance: &mut [f64],
 ) -> Result<()> {
-    let mut output = vec![0.0; input.len()];
-    factor.run(state, input, &mut output)?;
-    for (variance, deviation) in variance.iter_mut().zip(&output) {
-        *variance += deviation * deviation;
+    if let Some(index) = input.iter().position(|x| !x.is_finite()) {
+        return Err(hysteron_core::Error::InputNotFinite { index }.into());
+    }
+    // In blocks, because a whole output would take as much memory as the input.
+    let mut output = vec![0.0; BLOCK.min(input.len())];
+    for (input, variance) in input.chunks(BLOCK).zip(variance.chunks_mut(BLOCK)) {
+        let output = &mut output[..input.len()];
+        factor.run(state, input, output)?;
+        for (variance, deviation) in variance.iter_mut().zip(&*output) {
+            *variance += deviation * deviation;
+        }
     }
     Ok(())
 }
@@ -211,7 +221,10 @@ mod tests {
             }),
             ..FitSummary::default()
         });
-        let input = draw(300).into_iter().map(|x| 50.0 + 45.0 * x).collect();
+        let input = draw(2 * BLOCK + 300)
+            .into_iter()
+            .map(|x| 50.0 + 45.0 * x)
+            .collect();
         (model, input)
     }
 
@@ -270,6 +283,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn an_input_that_is_no_number_is_named() {
+        let (model, mut input) = uncertain(Operator::Mkp, Sign::Positive, 2);
+        input[BLOCK + 7] = f64::NAN;
+        let band = model.band().unwrap().unwrap();
+        let error = band.run(&model.off(), &input).unwrap_err();
+        let at = hysteron_core::Error::InputNotFinite { index: BLOCK + 7 };
+        assert_eq!(error.to_string(), crate::Error::from(at).to_string());
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::recording::Recording;
-use crate::series::{branches, usual_tolerance};
-use std::ops::RangeInclusive;
+use crate::series::{branch_spans, usual_tolerance};
+use std::ops::{Range, RangeInclusive};
 use std::str::FromStr;
 
 /// The largest share of the branches that can be held out. Beyond it, neighbours would be left out
@@ -122,19 +122,34 @@ impl Recording {
     /// Only the samples for which `kept` is true; `None` if there are none.
     #[must_use]
     pub fn only(&self, kept: impl Fn(usize) -> bool) -> Option<Self> {
-        let samples: Vec<usize> = (0..self.len()).filter(|n| kept(*n)).collect();
-        let pick = |series: &Vec<f64>| samples.iter().map(|n| series[*n]).collect::<Vec<f64>>();
-        (!samples.is_empty()).then(|| Self {
-            time: self.time.as_ref().map(pick),
+        let samples = || (0..self.len()).filter(|n| kept(*n));
+        let count = samples().count();
+        (count > 0).then(|| {
+            self.picked(|series| {
+                let mut values = Vec::with_capacity(count);
+                values.extend(samples().map(|n| series[n]));
+                values
+            })
+        })
+    }
+
+    /// Only these samples.
+    fn part(&self, samples: Range<usize>) -> Self {
+        self.picked(|series| series[samples.clone()].to_vec())
+    }
+
+    fn picked(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        Self {
+            time: self.time.as_deref().map(&pick),
             input: pick(&self.input),
             output: pick(&self.output),
-            load: self.load.as_ref().map(pick),
+            load: self.load.as_deref().map(&pick),
             input_quantity: self.input_quantity.clone(),
             output_quantity: self.output_quantity.clone(),
             load_quantity: self.load_quantity.clone(),
             origin: self.origin,
             source: self.source.clone(),
-        })
+        }
     }
 
     fn split_branches(&self, share: f64) -> Result<Split> {
@@ -144,8 +159,8 @@ impl Recording {
                 100.0 * share
             )));
         }
-        let branch = branches(&self.input, usual_tolerance(&self.input));
-        let all = spans(&branch);
+        let all: Vec<Range<usize>> =
+            branch_spans(&self.input, usual_tolerance(&self.input)).collect();
         let can_be: Vec<usize> = (1..all.len())
             .filter(|b| all[*b].len() >= SHORTEST)
             .collect();
@@ -197,12 +212,14 @@ impl Recording {
         }
         let mut training = Vec::new();
         let mut begins = Vec::new();
-        for same in spans(&held_out)
-            .into_iter()
-            .filter(|span| !held_out[span.start])
-        {
-            begins.push(same.start);
-            training.extend(self.only(|n| same.contains(&n)));
+        let mut end = 0;
+        for alike in held_out.chunk_by(|a, b| a == b) {
+            let start = end;
+            end += alike.len();
+            if !alike[0] {
+                begins.push(start);
+                training.push(self.part(start..end));
+            }
         }
         Ok(Split {
             begins_inside: begins.iter().any(|begin| *begin > 0),
@@ -211,19 +228,6 @@ impl Recording {
             held_out,
         })
     }
-}
-
-/// Where equal values follow each other, such as the numbers of branches.
-fn spans<T: PartialEq>(values: &[T]) -> Vec<std::ops::Range<usize>> {
-    let mut from = 0;
-    let alike = values.chunk_by(|a, b| a == b);
-    alike
-        .map(|same| {
-            let span = from..from + same.len();
-            from = span.end;
-            span
-        })
-        .collect()
 }
 
 /// Branches spread over those that can be held out, no two of them neighbours. Neighbouring

@@ -1,7 +1,6 @@
 //! A polynomial for each direction of travel.
 
-use super::path::legs;
-use crate::recording::Recording;
+use super::path::{Measured, legs};
 
 /// Highest degree.
 const HIGHEST: usize = 5;
@@ -24,11 +23,11 @@ struct Sample {
 }
 
 impl BranchPolynomial {
-    pub(super) fn fit(recordings: &[&Recording]) -> Self {
+    pub(super) fn fit(recordings: &[Measured<'_>]) -> Self {
         let mut of: [Vec<Sample>; 2] = [Vec::new(), Vec::new()];
         let mut count = [0, 0];
         for recording in recordings {
-            for leg in legs(&recording.input) {
+            for leg in legs(recording.input) {
                 let way = usize::from(leg.rises);
                 let sample = |n: usize| Sample {
                     x: recording.input[n],

@@ -1,7 +1,6 @@
 //! Interpolation over the input and the last reversal.
 
-use super::path::{Branch, all_measured, legs};
-use crate::recording::Recording;
+use super::path::{Branch, Measured, all_measured, legs};
 use crate::series::{NOISE, range};
 
 /// Branches of one direction with the same reversal, up to noise.
@@ -34,16 +33,14 @@ pub(super) struct Interpolation {
 }
 
 impl Interpolation {
-    pub(super) fn fit(recordings: &[&Recording]) -> Self {
-        let inputs: Vec<(f64, f64)> = recordings.iter().map(|r| range(&r.input)).collect();
+    pub(super) fn fit(recordings: &[Measured<'_>]) -> Self {
+        let inputs: Vec<(f64, f64)> = recordings.iter().map(|r| range(r.input)).collect();
         let low = inputs.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
         let high = inputs.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
         let all = all_measured(recordings);
-        let bundles = |rises: bool| {
-            let own = all.iter().filter(|branch| branch.rises == rises);
-            bundles(own.cloned().collect(), NOISE * (high - low))
-        };
-        let (rising, falling) = (bundles(true), bundles(false));
+        let (rising, falling): (Vec<_>, Vec<_>) = all.into_iter().partition(|b| b.rises);
+        let bundles = |own| bundles(own, NOISE * (high - low));
+        let (rising, falling) = (bundles(rising), bundles(falling));
         // Where one direction was never travelled, the other one is all that is known.
         match (rising.is_empty(), falling.is_empty()) {
             (true, _) => Self {

@@ -1,6 +1,6 @@
 //! A straight line through all samples.
 
-use crate::recording::Recording;
+use super::path::Measured;
 
 #[derive(Debug, Clone)]
 pub(super) struct Line {
@@ -11,7 +11,7 @@ pub(super) struct Line {
 
 impl Line {
     /// Least squares over all samples; a level line for a constant input.
-    pub(super) fn fit(recordings: &[&Recording]) -> Self {
+    pub(super) fn fit(recordings: &[Measured<'_>]) -> Self {
         let pairs = || {
             let all = recordings.iter();
             all.flat_map(|r| r.input.iter().copied().zip(r.output.iter().copied()))

@@ -1,6 +1,6 @@
 //! One predictor for each load, and interpolation between them.
 
-use super::Predictor;
+use super::{Measured, Predictor};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 
@@ -18,27 +18,32 @@ impl AtLoads {
     /// Fits one predictor to the recordings at each load. The load of a recording is its median.
     pub(super) fn fit(
         recordings: &[Recording],
-        fit: impl Fn(&[&Recording]) -> Result<Predictor>,
+        fit: impl Fn(&[Measured<'_>]) -> Result<Predictor>,
     ) -> Result<Self> {
         let middles: Option<Vec<f64>> = recordings.iter().map(median_load).collect();
         let Some(middles) = middles else {
-            let all: Vec<&Recording> = recordings.iter().collect();
-            return Ok(Self {
-                loads: Vec::new(),
-                predictors: vec![fit(&all)?],
-            });
+            let all: Vec<Measured<'_>> = recordings.iter().map(Measured::from).collect();
+            return Ok(Self::without(fit(&all)?));
         };
         let largest = middles.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut by_load: Vec<(f64, &Recording)> = middles.into_iter().zip(recordings).collect();
         by_load.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut loads, mut predictors) = (Vec::new(), Vec::new());
         for same in by_load.chunk_by(|a, b| b.0 - a.0 <= SAME * largest) {
-            let recordings: Vec<&Recording> =
-                same.iter().map(|(_, recording)| *recording).collect();
+            let recordings = same.iter().map(|(_, recording)| Measured::from(*recording));
+            let recordings: Vec<Measured<'_>> = recordings.collect();
             loads.push(same.iter().map(|(load, _)| load).sum::<f64>() / same.len() as f64);
             predictors.push(fit(&recordings)?);
         }
         Ok(Self { loads, predictors })
+    }
+
+    /// One predictor, whatever the load.
+    pub(super) fn without(predictor: Predictor) -> Self {
+        Self {
+            loads: Vec::new(),
+            predictors: vec![predictor],
+        }
     }
 
     /// The mean of the two nearest loads, weighted by the distances; beyond the loads the last one.

@@ -1,7 +1,6 @@
 //! The mean of all branches at the same input: the best that a curve without hysteresis can do.
 
-use super::path::{Branch, all_measured};
-use crate::recording::Recording;
+use super::path::{Branch, Measured, all_measured};
 
 #[derive(Debug, Clone)]
 pub(super) struct MeanCurve {
@@ -9,7 +8,7 @@ pub(super) struct MeanCurve {
 }
 
 impl MeanCurve {
-    pub(super) fn fit(recordings: &[&Recording]) -> Self {
+    pub(super) fn fit(recordings: &[Measured<'_>]) -> Self {
         Self {
             branches: all_measured(recordings),
         }

@@ -17,6 +17,7 @@ mod persistence;
 
 use crate::error::{Error, Result};
 use crate::recording::Recording;
+pub(crate) use path::Measured;
 
 /// The kinds of [`Rival`].
 ///
@@ -118,6 +119,15 @@ impl Rival {
         Ok(Self { kind, at_loads })
     }
 
+    /// As [`Rival::fit`], to parts of valid recordings without their load.
+    pub(crate) fn fit_parts(kind: RivalKind, parts: &[Measured<'_>]) -> Result<Self> {
+        if parts.is_empty() {
+            return Err(Error::Fit("there is no recording to fit".into()));
+        }
+        let at_loads = loads::AtLoads::without(Predictor::fit(kind, parts)?);
+        Ok(Self { kind, at_loads })
+    }
+
     /// The kind of this predictor.
     #[must_use]
     pub fn kind(&self) -> RivalKind {
@@ -148,7 +158,7 @@ enum Predictor {
 }
 
 impl Predictor {
-    fn fit(kind: RivalKind, recordings: &[&Recording]) -> Result<Self> {
+    fn fit(kind: RivalKind, recordings: &[Measured<'_>]) -> Result<Self> {
         Ok(match kind {
             RivalKind::Line => Self::Line(line::Line::fit(recordings)),
             RivalKind::MeanCurve => Self::MeanCurve(mean_curve::MeanCurve::fit(recordings)),

@@ -2,8 +2,24 @@
 
 use super::curve::Curve;
 use crate::recording::Recording;
-use crate::series::{NOISE, branches, range};
+use crate::series::{NOISE, branch_spans, range};
 use std::ops::Range;
+
+/// What a predictor is fitted to: a recording, or a part of one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measured<'a> {
+    pub(crate) input: &'a [f64],
+    pub(crate) output: &'a [f64],
+}
+
+impl<'a> From<&'a Recording> for Measured<'a> {
+    fn from(recording: &'a Recording) -> Self {
+        Self {
+            input: &recording.input,
+            output: &recording.output,
+        }
+    }
+}
 
 /// A part of the input between two reversals.
 #[derive(Debug, Clone)]
@@ -25,12 +41,7 @@ pub(super) fn legs(input: &[f64]) -> Vec<Leg> {
 /// The legs of an input, without reversals up to this share of the range.
 pub(super) fn legs_beyond(input: &[f64], share: f64) -> Vec<Leg> {
     let (low, high) = range(input);
-    let branch = branches(input, share * (high - low));
-    let mut from = 0;
-    let by_branch = branch.chunk_by(|a, b| a == b);
-    let leg = |same: &[usize]| {
-        let samples = from..from + same.len();
-        from = samples.end;
+    let leg = |samples: Range<usize>| {
         let reversal = input[samples.start.saturating_sub(1)];
         let end = input[samples.end - 1];
         Leg {
@@ -40,7 +51,7 @@ pub(super) fn legs_beyond(input: &[f64], share: f64) -> Vec<Leg> {
             end,
         }
     };
-    by_branch.map(leg).collect()
+    branch_spans(input, share * (high - low)).map(leg).collect()
 }
 
 /// A leg with the output measured along it.
@@ -55,8 +66,8 @@ pub(super) struct Branch {
 /// The branches of one recording, without reversals up to this share of the range. The curve of
 /// each begins at its reversal. A branch of a single sample is a jump, and left out as long as
 /// there are others.
-pub(super) fn measured(recording: &Recording, share: f64) -> Vec<Branch> {
-    let legs = legs_beyond(&recording.input, share);
+pub(super) fn measured(recording: Measured<'_>, share: f64) -> Vec<Branch> {
+    let legs = legs_beyond(recording.input, share);
     let is_jump = |leg: &Leg| leg.samples.len() < 2;
     let only_jumps = legs.iter().all(is_jump);
     let kept = legs.iter().filter(|leg| only_jumps || !is_jump(leg));
@@ -74,6 +85,7 @@ pub(super) fn measured(recording: &Recording, share: f64) -> Vec<Branch> {
 }
 
 /// The branches of all recordings.
-pub(super) fn all_measured(recordings: &[&Recording]) -> Vec<Branch> {
-    recordings.iter().flat_map(|r| measured(r, NOISE)).collect()
+pub(super) fn all_measured(recordings: &[Measured<'_>]) -> Vec<Branch> {
+    let branches = recordings.iter().flat_map(|r| measured(*r, NOISE));
+    branches.collect()
 }

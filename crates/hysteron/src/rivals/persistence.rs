@@ -1,8 +1,7 @@
 //! What was measured one cycle before.
 
-use super::path::{Branch, Leg, legs_beyond, measured};
+use super::path::{Branch, Leg, Measured, legs_beyond, measured};
 use crate::error::{Error, Result};
-use crate::recording::Recording;
 use crate::series::range;
 
 /// Ends of cycles that differ by less than this share of the range are the same. Smaller reversals
@@ -20,11 +19,11 @@ pub(super) struct Persistence {
 
 impl Persistence {
     /// Keeps the last rising and the last falling branch, which have to share both ends.
-    pub(super) fn fit(recordings: &[&Recording]) -> Result<Self> {
-        let Some(last) = recordings.last() else {
+    pub(super) fn fit(recordings: &[Measured<'_>]) -> Result<Self> {
+        let Some(&last) = recordings.last() else {
             return Err(Error::Fit("there is no recording to fit".into()));
         };
-        let (low, high) = range(&last.input);
+        let (low, high) = range(last.input);
         let same = SAME * (high - low);
         let mut branches = measured(last, SAME);
         // A cycle that was cut off at the end of the recording is no cycle.

@@ -2,11 +2,13 @@
 //!
 //! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
 //! filter. `errors` compares two series. `noise` estimates white noise, and
-//! `spikes` finds isolated readings. `spread` gives range, mean and standard deviation.
+//! `spikes` finds isolated readings. `spread` gives range, mean and standard deviation. `runs` keeps
+//! values that change seldom.
 
 mod errors;
 pub mod filter;
 pub(crate) mod noise;
+mod runs;
 pub(crate) mod spikes;
 mod spread;
 #[cfg(test)]
@@ -15,6 +17,7 @@ pub(crate) mod test_series;
 mod turning;
 
 pub use errors::Errors;
+pub(crate) use runs::Runs;
 pub use spread::{mean_and_deviation, range};
-pub(crate) use turning::branch_of_each;
+pub(crate) use turning::branch_spans;
 pub use turning::{Headings, NOISE, Turning, branches, headings, remembered, usual_tolerance};

@@ -1,6 +1,8 @@
 //! Turning points of a series, found while small reversals are ignored as noise.
 
 use hysteron_core::Direction;
+use std::iter::repeat_n;
+use std::ops::Range;
 
 /// The default tolerance as a share of a range. Smaller reversals are noise: they are not counted,
 /// and the inverse does not follow them.
@@ -90,28 +92,25 @@ impl Turning {
 /// ```
 #[must_use]
 pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
-    branch_of_each(series, tolerance).collect()
+    let spans = branch_spans(series, tolerance).enumerate();
+    let of_each = spans.flat_map(|(branch, samples)| repeat_n(branch, samples.len()));
+    of_each.collect()
 }
 
-/// As [`branches`], one after the other.
-pub(crate) fn branch_of_each(
-    series: &[f64],
-    tolerance: f64,
-) -> impl Iterator<Item = usize> + use<> {
+/// As [`branches`], but the samples of each branch.
+pub(crate) fn branch_spans(series: &[f64], tolerance: f64) -> impl Iterator<Item = Range<usize>> {
     let mut turning = Turning::new(tolerance);
-    let turns = series.iter().filter_map(|&x| turning.push(x));
-    // The start is reported as a turning point, but it ends no branch.
-    let turns: Vec<usize> = turns.map(|(n, _)| n).filter(|n| *n > 0).collect();
-    let mut ended = turns.into_iter().peekable();
-    let mut branch = 0;
-    let of_sample = move |n: usize| {
-        let here = branch;
-        if ended.next_if(|turn| *turn == n).is_some() {
-            branch += 1;
-        }
-        here
-    };
-    (0..series.len()).map(of_sample)
+    let turns = series.iter().filter_map(move |&x| turning.push(x));
+    // The start is reported as a turning point, but it ends no branch. Behind the last sample there
+    // is none.
+    let inside = turns.map(|(n, _)| n + 1);
+    let inside = inside.filter(|end| (2..series.len()).contains(end));
+    let last = (!series.is_empty()).then_some(series.len());
+    inside.chain(last).scan(0, |start, end| {
+        let samples = *start..end;
+        *start = end;
+        Some(samples)
+    })
 }
 
 /// The indices of the samples that hysteresis operators remember at the end of a series, ascending.

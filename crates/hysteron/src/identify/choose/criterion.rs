@@ -39,10 +39,12 @@ impl<'a> Level<'a> {
         folds: &Folds,
         progress: Progress<'a>,
     ) -> Result<Self> {
-        let target = centred(&problem, sign);
         let told = |_: &'static str, _: f64| progress.tell("choice of levels", f64::NAN);
         let told = Progress::new(&told);
-        let own = Sums::of_groups(&problem, &target, |n| folds.of(n), folds.count, told)?;
+        let own = {
+            let target = centred(&problem, sign);
+            Sums::of_groups(&problem, target, |n| folds.of(n), folds.count, told)?
+        };
         let mut all = own[0].clone();
         own[1..].iter().for_each(|fold| all.add(fold));
         let folds = own.into_iter().map(|own| {

@@ -9,6 +9,7 @@ use crate::model::Smooth;
 use crate::progress::Progress;
 use crate::recording::Recording;
 use crate::series::range;
+use std::iter::repeat_n;
 
 /// Largest number of groups of branches that are left out in turn.
 const FOLDS: usize = 5;
@@ -55,17 +56,15 @@ pub fn left_out(
     }
     let mut problem = Problem::new(recordings, options)?;
     let experiment = &problem.experiment;
-    let count = experiment.branches().min(FOLDS);
+    let count = experiment.branches.len().min(FOLDS);
     if count < 2 {
         return Err(Error::Fit(
             "there is only one branch: nothing can be left out".into(),
         ));
     }
-    let fold: Vec<usize> = experiment
-        .branch
-        .iter()
-        .map(|b| *b as usize % count)
-        .collect();
+    let branches = experiment.branches.iter().enumerate();
+    let fold = branches.flat_map(|(branch, samples)| repeat_n(branch % count, samples.len()));
+    let fold: Vec<usize> = fold.collect();
     let measured = experiment.output.to_vec();
     let mut predicted = vec![0.0; measured.len()];
     let (mut training, mut chosen) = (0.0, Vec::new());
@@ -112,7 +111,7 @@ pub fn left_out(
     Ok(LeftOut {
         nrmse_percent: percent(squares, samples),
         training_nrmse_percent: percent(training, samples * (count - 1) as f64),
-        branches: problem.experiment.branches(),
+        branches: problem.experiment.branches.len(),
         fold,
         predicted,
         chosen,

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identify::weights::units::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
-use crate::rivals::{Rival, RivalKind};
+use crate::rivals::{Measured, Rival, RivalKind};
 use crate::series::range;
 
 /// The errors of simple rivals on samples that their `folds` left out.
@@ -29,7 +29,7 @@ pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<Ri
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
         for fold in 0..folds.count {
-            let Ok(rival) = Rival::fit(kind, &pieces(recordings, folds, fold)) else {
+            let Ok(rival) = Rival::fit_parts(kind, &parts(recordings, folds, fold)) else {
                 continue;
             };
             for (recording, first) in with_first(recordings) {
@@ -62,8 +62,8 @@ fn with_first(recordings: &[Recording]) -> impl Iterator<Item = (&Recording, usi
 }
 
 /// The runs of samples that a fold keeps.
-fn pieces(recordings: &[Recording], folds: &Folds, fold: usize) -> Vec<Recording> {
-    let mut pieces = Vec::new();
+fn parts<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Measured<'a>> {
+    let mut parts = Vec::new();
     for (recording, first) in with_first(recordings) {
         let mut start = 0;
         // One more than there are, so that the last run ends.
@@ -72,11 +72,14 @@ fn pieces(recordings: &[Recording], folds: &Folds, fold: usize) -> Vec<Recording
             if !is_kept {
                 // A single sample has no direction.
                 if n > start + 1 {
-                    pieces.extend(recording.only(|k| (start..n).contains(&k)));
+                    parts.push(Measured {
+                        input: &recording.input[start..n],
+                        output: &recording.output[start..n],
+                    });
                 }
                 start = n + 1;
             }
         }
     }
-    pieces
+    parts
 }

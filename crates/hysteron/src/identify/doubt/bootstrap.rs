@@ -137,7 +137,7 @@ pub(crate) fn left_out_errors(
         };
         let level = experiment.offsets.iter().zip(&free[fold]);
         let level: f64 = level.map(|(z, value)| value * z[n]).sum();
-        *error = target[n] - *error - level;
+        *error = target(n) - *error - level;
     }
     let units = folds.units;
     Ok(LeftOutErrors { units, errors })

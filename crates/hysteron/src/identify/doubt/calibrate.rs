@@ -10,8 +10,8 @@ const SHARE: f64 = 0.95;
 /// Variance of the output that the band needs beyond that of the factors, so that it holds 95 % of
 /// the errors on new branches (jackknife+, Barber et al. 2021). `sensor` is the least noise.
 ///
-/// `errors` are those of fits that left the sample's unit out, with the number of the sample, and
-/// the number of units.
+/// `errors` are those of fits that left the sample's unit out, with the number of the sample,
+/// ascending, and the number of units.
 pub(super) fn calibrate(
     factors: &[LoadPart],
     (errors, units): (impl Iterator<Item = (usize, f64)>, usize),
@@ -19,9 +19,15 @@ pub(super) fn calibrate(
     problem: &Problem,
     sign: Sign,
 ) -> Result<f64> {
-    let variance = variance(factors, problem, sign)?;
-    let missing = errors.map(|(n, error)| missing(error, variance[n]));
-    Ok(quantile(missing.collect(), units).sqrt().max(sensor))
+    let mut values = variance(factors, problem, sign)?;
+    // Each value takes the place of a variance that is no longer needed.
+    let mut count = 0;
+    for (n, error) in errors {
+        values[count] = missing(error, values[n]);
+        count += 1;
+    }
+    values.truncate(count);
+    Ok(quantile(values, units).sqrt().max(sensor))
 }
 
 /// The variance that a band with `variance` misses to hold `error`.

@@ -75,10 +75,11 @@ pub(crate) fn of(
         own.map(|range| noise(&solution.residual[range.clone()]).powi(2) * range.len() as f64);
     let sensor = (sensor.sum::<f64>() / samples).sqrt();
     // The band is for new branches.
-    let new_branches = if experiment.branches() < ENOUGH_BRANCHES {
-        &of_units(ENOUGH_FOR_BAND)?
+    let new_branches = if experiment.branches.len() < ENOUGH_BRANCHES {
+        drop(left_out);
+        of_units(ENOUGH_FOR_BAND)?
     } else {
-        &left_out
+        left_out
     };
     let errors = new_branches.of_new_branches(problem);
     let width = calibrate(&factors, errors, sensor, problem, fitted.sign)?;
@@ -94,7 +95,7 @@ pub(crate) fn of(
         _ => Initial::Off,
     };
     Ok(Some(Confidence {
-        branches: experiment.branches(),
+        branches: experiment.branches.len(),
         rank: spectrum.rank(),
         unknowns: solution.x.len(),
         condition: spectrum.condition(),

@@ -5,7 +5,7 @@ use crate::identify::doubt::calibrate::{missing, quantile};
 use crate::identify::history::find_start;
 use crate::model::{INTERVAL, Model, SeenFile, Surroundings};
 use crate::recording::Recording;
-use crate::series::{branches, usual_tolerance};
+use crate::series::{branch_spans, usual_tolerance};
 
 /// Widens the band of a model with confidence so that it holds 95 % of the samples of the
 /// `repeats`, too. Weights and offset stay as they are. The start of each repeat is estimated from
@@ -31,10 +31,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
             let of_weights = (half / INTERVAL).powi(2) - noise * noise;
             missing(error, of_weights)
         }));
-        let tolerance = usual_tolerance(&repeat.input);
-        units += branches(&repeat.input, tolerance)
-            .last()
-            .map_or(0, |last| last + 1);
+        units += branch_spans(&repeat.input, usual_tolerance(&repeat.input)).count();
     }
     let needed = quantile(values, units).sqrt();
     if let Some(found) = confidence(model) {

@@ -483,9 +483,7 @@ mod tests {
                     "round {round}: {m} for {n} with {options:?}"
                 );
             }
-            let (b, _) = dense
-                .right(problem.target(Sign::Positive).into_iter())
-                .unwrap();
+            let (b, _) = dense.right(problem.targets(Sign::Positive)).unwrap();
             for solver in [Solver::Nnls, Solver::Ols] {
                 let factor = (solver == Solver::Ols).then(|| sparse.penalised.factor().unwrap());
                 let start = match rng.random_range(0..2) {

@@ -10,7 +10,7 @@ use crate::model::bernstein;
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
 use crate::series::range;
-use crate::series::{branch_of_each, usual_tolerance};
+use crate::series::{branch_spans, usual_tolerance};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -20,8 +20,8 @@ pub(crate) struct Experiment<'a> {
     pub(crate) output: Cow<'a, [f64]>,
     /// The range of samples of each recording.
     pub(crate) recordings: Vec<Range<usize>>,
-    /// For each sample, the number of its branch, counted through all recordings.
-    pub(crate) branch: Vec<u32>,
+    /// The samples of each branch, through all recordings.
+    pub(crate) branches: Vec<Range<usize>>,
     /// Smallest and largest load, if there is a load.
     pub(crate) load_range: Option<(f64, f64)>,
     /// Functions of the load at each sample; a single constant 1 without a load.
@@ -46,7 +46,7 @@ impl<'a> Experiment<'a> {
             input: joined(recordings, |recording| &recording.input),
             output: joined(recordings, |recording| &recording.output),
             recordings: Vec::new(),
-            branch: Vec::new(),
+            branches: Vec::new(),
             load_range: None,
             parts: Vec::new(),
             offsets: Vec::new(),
@@ -115,17 +115,11 @@ impl<'a> Experiment<'a> {
     /// A branch ends where the input turns by more than the noise.
     fn find_branches(&mut self) {
         let band = usual_tolerance(&self.input);
-        for range in &self.recordings {
-            let before = self.branches();
-            let own = branch_of_each(&self.input[range.clone()], band);
-            // No more branches than samples, and of these no memory holds 2³².
-            self.branch
-                .extend(own.map(|branch| (before + branch) as u32));
+        for Range { start, end } in &self.recordings {
+            let own = branch_spans(&self.input[*start..*end], band);
+            let own = own.map(|span| start + span.start..start + span.end);
+            self.branches.extend(own);
         }
-    }
-
-    pub(crate) fn branches(&self) -> usize {
-        self.branch.last().map_or(0, |last| *last as usize + 1)
     }
 
     /// The plane of the options; by default the one for the range of all inputs.

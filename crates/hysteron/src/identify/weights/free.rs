@@ -65,7 +65,7 @@ impl FreeColumns {
     /// `Aᵀ z` for each free column `z`, and the inverse.
     pub(crate) fn mixed(&self, regressor: &Regressor, experiment: &Experiment) -> Result<Mixed> {
         let columns = self.columns.iter();
-        let columns = columns.map(|z| regressor.adjoint(experiment, &z.values()));
+        let columns = columns.map(|z| regressor.adjoint(experiment, |n| z[n]));
         Ok(Mixed {
             columns: columns.collect::<Result<_>>()?,
             inverse: self.inverse.clone(),

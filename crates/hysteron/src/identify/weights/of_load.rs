@@ -1,6 +1,5 @@
 //! A function of the load at each sample.
 
-use std::borrow::Cow;
 use std::ops::Index;
 
 /// The values of a function of the load. Without a load it is 1, which needs no memory.
@@ -13,13 +12,6 @@ pub(crate) enum OfLoad {
 }
 
 impl OfLoad {
-    pub(crate) fn values(&self) -> Cow<'_, [f64]> {
-        match self {
-            Self::One(samples) => Cow::Owned(vec![1.0; *samples]),
-            Self::Each(values) => Cow::Borrowed(values),
-        }
-    }
-
     pub(crate) fn iter(&self) -> impl Iterator<Item = f64> {
         let samples = match self {
             Self::One(samples) => *samples,

@@ -57,15 +57,13 @@ impl<'a> Problem<'a> {
 
     /// The right-hand side of the fit: the output minus a known offset, with the sign turned so
     /// that non-negative weights fit it.
-    pub(crate) fn target(&self, sign: Sign) -> Vec<f64> {
-        self.target_of_each(sign).collect()
+    pub(crate) fn target(&self, sign: Sign, sample: usize) -> f64 {
+        sign.factor() * (self.experiment.output[sample] - self.options.offset.unwrap_or(0.0))
     }
 
-    /// As [`Problem::target`], one after the other.
-    fn target_of_each(&self, sign: Sign) -> impl Iterator<Item = f64> + Clone {
-        let offset = self.options.offset.unwrap_or(0.0);
-        let turned = move |y: &f64| sign.factor() * (y - offset);
-        self.experiment.output.iter().map(turned)
+    /// The targets of all samples.
+    pub(crate) fn targets(&self, sign: Sign) -> impl Iterator<Item = f64> + Clone {
+        (0..self.experiment.output.len()).map(move |sample| self.target(sign, sample))
     }
 
     pub(crate) fn free(&self, kept: Option<&[f64]>) -> Result<FreeColumns> {
@@ -153,7 +151,7 @@ impl<'a> Problem<'a> {
         equations: &NormalEquations<'_>,
         progress: Progress<'_>,
     ) -> Result<Vec<(Sign, Option<Vec<f64>>)>> {
-        let (right, squares) = equations.right(self.target_of_each(Sign::Positive))?;
+        let (right, squares) = equations.right(self.targets(Sign::Positive))?;
         let mut rated = Vec::new();
         for sign in [Sign::Positive, Sign::Negative] {
             let right: Vec<f64> = right.iter().map(|b| sign.factor() * b).collect();
@@ -176,7 +174,7 @@ impl<'a> Problem<'a> {
         let mut best: Option<Fitted> = None;
         for (sign, start) in signs {
             let solution = equations.solve(
-                self.target_of_each(sign),
+                self.targets(sign),
                 self.options.solver,
                 start.as_deref(),
                 STEPS,

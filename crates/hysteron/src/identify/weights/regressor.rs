@@ -171,8 +171,12 @@ impl Regressor {
         Ok(output)
     }
 
-    /// `Aᵀ r`.
-    pub(crate) fn adjoint(&self, experiment: &Experiment, residual: &[f64]) -> Result<Vec<f64>> {
+    /// `Aᵀ r`, where `residual` gives `r` at a sample.
+    pub(crate) fn adjoint(
+        &self,
+        experiment: &Experiment,
+        residual: impl Fn(usize) -> f64,
+    ) -> Result<Vec<f64>> {
         let all = self.adjoints(experiment, residual, 1, |_| Some(0))?;
         Ok(all.into_iter().next().unwrap_or_default())
     }
@@ -181,14 +185,14 @@ impl Regressor {
     pub(crate) fn adjoints(
         &self,
         experiment: &Experiment,
-        residual: &[f64],
+        residual: impl Fn(usize) -> f64,
         count: usize,
         group: impl Fn(usize) -> Option<usize>,
     ) -> Result<Vec<Vec<f64>>> {
         let mut results = vec![vec![0.0; self.columns.len()]; count];
         // Recordings in which all columns start in the same way share their sums.
         for recordings in self.alike(experiment) {
-            let all = self.products(experiment, recordings.clone(), residual, count, &group)?;
+            let all = self.products(experiment, recordings.clone(), &residual, count, &group)?;
             for (result, products) in results.iter_mut().zip(all) {
                 for (result, column) in result.iter_mut().zip(&self.columns) {
                     let from = column.initial_in(recordings.start);
@@ -264,7 +268,7 @@ impl Regressor {
         &self,
         experiment: &Experiment,
         recordings: Range<usize>,
-        residual: &[f64],
+        residual: impl Fn(usize) -> f64,
         count: usize,
         group: impl Fn(usize) -> Option<usize>,
     ) -> Result<Vec<Products>> {
@@ -274,7 +278,7 @@ impl Regressor {
             for &from in &starts {
                 let mut sums = vec![vec![0.0; self.form.operators()]; count];
                 for range in &experiment.recordings[recordings.clone()] {
-                    let r = |n: usize| values[range.start + n] * residual[range.start + n];
+                    let r = |n: usize| values[range.start + n] * residual(range.start + n);
                     let own = |n: usize| group(range.start + n);
                     let input = &experiment.input[range.clone()];
                     self.form.add_adjoints(input, from, r, own, &mut sums)?;
@@ -460,7 +464,7 @@ impl Regressor {
             .alike(experiment)
             .into_iter()
             .map(|recordings| {
-                let all = self.products(experiment, recordings, residual, 1, |_| Some(0))?;
+                let all = self.products(experiment, recordings, |n| residual[n], 1, |_| Some(0))?;
                 Ok(all.into_iter().next())
             })
             .collect::<Result<Option<_>>>()?

@@ -388,7 +388,10 @@ impl<'a> NormalEquations<'a> {
         let none = vec![0.0; self.regressor.columns().len()];
         let residual = self.solution(target, none)?.residual;
         let squares = residual.iter().map(|r| r * r).sum();
-        Ok((self.regressor.adjoint(self.experiment, &residual)?, squares))
+        Ok((
+            self.regressor.adjoint(self.experiment, |n| residual[n])?,
+            squares,
+        ))
     }
 
     /// The solution `x` with its residual from `target`, after the best free columns are
@@ -422,7 +425,9 @@ impl<'a> NormalEquations<'a> {
 
     /// Half the negative gradient of the objective: `Aᵀ r − P x`.
     pub(crate) fn descent(&self, at: &Solution) -> Result<Vec<f64>> {
-        let mut descent = self.regressor.adjoint(self.experiment, &at.residual)?;
+        let mut descent = self
+            .regressor
+            .adjoint(self.experiment, |n| at.residual[n])?;
         let slopes = self.slopes(&at.x);
         descent.iter_mut().zip(slopes).for_each(|(d, s)| *d -= s);
         Ok(descent)

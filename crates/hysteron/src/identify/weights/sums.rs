@@ -42,18 +42,18 @@ const PASS_BYTES: usize = 256 << 20;
 
 impl Sums {
     /// The sums over the samples of each of `count` groups. `group` has the group of each sample,
-    /// `None` for samples that do not count. `target` should have no large offset, because squares
-    /// of it are subtracted from each other.
+    /// `None` for samples that do not count, and `target` that of each sample. It should have no
+    /// large offset, because squares of it are subtracted from each other.
     pub(crate) fn of_groups(
         problem: &Problem,
-        target: &[f64],
+        target: impl Fn(usize) -> f64 + Sync,
         group: impl Fn(usize) -> Option<usize> + Sync,
         count: usize,
         progress: Progress<'_>,
     ) -> Result<Vec<Self>> {
         let passes = Self::passes(problem, count);
         let all = parallel::map(passes.len(), |n| {
-            Self::of_some(problem, target, &group, passes[n].clone(), progress)
+            Self::of_some(problem, &target, &group, passes[n].clone(), progress)
         })?;
         Ok(all.into_iter().flatten().collect())
     }
@@ -69,7 +69,7 @@ impl Sums {
     /// As [`Sums::of_groups`], for a range of the groups.
     pub(crate) fn of_some(
         problem: &Problem,
-        target: &[f64],
+        target: impl Fn(usize) -> f64,
         group: impl Fn(usize) -> Option<usize>,
         groups: Range<usize>,
         progress: Progress<'_>,
@@ -85,7 +85,7 @@ impl Sums {
             (group < count).then_some(group)
         };
         let grams = regressor.compact_grams(experiment, count, own, progress)?;
-        let rights = regressor.adjoints(experiment, target, count, own)?;
+        let rights = regressor.adjoints(experiment, &target, count, own)?;
         let mut all: Vec<Self> = grams
             .into_iter()
             .zip(rights)
@@ -100,15 +100,16 @@ impl Sums {
             })
             .collect();
         for z in columns {
-            let mixed = regressor.adjoints(experiment, &z.values(), count, own)?;
+            let mixed = regressor.adjoints(experiment, |n| z[n], count, own)?;
             all.iter_mut()
                 .zip(mixed)
                 .for_each(|(own, m)| own.mixed.push(m));
         }
-        for (n, y) in target.iter().enumerate() {
+        for n in 0..experiment.output.len() {
             let Some(sums) = own(n).map(|group| &mut all[group]) else {
                 continue;
             };
+            let y = target(n);
             sums.squares += y * y;
             sums.samples += 1.0;
             for (a, left) in columns.iter().enumerate() {
@@ -293,12 +294,12 @@ impl Reduced {
     }
 }
 
-/// The target of a problem without its mean.
-pub(crate) fn centred(problem: &Problem, sign: Sign) -> Vec<f64> {
-    let mut target = problem.target(sign);
-    if problem.options.offset.is_none() {
-        let mean = target.iter().sum::<f64>() / target.len() as f64;
-        target.iter_mut().for_each(|y| *y -= mean);
-    }
-    target
+/// The target of a problem without its mean, at each sample.
+pub(crate) fn centred(problem: &Problem, sign: Sign) -> impl Fn(usize) -> f64 + Sync {
+    let samples = problem.experiment.output.len();
+    let mean = match problem.options.offset {
+        Some(_) => 0.0,
+        None => problem.targets(sign).sum::<f64>() / samples as f64,
+    };
+    move |n| problem.target(sign, n) - mean
 }

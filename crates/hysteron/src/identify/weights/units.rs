@@ -1,75 +1,65 @@
 //! Units of samples: what is left out of a fit, or drawn for a replicate, as a whole.
 
 use crate::identify::weights::experiment::Experiment;
+use crate::series::Runs;
 
 /// The unit of each sample. A unit is a branch, or a part of one.
 pub(crate) struct Units {
-    /// [`NONE`] for samples that do not count.
-    of: Vec<u32>,
+    /// `None` for samples that do not count.
+    of: Runs<Option<usize>>,
     /// Number of units.
     pub(crate) count: usize,
     /// Whether each is a whole branch.
     pub(crate) whole_branches: bool,
 }
 
-/// There are fewer branches than samples, and no memory holds 2³² of these. Parts of branches are
-/// few.
-const NONE: u32 = u32::MAX;
-
 impl Units {
     /// The units of the samples that are kept. They are branches. With fewer than `enough` branches
     /// they are parts of them, and there are at least twice as many units.
     pub(crate) fn new(experiment: &Experiment<'_>, kept: Option<&[f64]>, enough: usize) -> Self {
         let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
-        let (mut count, mut last) = (0, None);
-        let branches = experiment.branch.iter().enumerate();
-        let of = branches.map(|(n, &branch)| match is_kept(n) {
-            true => {
-                count += u32::from(last != Some(branch));
-                last = Some(branch);
-                count - 1
+        let (mut of, mut count) = (Runs::default(), 0);
+        for branch in &experiment.branches {
+            let unit = count;
+            for n in branch.clone() {
+                of.push(is_kept(n).then(|| {
+                    count = unit + 1;
+                    unit
+                }));
             }
-            false => NONE,
-        });
-        let of: Vec<u32> = of.collect();
+        }
         let whole = Self {
             of,
-            count: count as usize,
+            count,
             whole_branches: true,
         };
-        match whole.count >= enough {
+        match count >= enough {
             true => whole,
-            false => whole.divided(
-                &experiment.input,
-                (2 * enough).div_ceil(count.max(1) as usize),
-            ),
+            false => whole.divided(&experiment.input, (2 * enough).div_ceil(count.max(1))),
         }
     }
 
     /// Each unit in so many parts. They divide the path of the input, not the number of samples,
     /// because the input may rest.
     fn divided(mut self, input: &[f64], parts: usize) -> Self {
-        let step = |n: usize| match n > 0 && self.of[n - 1] == self.of[n] {
+        let step = |n: usize| match n > 0 && self.of(n - 1) == self.of(n) {
             true => (input[n] - input[n - 1]).abs(),
             false => 0.0,
         };
         let mut path = vec![0.0; self.count];
-        for n in 0..input.len() {
-            if let Some(unit) = self.of(n) {
+        for (n, unit) in self.of.values().enumerate() {
+            if let Some(unit) = unit {
                 path[unit] += step(n);
             }
         }
         let mut travelled = vec![0.0; self.count];
-        let of = (0..input.len()).map(|n| match self.of(n) {
-            Some(unit) => {
-                travelled[unit] += step(n);
-                let part = parts as f64 * travelled[unit] / path[unit].max(f64::MIN_POSITIVE);
-                let part = part as usize;
-                (unit * parts + part.min(parts - 1)) as u32
-            }
-            None => NONE,
-        });
-        self.of = of.collect();
+        let part_of = |(n, unit): (usize, Option<usize>)| {
+            let unit = unit?;
+            travelled[unit] += step(n);
+            let part = parts as f64 * travelled[unit] / path[unit].max(f64::MIN_POSITIVE);
+            Some(unit * parts + (part as usize).min(parts - 1))
+        };
+        self.of = self.of.values().enumerate().map(part_of).collect();
         self.count *= parts;
         self.whole_branches = false;
         self
@@ -77,8 +67,7 @@ impl Units {
 
     /// The unit of a sample; `None` if the sample does not count.
     pub(crate) fn of(&self, sample: usize) -> Option<usize> {
-        let unit = self.of[sample];
-        (unit != NONE).then_some(unit as usize)
+        self.of.at(sample)
     }
 }
 
