@@ -50,13 +50,14 @@ pub(super) fn mended<'a>(
         ..options.clone()
     };
     let all = recordings.iter().flat_map(|recording| &recording.output);
-    let (low, high) = usual_range(all.copied().collect());
-    let span = high - low;
+    let span = usual_span(all.copied().collect());
+    let own = recordings.iter().map(|own| usual_span(own.output.clone()));
+    let smallest: Vec<f64> = own.map(|span| SMALLEST * span).collect();
     let mut mended = Cow::Borrowed(recordings);
     let mut outliers: Vec<Outlier> = Vec::new();
     for _ in 0..ROUNDS {
         progress.tell("outliers", f64::NAN)?;
-        let found = judged(recordings, &mended, &options)?;
+        let found = judged(recordings, &mended, &smallest, &options)?;
         let settled = found.len() == outliers.len()
             && found.iter().zip(&outliers).all(|(a, b)| {
                 let moved = (a.by - b.by).abs();
@@ -74,31 +75,31 @@ pub(super) fn mended<'a>(
     Ok((mended, outliers))
 }
 
-/// The outliers of the recordings, judged by a model of the mended ones.
+/// The outliers of the recordings, judged by a model of the mended ones. `smallest` has the least
+/// distance that counts in each.
 fn judged(
     recordings: &[Recording],
     mended: &[Recording],
+    smallest: &[f64],
     options: &FitOptions,
 ) -> Result<Vec<Outlier>> {
-    let mut residual = {
+    let mut residuals = {
         let mut problem = Problem::new(mended, options)?;
         let fitted = problem.solve(None, Progress::NONE)?;
         let mut residual = fitted.solution.residual;
         residual.iter_mut().for_each(|r| *r *= fitted.sign.factor());
         residual
     };
-    let mut rest = residual.as_mut_slice();
     let mut found = Vec::new();
     for (recording, (own, mended)) in recordings.iter().zip(mended).enumerate() {
-        let (residual, after) = rest.split_at_mut(own.len());
-        rest = after;
+        let after = residuals.split_off(own.len());
+        let mut residual = std::mem::replace(&mut residuals, after);
         let moved = own.output.iter().zip(&mended.output).map(|(y, m)| y - m);
         residual
             .iter_mut()
             .zip(moved)
             .for_each(|(r, moved)| *r += moved);
-        let (low, high) = usual_range(own.output.clone());
-        let own = isolated(residual, DEVIATIONS, SMALLEST * (high - low));
+        let own = isolated(residual, DEVIATIONS, smallest[recording]);
         found.extend(own.into_iter().map(|(sample, by)| Outlier {
             recording,
             sample,
@@ -108,9 +109,9 @@ fn judged(
     Ok(found)
 }
 
-/// The range of the values without the hundredth that is largest and the hundredth that is
-/// smallest, so that an outlier does not make the range.
-fn usual_range(mut values: Vec<f64>) -> (f64, f64) {
+/// The size of the range of the values without the hundredth that is largest and the hundredth that
+/// is smallest, so that an outlier does not make the range.
+fn usual_span(mut values: Vec<f64>) -> f64 {
     let last = values.len() - 1;
     let cut = (values.len() / 100).max(1).min(last / 2);
     let (_, &mut low, above) = values.select_nth_unstable_by(cut, f64::total_cmp);
@@ -119,5 +120,5 @@ fn usual_range(mut values: Vec<f64>) -> (f64, f64) {
         Some(place) => *above.select_nth_unstable_by(place, f64::total_cmp).1,
         None => low,
     };
-    (low, high)
+    high - low
 }

@@ -166,12 +166,9 @@ impl Inverse<'_> {
         let wanted = wanted.into();
         let model = self.model;
         if self.is_plain(&wanted) {
-            let Target { output, .. } = wanted.target;
-            let raw = model.sign().factor() * (output - model.offset());
-            let target = model.sign().inward(wanted.target, raw);
-            let solution = self.core.step(&mut state.operators, target)?;
+            let solution = self.step_operators(state, wanted.target)?;
             state.forget_stages();
-            return Ok(model.sign().outward(solution));
+            return Ok(solution);
         }
         let worded = |error| model.worded(error);
         let mut stages = model.stages();
@@ -211,6 +208,17 @@ impl Inverse<'_> {
         };
         state.mixed = Some(mixed);
         solution.map_err(worded)
+    }
+
+    /// As [`Inverse::step`], where the operators alone give the input.
+    #[inline]
+    fn step_operators(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
+        let sign = self.model.sign();
+        let raw = sign.factor() * (target.output - self.model.offset());
+        let solution = self
+            .core
+            .step(&mut state.operators, sign.inward(target, raw))?;
+        Ok(sign.outward(solution))
     }
 
     /// The outputs with every operator off and with every operator on, at a load.
@@ -416,6 +424,19 @@ impl Inverse<'_> {
         self.check_targets(targets.iter().copied())?;
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
         let samples = surroundings.samples(self.model, targets)?.zip(headings);
+        let nothing_else = Wanted::from(Target::new(0.0));
+        if surroundings.load.is_none() && self.is_plain(&nothing_else) {
+            for ((_, sample), heading) in samples {
+                let target = Target {
+                    output: sample.input,
+                    heading,
+                    tolerance,
+                };
+                take(self.step_operators(state, target)?);
+            }
+            state.forget_stages();
+            return Ok(());
+        }
         for ((_, sample), heading) in samples {
             take(self.step(state, Wanted::of(sample, heading, tolerance))?);
         }

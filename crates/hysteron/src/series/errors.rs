@@ -32,6 +32,15 @@ impl Errors {
         modelled: &[f64],
         which: impl Fn(usize) -> bool,
     ) -> Option<Self> {
+        Self::of_each(measured, modelled.iter().copied(), which)
+    }
+
+    /// As [`Errors::between`], for modelled values that come one after the other.
+    pub(crate) fn of_each(
+        measured: &[f64],
+        modelled: impl IntoIterator<Item = f64>,
+        which: impl Fn(usize) -> bool,
+    ) -> Option<Self> {
         let (mut squares, mut max_abs, mut samples) = (0.0, 0.0_f64, 0_usize);
         for (n, (a, b)) in measured.iter().zip(modelled).enumerate() {
             if which(n) {

@@ -25,28 +25,30 @@ const SMALLEST: f64 = 0.02;
 /// place. Returns the indices of the samples replaced.
 pub(crate) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
     let (low, high) = range(values);
-    remove_above(values, deviations, SMALLEST * (high - low))
+    let removed = remove_above(values, deviations, SMALLEST * (high - low));
+    removed.into_iter().map(|(n, _)| n).collect()
 }
 
 /// The values that stand out from those on both sides by more than `deviations` and `floor`, as
 /// pairs of index and height. Unlike in [`remove`], the first and last ones count too.
-pub(crate) fn isolated(values: &[f64], deviations: f64, floor: f64) -> Vec<(usize, f64)> {
-    if values.len() <= REACH {
+pub(crate) fn isolated(mut values: Vec<f64>, deviations: f64, floor: f64) -> Vec<(usize, f64)> {
+    let len = values.len();
+    if len <= REACH {
         return Vec::new();
     }
     // Mirrored at both ends.
-    let before = values[1..=REACH].iter().rev();
-    let after = values[values.len() - 1 - REACH..values.len() - 1]
-        .iter()
-        .rev();
-    let mut padded: Vec<f64> = before.chain(values).chain(after).copied().collect();
-    let replaced = remove_above(&mut padded, deviations, floor).into_iter();
-    let own = replaced.filter(|n| (REACH..REACH + values.len()).contains(n));
-    own.map(|n| (n - REACH, values[n - REACH] - padded[n]))
-        .collect()
+    values.reserve_exact(2 * REACH);
+    values.extend_from_within(len - 1 - REACH..len - 1);
+    values[len..].reverse();
+    let before: [f64; REACH] = std::array::from_fn(|n| values[REACH - n]);
+    values.splice(0..0, before);
+    let removed = remove_above(&mut values, deviations, floor).into_iter();
+    let own = removed.filter(|(n, _)| (REACH..REACH + len).contains(n));
+    own.map(|(n, read)| (n - REACH, read - values[n])).collect()
 }
 
-fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
+/// Replaces what is above both, and returns the indices and what was read there.
+fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<(usize, f64)> {
     let sigma = noise(values);
     // No threshold is lower, so what cannot reach this one needs no line.
     let least = (deviations * sigma).max(floor);
@@ -67,7 +69,7 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
             });
         }
     }
-    let mut replaced = Vec::new();
+    let mut removed = Vec::new();
     let next_to = |a: &Off, b: &Off| a.sample + 1 == b.sample && a.side == b.side;
     for run in off.chunk_by(next_to) {
         let (start, end) = (run[0].sample, run[0].sample + run.len());
@@ -84,13 +86,13 @@ fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<usize> {
         let sticks_out = run.iter().all(above);
         if sticks_out {
             let length = (end - start + 1) as f64;
+            removed.extend((start..end).map(|n| (n, values[n])));
             for (n, value) in (1_u32..).zip(&mut values[start..end]) {
                 *value = before + (after - before) * f64::from(n) / length;
             }
-            replaced.extend(start..end);
         }
     }
-    replaced
+    removed
 }
 
 /// A sample that is too far from the line through its neighbours.

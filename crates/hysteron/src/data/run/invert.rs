@@ -6,9 +6,9 @@ use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
-use crate::model::{Inverse, Model, Policy, Preview, Sample, State, Wanted};
+use crate::model::{Inverse, Model, Policy, Preview, Sample, State, Surroundings, Wanted};
 use crate::series::Headings;
-use hysteron_core::{StageState, Status};
+use hysteron_core::{Solution, StageState};
 use std::collections::VecDeque;
 
 /// The columns and options of an inversion.
@@ -106,6 +106,13 @@ struct Inverting<'m> {
 impl Work for Inverting<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
         let plain = self.model.is_plain();
+        if plain && self.headings.is_none() {
+            let targets = &block.numbers()[self.samples.value];
+            if self.solving.series(targets, self.tolerance, cells).is_ok() {
+                return Ok(());
+            }
+            // Nothing was solved. What follows finds the row with the fault.
+        }
         for row in 0..block.len() {
             let sample = self.samples.next(block, row);
             // A time or a load that cannot be is told with its row.
@@ -165,6 +172,29 @@ impl Solving<'_> {
         Ok(())
     }
 
+    /// All at once, for a model without stages.
+    fn series(&mut self, targets: &[f64], tolerance: f64, cells: &mut AddedCells) -> Result<()> {
+        let Self {
+            inverse,
+            state,
+            counts,
+            ..
+        } = self;
+        let take = |solution: Solution<f64>| {
+            counts.add(solution.status);
+            cells.push(&[solution.input]);
+            cells.words.push(solution.status.name());
+        };
+        inverse.each_headed(
+            state,
+            targets,
+            &[],
+            tolerance,
+            Surroundings::default(),
+            take,
+        )
+    }
+
     fn rest(&mut self, cells: &mut AddedCells) -> Result<()> {
         while let Some((wanted, asked)) = self.preview.as_mut().and_then(Preview::next) {
             self.solve(wanted, asked, cells)?;
@@ -174,18 +204,11 @@ impl Solving<'_> {
 
     /// `asked` is the output that the row asks for; a preview may want a little less of it.
     fn solve(&mut self, wanted: Wanted, asked: f64, cells: &mut AddedCells) -> Result<()> {
-        let hysteron_core::Solution { input, status } = match &self.preview {
+        let Solution { input, status } = match &self.preview {
             Some(preview) => preview.step(&self.inverse, &mut self.state, wanted, asked)?,
             None => self.inverse.step(&mut self.state, wanted)?,
         };
-        self.counts.samples += 1;
-        match status {
-            Status::Ok => {}
-            Status::Low => self.counts.low += 1,
-            Status::High => self.counts.high += 1,
-            Status::Passed => self.counts.passed += 1,
-            Status::Limited => self.counts.limited += 1,
-        }
+        self.counts.add(status);
         match self.heated {
             true => cells.push(&[input, self.state.temperature()]),
             false => cells.push(&[input]),

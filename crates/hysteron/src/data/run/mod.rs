@@ -12,6 +12,7 @@ mod sink;
 pub use invert::{Invert, invert_table};
 pub use simulate::{Simulate, simulate_table};
 
+use hysteron_core::Status;
 use serde::Serialize;
 
 /// Counts of the rows processed.
@@ -27,6 +28,20 @@ pub struct Counts {
     pub passed: u64,
     /// Targets that the drive, within its range, cannot reach in time.
     pub limited: u64,
+}
+
+impl Counts {
+    /// Counts a target with this status.
+    fn add(&mut self, status: Status) {
+        self.samples += 1;
+        match status {
+            Status::Ok => {}
+            Status::Low => self.low += 1,
+            Status::High => self.high += 1,
+            Status::Passed => self.passed += 1,
+            Status::Limited => self.limited += 1,
+        }
+    }
 }
 
 /// The columns that a model may need besides its input or target.

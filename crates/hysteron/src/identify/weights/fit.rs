@@ -71,12 +71,9 @@ pub(crate) fn described(
 
     let residual = &fitted.solution.residual;
     let measured = &problem.experiment.output;
-    let modelled: Vec<f64> = measured
-        .iter()
-        .zip(residual)
-        .map(|(y, r)| y - sign.factor() * r)
-        .collect();
-    let errors = Errors::between(measured, &modelled, |_| true)
+    let modelled = measured.iter().zip(residual);
+    let modelled = modelled.map(|(y, r)| y - sign.factor() * r);
+    let errors = Errors::of_each(measured, modelled, |_| true)
         .ok_or_else(|| Error::Fit("no samples".into()))?;
     let file = SeenFile::of(first);
     let others: Vec<SeenFile> = recordings[1..].iter().filter_map(SeenFile::of).collect();
