@@ -1,6 +1,6 @@
 //! A polynomial for each direction of travel.
 
-use super::path::{Measured, legs};
+use super::path::{Leg, Measured, legs};
 
 /// Highest degree.
 const HIGHEST: usize = 5;
@@ -9,7 +9,7 @@ const HIGHEST: usize = 5;
 const FOLDS: usize = 5;
 
 #[derive(Debug, Clone)]
-pub(super) struct BranchPolynomial {
+pub(crate) struct BranchPolynomial {
     rising: Polynomial,
     falling: Polynomial,
 }
@@ -49,17 +49,12 @@ impl BranchPolynomial {
         }
     }
 
-    pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
-        let mut output = Vec::with_capacity(input.len());
-        for leg in legs(input) {
-            let polynomial = if leg.rises {
-                &self.rising
-            } else {
-                &self.falling
-            };
-            output.extend(input[leg.samples].iter().map(|x| polynomial.at(*x)));
-        }
-        output
+    pub(super) fn at(&self, leg: &Leg, x: f64) -> f64 {
+        let polynomial = match leg.rises {
+            true => &self.rising,
+            false => &self.falling,
+        };
+        polynomial.at(x)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Interpolation over the input and the last reversal.
 
-use super::path::{Branch, Measured, all_measured, legs};
+use super::path::{Branch, Leg, Measured, all_measured};
 use crate::series::{NOISE, range};
 
 /// Branches of one direction with the same reversal, up to noise.
@@ -27,7 +27,7 @@ impl Bundle {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Interpolation {
+pub(crate) struct Interpolation {
     rising: Vec<Bundle>,
     falling: Vec<Bundle>,
 }
@@ -55,18 +55,12 @@ impl Interpolation {
         }
     }
 
-    pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
-        let mut output = Vec::with_capacity(input.len());
-        for leg in legs(input) {
-            let bundles = if leg.rises {
-                &self.rising
-            } else {
-                &self.falling
-            };
-            let values = &input[leg.samples];
-            output.extend(values.iter().map(|x| between(bundles, leg.reversal, *x)));
-        }
-        output
+    pub(super) fn at(&self, leg: &Leg, x: f64) -> f64 {
+        let bundles = match leg.rises {
+            true => &self.rising,
+            false => &self.falling,
+        };
+        between(bundles, leg.reversal, x)
     }
 }
 

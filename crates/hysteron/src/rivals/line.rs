@@ -3,7 +3,7 @@
 use super::path::Measured;
 
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// Means of input and output.
     centre: (f64, f64),
     slope: f64,
@@ -28,8 +28,7 @@ impl Line {
         Self { centre, slope }
     }
 
-    pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
-        let at = |x: &f64| self.centre.1 + self.slope * (x - self.centre.0);
-        input.iter().map(at).collect()
+    pub(super) fn at(&self, x: f64) -> f64 {
+        self.centre.1 + self.slope * (x - self.centre.0)
     }
 }

@@ -23,7 +23,10 @@ impl AtLoads {
         let middles: Option<Vec<f64>> = recordings.iter().map(median_load).collect();
         let Some(middles) = middles else {
             let all: Vec<Measured<'_>> = recordings.iter().map(Measured::from).collect();
-            return Ok(Self::without(fit(&all)?));
+            return Ok(Self {
+                loads: Vec::new(),
+                predictors: vec![fit(&all)?],
+            });
         };
         let largest = middles.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut by_load: Vec<(f64, &Recording)> = middles.into_iter().zip(recordings).collect();
@@ -36,14 +39,6 @@ impl AtLoads {
             predictors.push(fit(&recordings)?);
         }
         Ok(Self { loads, predictors })
-    }
-
-    /// One predictor, whatever the load.
-    pub(super) fn without(predictor: Predictor) -> Self {
-        Self {
-            loads: Vec::new(),
-            predictors: vec![predictor],
-        }
     }
 
     /// The mean of the two nearest loads, weighted by the distances; beyond the loads the last one.

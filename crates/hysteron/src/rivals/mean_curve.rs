@@ -3,7 +3,7 @@
 use super::path::{Branch, Measured, all_measured};
 
 #[derive(Debug, Clone)]
-pub(super) struct MeanCurve {
+pub(crate) struct MeanCurve {
     branches: Vec<Branch>,
 }
 
@@ -14,14 +14,10 @@ impl MeanCurve {
         }
     }
 
-    pub(super) fn predict(&self, input: &[f64]) -> Vec<f64> {
-        input.iter().map(|x| self.at(*x)).collect()
-    }
-
     /// The mean of rising and falling branches, each the mean over its own branches, so that many
     /// branches of one direction do not count more. Branches that do not reach this input count
     /// only where none does.
-    fn at(&self, x: f64) -> f64 {
+    pub(super) fn at(&self, x: f64) -> f64 {
         let mean = |which: &dyn Fn(&Branch) -> bool| {
             let (mut sum, mut count) = (0.0, 0.0);
             for branch in self.branches.iter().filter(|branch| which(branch)) {

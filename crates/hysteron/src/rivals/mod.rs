@@ -119,15 +119,6 @@ impl Rival {
         Ok(Self { kind, at_loads })
     }
 
-    /// As [`Rival::fit`], to parts of valid recordings without their load.
-    pub(crate) fn fit_parts(kind: RivalKind, parts: &[Measured<'_>]) -> Result<Self> {
-        if parts.is_empty() {
-            return Err(Error::Fit("there is no recording to fit".into()));
-        }
-        let at_loads = loads::AtLoads::without(Predictor::fit(kind, parts)?);
-        Ok(Self { kind, at_loads })
-    }
-
     /// The kind of this predictor.
     #[must_use]
     pub fn kind(&self) -> RivalKind {
@@ -149,7 +140,7 @@ impl Rival {
 
 /// A predictor at one load.
 #[derive(Debug, Clone)]
-enum Predictor {
+pub(crate) enum Predictor {
     Line(line::Line),
     MeanCurve(mean_curve::MeanCurve),
     BranchPolynomial(branch_polynomial::BranchPolynomial),
@@ -158,7 +149,8 @@ enum Predictor {
 }
 
 impl Predictor {
-    fn fit(kind: RivalKind, recordings: &[Measured<'_>]) -> Result<Self> {
+    /// Fits to recordings that are valid. There is one at least.
+    pub(crate) fn fit(kind: RivalKind, recordings: &[Measured<'_>]) -> Result<Self> {
         Ok(match kind {
             RivalKind::Line => Self::Line(line::Line::fit(recordings)),
             RivalKind::MeanCurve => Self::MeanCurve(mean_curve::MeanCurve::fit(recordings)),
@@ -172,13 +164,39 @@ impl Predictor {
         })
     }
 
+    /// The output at each sample.
     fn predict(&self, input: &[f64]) -> Result<Vec<f64>> {
-        Ok(match self {
-            Self::Line(line) => line.predict(input),
-            Self::MeanCurve(curve) => curve.predict(input),
-            Self::BranchPolynomial(polynomials) => polynomials.predict(input),
-            Self::Interpolation(branches) => branches.predict(input),
-            Self::Persistence(cycle) => return cycle.predict(input),
-        })
+        let mut output = Vec::with_capacity(input.len());
+        self.each(input, |_| true, |_, y| output.push(y))?;
+        Ok(output)
+    }
+
+    /// Gives the number of each sample that is wanted to `take`, and the output there, in order.
+    pub(crate) fn each(
+        &self,
+        input: &[f64],
+        wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(usize, f64),
+    ) -> Result<()> {
+        let legs = match self {
+            Self::Persistence(cycle) => cycle.legs(input)?,
+            _ => path::legs(input),
+        };
+        for leg in &legs {
+            for n in leg.samples.clone().filter(|n| wanted(*n)) {
+                take(n, self.at(leg, input[n]));
+            }
+        }
+        Ok(())
+    }
+
+    fn at(&self, leg: &path::Leg, x: f64) -> f64 {
+        match self {
+            Self::Line(line) => line.at(x),
+            Self::MeanCurve(curve) => curve.at(x),
+            Self::BranchPolynomial(polynomials) => polynomials.at(leg, x),
+            Self::Interpolation(branches) => branches.at(leg, x),
+            Self::Persistence(cycle) => cycle.at(leg, x),
+        }
     }
 }

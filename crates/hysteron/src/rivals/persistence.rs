@@ -10,7 +10,7 @@ const SAME: f64 = 0.1;
 
 /// The last cycle of a recording.
 #[derive(Debug, Clone)]
-pub(super) struct Persistence {
+pub(crate) struct Persistence {
     rising: Branch,
     falling: Branch,
     /// How far ends of cycles may differ.
@@ -42,17 +42,14 @@ impl Persistence {
         }
     }
 
+    /// The legs of an input.
+    ///
     /// # Errors
     /// [`Error::Fit`] if a branch does not repeat the cycle.
-    pub(super) fn predict(&self, input: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn legs(&self, input: &[f64]) -> Result<Vec<Leg>> {
         let legs = legs_beyond(input, SAME);
-        let mut output = Vec::with_capacity(input.len());
         for (n, leg) in legs.iter().enumerate() {
-            let branch = if leg.rises {
-                &self.rising
-            } else {
-                &self.falling
-            };
+            let branch = self.branch(leg);
             // The recording may begin and end within a cycle.
             let begins = n == 0 || (leg.reversal - branch.reversal).abs() <= self.same;
             let ends = n + 1 == legs.len() || (leg.end - branch.end).abs() <= self.same;
@@ -62,10 +59,19 @@ impl Persistence {
                     leg.reversal, leg.end, branch.reversal, branch.end
                 )));
             }
-            let values = &input[leg.samples.clone()];
-            output.extend(values.iter().map(|x| branch.curve.at(*x)));
         }
-        Ok(output)
+        Ok(legs)
+    }
+
+    pub(super) fn at(&self, leg: &Leg, x: f64) -> f64 {
+        self.branch(leg).curve.at(x)
+    }
+
+    fn branch(&self, leg: &Leg) -> &Branch {
+        match leg.rises {
+            true => &self.rising,
+            false => &self.falling,
+        }
     }
 
     fn within(&self, leg: &Leg, branch: &Branch) -> bool {

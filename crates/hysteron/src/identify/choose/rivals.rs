@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identify::weights::units::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
-use crate::rivals::{Measured, Rival, RivalKind};
+use crate::rivals::{Measured, Predictor, RivalKind};
 use crate::series::range;
 
 /// The errors of simple rivals on samples that their `folds` left out.
@@ -29,17 +29,17 @@ pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<Ri
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
         for fold in 0..folds.count {
-            let Ok(rival) = Rival::fit_parts(kind, &parts(recordings, folds, fold)) else {
+            let parts = parts(recordings, folds, fold);
+            if parts.is_empty() {
                 continue;
-            };
+            }
+            let rival = Predictor::fit(kind, &parts)?;
             for (recording, first) in with_first(recordings) {
-                let predicted = rival.predict(recording)?;
-                for (n, predicted) in predicted.into_iter().enumerate() {
-                    if folds.of(first + n) == Some(fold) {
-                        squares += (recording.output[n] - predicted).powi(2);
-                        samples += 1;
-                    }
-                }
+                let is_left_out = |n: usize| folds.of(first + n) == Some(fold);
+                rival.each(&recording.input, is_left_out, |n, predicted| {
+                    squares += (recording.output[n] - predicted).powi(2);
+                    samples += 1;
+                })?;
             }
         }
         if samples > 0 {
