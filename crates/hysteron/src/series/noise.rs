@@ -27,26 +27,37 @@ const SIGMA_PER_MEDIAN: f64 = 1.4826;
 /// ```
 #[must_use]
 pub fn noise(values: &[f64]) -> f64 {
-    let mut differences = values.to_vec();
+    let mut sizes = Vec::with_capacity(values.len());
     // C(2k, k), from one order to the next.
     let mut gain = 1.0;
     let mut smallest: Option<f64> = None;
     for order in 1..=*ORDERS.end() {
-        for n in 1..differences.len() {
-            differences[n - 1] = differences[n] - differences[n - 1];
-        }
-        differences.pop();
         gain *= (4 * order - 2) as f64 / order as f64;
-        if differences.len() < FEWEST {
+        if values.len() < FEWEST + order {
             break;
         }
         if ORDERS.contains(&order) {
-            let middle = median_of(differences.iter().map(|d| d.abs()).collect());
-            let sigma = SIGMA_PER_MEDIAN * middle / gain.sqrt();
+            sizes.clear();
+            sizes.extend(differences(values, order).map(f64::abs));
+            let sigma = SIGMA_PER_MEDIAN * median(&mut sizes) / gain.sqrt();
             smallest = Some(smallest.map_or(sigma, |least| least.min(sigma)));
         }
     }
     smallest.unwrap_or(0.0)
+}
+
+/// The differences of an order, one after the other.
+fn differences(values: &[f64], order: usize) -> impl Iterator<Item = f64> {
+    // Those of each lower order, at the value before.
+    let mut before = [0.0; *ORDERS.end()];
+    let all = values.iter().map(move |value| {
+        before[..order].iter_mut().fold(*value, |own, before| {
+            let next = own - *before;
+            *before = own;
+            next
+        })
+    });
+    all.skip(order)
 }
 
 /// A robust standard deviation: the median distance from zero, scaled for Gaussian noise.
@@ -111,6 +122,17 @@ mod tests {
         assert!(noise(&smooth) < 1e-6);
         assert_eq!(noise(&[1.0, 9.0, -3.0]), 0.0);
         assert_eq!(noise(&[2.0; 50]), 0.0);
+    }
+
+    #[test]
+    fn differences_are_those_taken_again_and_again() {
+        let values = gaussian(4, 50);
+        let mut expected = values.clone();
+        for order in 1..=6 {
+            expected = expected.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert!(differences(&values, order).eq(expected.iter().copied()));
+            assert_eq!(differences(&values[..order], order).count(), 0);
+        }
     }
 
     #[test]
