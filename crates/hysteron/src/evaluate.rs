@@ -14,8 +14,8 @@ use hysteron_core::Solution;
 /// output has moved further than the noise.
 const STILL: f64 = 2.0 * NOISE;
 
-/// Forward and inverse tests of a model on one recording. The series are empty where only errors
-/// were asked for ([`evaluate_errors`]).
+/// Forward and inverse tests of a model on one recording. The series of the model are empty where
+/// only errors were asked for ([`evaluate_errors`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     /// Modelled output, one value per sample.

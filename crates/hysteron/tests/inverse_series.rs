@@ -2,7 +2,9 @@
 //! stages.
 #![allow(clippy::unwrap_used)]
 
-use hysteron::{Direction, Model, Operator, Plane, Sign, Target, Wanted};
+use hysteron::{
+    Direction, Error, FirstOrder, Model, Operator, Plane, Sample, Sign, Target, Wanted,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -56,7 +58,26 @@ fn a_series_is_solved_as_its_targets_one_by_one() {
         let error = inverse
             .headed(&mut series, &faulty, &headings, tolerance)
             .unwrap_err();
-        assert!(error.to_string().contains(&at.to_string()), "{error}");
+        let expected = Error::from(hysteron_core::Error::InputNotFinite { index: at });
+        assert_eq!(error.to_string(), expected.to_string(), "round {round}");
         assert_eq!(series, alone, "round {round}: moved before an error");
     }
+}
+
+#[test]
+fn an_empty_series_leaves_the_state_as_it_is() {
+    let plane = Plane::new(20.0, 80.0, 3).unwrap();
+    let plain = Model::new(Operator::Mkp, plane, vec![1.0; 6], 0.0, Sign::Positive).unwrap();
+    let mut heated = plain.clone();
+    heated.thermal = Some(FirstOrder::default());
+    let mut state = heated.start();
+    let sample = Sample {
+        dt: Some(0.1),
+        ..Sample::from(0.5)
+    };
+    heated.step(&mut state, sample).unwrap();
+    let before = state.clone();
+    let found = plain.inverse().unwrap().headed(&mut state, &[], &[], 0.0);
+    assert!(found.unwrap().is_empty());
+    assert_eq!(state, before);
 }

@@ -91,9 +91,15 @@ fn judged(
         residual
     };
     let mut found = Vec::new();
+    let mut end = 0;
     for (recording, (own, mended)) in recordings.iter().zip(mended).enumerate() {
-        let after = residuals.split_off(own.len());
-        let mut residual = std::mem::replace(&mut residuals, after);
+        let start = end;
+        end += own.len();
+        // That of a single recording is not copied.
+        let mut residual = match recordings.len() {
+            1 => std::mem::take(&mut residuals),
+            _ => residuals[start..end].to_vec(),
+        };
         let moved = own.output.iter().zip(&mended.output).map(|(y, m)| y - m);
         residual
             .iter_mut()
@@ -112,7 +118,10 @@ fn judged(
 /// The size of the range of the values without the hundredth that is largest and the hundredth that
 /// is smallest, so that an outlier does not make the range.
 fn usual_span(mut values: Vec<f64>) -> f64 {
-    let last = values.len() - 1;
+    // What is wrong with an empty recording is told when it is fitted.
+    let Some(last) = values.len().checked_sub(1) else {
+        return 0.0;
+    };
     let cut = (values.len() / 100).max(1).min(last / 2);
     let (_, &mut low, above) = values.select_nth_unstable_by(cut, f64::total_cmp);
     // The place of the other end among those above; with few values both ends are one.

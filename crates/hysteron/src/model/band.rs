@@ -104,6 +104,9 @@ impl Band {
     /// # Errors
     /// As [`Model::run`] and [`Band::states`].
     pub fn run(&self, state: &State, input: &[f64]) -> Result<Vec<f64>> {
+        if let Some(index) = input.iter().position(|x| !x.is_finite()) {
+            return Err(hysteron_core::Error::InputNotFinite { index }.into());
+        }
         let mut variance = vec![self.noise * self.noise; input.len()];
         for (factor, mut state) in self.factors.iter().zip(self.states(state)?) {
             add_variance(factor, &mut state, input, &mut variance)?;
@@ -116,16 +119,13 @@ impl Band {
 /// Samples of a block.
 const BLOCK: usize = 4096;
 
-/// Adds the variance of the output that a factor causes, at each sample of `input`.
+/// Adds the variance of the output that a factor causes, at each sample of `input`, which is finite.
 pub(crate) fn add_variance(
     factor: &Operators,
     state: &mut OperatorState,
     input: &[f64],
     variance: &mut [f64],
 ) -> Result<()> {
-    if let Some(index) = input.iter().position(|x| !x.is_finite()) {
-        return Err(hysteron_core::Error::InputNotFinite { index }.into());
-    }
     // In blocks, because a whole output would take as much memory as the input.
     let mut output = vec![0.0; BLOCK.min(input.len())];
     for (input, variance) in input.chunks(BLOCK).zip(variance.chunks_mut(BLOCK)) {

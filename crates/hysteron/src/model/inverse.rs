@@ -31,6 +31,9 @@ impl Sign {
     }
 }
 
+/// No limit.
+const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
 /// What is wanted of a model in one sample. A [`Target`] converts to one, with the model's own range
 /// of drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +55,7 @@ impl From<Target<f64>> for Wanted {
             target,
             dt: None,
             load: None,
-            temperature: (f64::NEG_INFINITY, f64::INFINITY),
+            temperature: EVERYWHERE,
         }
     }
 }
@@ -210,7 +213,8 @@ impl Inverse<'_> {
         solution.map_err(worded)
     }
 
-    /// As [`Inverse::step`], where the operators alone give the input.
+    /// As [`Inverse::step`], where the operators alone give the input. What stages remember is left
+    /// to the caller.
     #[inline]
     fn step_operators(&self, state: &mut State, target: Target<f64>) -> Result<Solution<f64>> {
         let sign = self.model.sign();
@@ -231,11 +235,12 @@ impl Inverse<'_> {
 
     /// Whether the operators alone give the input: there is no stage and no limit.
     fn is_plain(&self, wanted: &Wanted) -> bool {
-        let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-        self.model.is_plain()
-            && wanted.load.is_none()
-            && self.drive == everywhere
-            && wanted.temperature == everywhere
+        self.has_operators_alone() && wanted.load.is_none() && wanted.temperature == EVERYWHERE
+    }
+
+    /// Whether there is no stage, and no limit of the drive.
+    fn has_operators_alone(&self) -> bool {
+        self.model.is_plain() && self.drive == EVERYWHERE
     }
 
     /// Finds the inputs for a whole series of targets, and moves `state` through them. Reversals of
@@ -424,8 +429,10 @@ impl Inverse<'_> {
         self.check_targets(targets.iter().copied())?;
         let headings = headings.iter().copied().chain(std::iter::repeat(None));
         let samples = surroundings.samples(self.model, targets)?.zip(headings);
-        let nothing_else = Wanted::from(Target::new(0.0));
-        if surroundings.load.is_none() && self.is_plain(&nothing_else) {
+        if targets.is_empty() {
+            return Ok(());
+        }
+        if surroundings.load.is_none() && self.has_operators_alone() {
             for ((_, sample), heading) in samples {
                 let target = Target {
                     output: sample.input,

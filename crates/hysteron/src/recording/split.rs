@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::recording::Recording;
-use crate::series::{branch_spans, usual_tolerance};
+use crate::series::{Runs, branch_spans, usual_tolerance};
 use std::ops::{Range, RangeInclusive};
 use std::str::FromStr;
 
@@ -122,15 +122,14 @@ impl Recording {
     /// Only the samples for which `kept` is true; `None` if there are none.
     #[must_use]
     pub fn only(&self, kept: impl Fn(usize) -> bool) -> Option<Self> {
-        let samples = || (0..self.len()).filter(|n| kept(*n));
-        let count = samples().count();
-        (count > 0).then(|| {
-            self.picked(|series| {
-                let mut values = Vec::with_capacity(count);
-                values.extend(samples().map(|n| series[n]));
-                values
-            })
-        })
+        let kept: Runs<bool> = (0..self.len()).map(kept).collect();
+        let spans = || kept.iter().filter(|(_, is_kept)| *is_kept);
+        spans().next()?;
+        let pick = |series: &[f64]| {
+            let parts = spans().map(|(samples, _)| &series[samples]);
+            parts.collect::<Vec<_>>().concat()
+        };
+        Some(self.picked(pick))
     }
 
     /// Only these samples.

@@ -42,7 +42,7 @@ impl Persistence {
         }
     }
 
-    /// The legs of an input.
+    /// The legs of an input that repeats the cycle.
     ///
     /// # Errors
     /// [`Error::Fit`] if a branch does not repeat the cycle.

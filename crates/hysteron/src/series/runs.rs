@@ -4,12 +4,12 @@ use std::ops::Range;
 
 /// One value for each sample, kept as runs of equal values. It takes memory for the runs, and a
 /// little for the samples.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Runs<T> {
     /// The first sample of each run, and the value of all of them.
     runs: Vec<(usize, T)>,
     /// For every [`BLOCK`] samples, the run of the first of them. From there it is not far to any.
-    of_block: Vec<u32>,
+    of_block: Vec<usize>,
     len: usize,
 }
 
@@ -22,8 +22,7 @@ impl<T: Copy + PartialEq> Runs<T> {
             self.runs.push((self.len, value));
         }
         if self.len.is_multiple_of(BLOCK) {
-            // No more runs than samples, and of these no memory holds 2³².
-            self.of_block.push((self.runs.len() - 1) as u32);
+            self.of_block.push(self.runs.len() - 1);
         }
         self.len += 1;
     }
@@ -31,14 +30,15 @@ impl<T: Copy + PartialEq> Runs<T> {
     /// The value of a sample that was added.
     #[inline]
     pub(crate) fn at(&self, sample: usize) -> T {
-        let mut run = self.of_block[sample / BLOCK] as usize;
-        while self
-            .runs
-            .get(run + 1)
-            .is_some_and(|(first, _)| *first <= sample)
-        {
-            run += 1;
-        }
+        debug_assert!(sample < self.len);
+        let block = sample / BLOCK;
+        let last = match self.of_block.get(block + 1) {
+            Some(run) => *run,
+            None => self.runs.len() - 1,
+        };
+        // The runs that begin in the block.
+        let near = &self.runs[self.of_block[block] + 1..=last];
+        let run = self.of_block[block] + near.partition_point(|(first, _)| *first <= sample);
         self.runs[run].1
     }
 
@@ -56,20 +56,20 @@ impl<T: Copy + PartialEq> Runs<T> {
     }
 }
 
-impl<T: Copy + PartialEq> Extend<T> for Runs<T> {
-    fn extend<I: IntoIterator<Item = T>>(&mut self, values: I) {
-        values.into_iter().for_each(|value| self.push(value));
+impl<T> Default for Runs<T> {
+    fn default() -> Self {
+        Self {
+            runs: Vec::new(),
+            of_block: Vec::new(),
+            len: 0,
+        }
     }
 }
 
 impl<T: Copy + PartialEq> FromIterator<T> for Runs<T> {
     fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
-        let mut runs = Self {
-            runs: Vec::new(),
-            of_block: Vec::new(),
-            len: 0,
-        };
-        runs.extend(values);
+        let mut runs = Self::default();
+        values.into_iter().for_each(|value| runs.push(value));
         runs
     }
 }

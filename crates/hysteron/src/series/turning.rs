@@ -101,16 +101,18 @@ pub fn branches(series: &[f64], tolerance: f64) -> Vec<usize> {
 pub(crate) fn branch_spans(series: &[f64], tolerance: f64) -> impl Iterator<Item = Range<usize>> {
     let mut turning = Turning::new(tolerance);
     let turns = series.iter().filter_map(move |&x| turning.push(x));
-    // The start is reported as a turning point, but it ends no branch. Behind the last sample there
-    // is none.
+    // The start is reported as a turning point, but it ends no branch. A turn at the last sample
+    // ends none either.
     let inside = turns.map(|(n, _)| n + 1);
     let inside = inside.filter(|end| (2..series.len()).contains(end));
     let last = (!series.is_empty()).then_some(series.len());
-    inside.chain(last).scan(0, |start, end| {
+    let spans = inside.chain(last).scan(0, |start, end| {
         let samples = *start..end;
         *start = end;
         Some(samples)
-    })
+    });
+    // With a tolerance below zero a sample may turn twice.
+    spans.filter(|samples| !samples.is_empty())
 }
 
 /// The indices of the samples that hysteresis operators remember at the end of a series, ascending.
@@ -238,6 +240,33 @@ mod tests {
         assert_eq!(headings(&series, 0.5), expected.map(Some));
         assert_eq!(headings(&[1.0, 1.1, 0.9], 0.5), [None; 3]);
         assert_eq!(headings(&[], 0.5), []);
+    }
+
+    /// Compares with the definition: the number of turning points before each sample.
+    #[test]
+    fn branches_end_at_turning_points() {
+        use rand::{RngExt, SeedableRng};
+        for round in 0..2000 {
+            let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(round);
+            let values = (0..rng.random_range(0..12)).map(|_| f64::from(rng.random_range(0..5)));
+            let series: Vec<f64> = values.collect();
+            let tolerance = [0.0, 0.5, 1.5, -1.0][rng.random_range(0..4)];
+            let mut turning = Turning::new(tolerance);
+            let turns: Vec<usize> = series
+                .iter()
+                .filter_map(|&x| turning.push(x))
+                .map(|(n, _)| n)
+                .filter(|n| *n > 0)
+                .collect();
+            let mut ended: Vec<usize> = turns.clone();
+            ended.dedup();
+            let branch = |n: usize| ended.iter().filter(|turn| **turn < n).count();
+            let expected: Vec<usize> = (0..series.len()).map(branch).collect();
+            assert_eq!(branches(&series, tolerance), expected, "{series:?}");
+            let count = expected.last().map_or(0, |last| last + 1);
+            assert_eq!(branch_spans(&series, tolerance).count(), count);
+            assert!(branch_spans(&series, tolerance).all(|samples| !samples.is_empty()));
+        }
     }
 
     /// Compares with the definition: from each extreme, look for the next one in the whole series.

@@ -111,7 +111,7 @@ impl Work for Inverting<'_> {
             if self.solving.series(targets, self.tolerance, cells).is_ok() {
                 return Ok(());
             }
-            // Nothing was solved. What follows finds the row with the fault.
+            // Nothing was solved: the rows before the fault are solved one by one.
         }
         for row in 0..block.len() {
             let sample = self.samples.next(block, row);

@@ -29,11 +29,13 @@ pub(super) fn left_out(recordings: &[Recording], folds: &Folds) -> Result<Vec<Ri
     for &kind in kinds {
         let (mut squares, mut samples) = (0.0, 0);
         for fold in 0..folds.count {
-            let parts = parts(recordings, folds, fold);
-            if parts.is_empty() {
+            let pieces = pieces(recordings, folds, fold);
+            if pieces.is_empty() {
                 continue;
             }
-            let rival = Predictor::fit(kind, &parts)?;
+            let Ok(rival) = Predictor::fit(kind, &pieces) else {
+                continue;
+            };
             for (recording, first) in with_first(recordings) {
                 let is_left_out = |n: usize| folds.of(first + n) == Some(fold);
                 rival.each(&recording.input, is_left_out, |n, predicted| {
@@ -62,8 +64,8 @@ fn with_first(recordings: &[Recording]) -> impl Iterator<Item = (&Recording, usi
 }
 
 /// The runs of samples that a fold keeps.
-fn parts<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Measured<'a>> {
-    let mut parts = Vec::new();
+fn pieces<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Measured<'a>> {
+    let mut pieces = Vec::new();
     for (recording, first) in with_first(recordings) {
         let mut start = 0;
         // One more than there are, so that the last run ends.
@@ -72,7 +74,7 @@ fn parts<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Mea
             if !is_kept {
                 // A single sample has no direction.
                 if n > start + 1 {
-                    parts.push(Measured {
+                    pieces.push(Measured {
                         input: &recording.input[start..n],
                         output: &recording.output[start..n],
                     });
@@ -81,5 +83,5 @@ fn parts<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Mea
             }
         }
     }
-    parts
+    pieces
 }

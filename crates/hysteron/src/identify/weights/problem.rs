@@ -55,15 +55,20 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The right-hand side of the fit: the output minus a known offset, with the sign turned so
+    /// The right-hand side of the fit at a sample: the output minus a known offset, with the sign turned so
     /// that non-negative weights fit it.
     pub(crate) fn target(&self, sign: Sign, sample: usize) -> f64 {
-        sign.factor() * (self.experiment.output[sample] - self.options.offset.unwrap_or(0.0))
+        self.turned(sign)(&self.experiment.output[sample])
     }
 
     /// The targets of all samples.
     pub(crate) fn targets(&self, sign: Sign) -> impl Iterator<Item = f64> + Clone {
-        (0..self.experiment.output.len()).map(move |sample| self.target(sign, sample))
+        self.experiment.output.iter().map(self.turned(sign))
+    }
+
+    fn turned(&self, sign: Sign) -> impl Fn(&f64) -> f64 + Clone + use<> {
+        let offset = self.options.offset.unwrap_or(0.0);
+        move |output| sign.factor() * (output - offset)
     }
 
     pub(crate) fn free(&self, kept: Option<&[f64]>) -> Result<FreeColumns> {

@@ -42,8 +42,8 @@ const PASS_BYTES: usize = 256 << 20;
 
 impl Sums {
     /// The sums over the samples of each of `count` groups. `group` has the group of each sample,
-    /// `None` for samples that do not count, and `target` that of each sample. It should have no
-    /// large offset, because squares of it are subtracted from each other.
+    /// `None` for samples that do not count. `target` gives the target at a sample. The targets
+    /// should have no large offset, because their squares are subtracted from each other.
     pub(crate) fn of_groups(
         problem: &Problem,
         target: impl Fn(usize) -> f64 + Sync,

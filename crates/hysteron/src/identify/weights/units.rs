@@ -20,13 +20,10 @@ impl Units {
         let is_kept = |n: usize| kept.is_none_or(|kept| kept[n] != 0.0);
         let (mut of, mut count) = (Runs::default(), 0);
         for branch in &experiment.branches {
-            let unit = count;
             for n in branch.clone() {
-                of.push(is_kept(n).then(|| {
-                    count = unit + 1;
-                    unit
-                }));
+                of.push(is_kept(n).then_some(count));
             }
+            count += usize::from(branch.clone().any(is_kept));
         }
         let whole = Self {
             of,
