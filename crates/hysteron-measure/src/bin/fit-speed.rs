@@ -93,6 +93,8 @@ fn options(levels: usize) -> FitOptions {
     FitOptions {
         levels,
         range: Some((20.0, 80.0)),
+        // The minimum that SciPy looks for.
+        ridge: 0.0,
         ..FitOptions::default()
     }
 }
