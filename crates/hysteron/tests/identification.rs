@@ -210,3 +210,17 @@ fn long_rests_do_not_spoil_the_fit() {
         }
     }
 }
+
+#[test]
+fn an_empty_recording_is_an_error_of_a_robust_fit() {
+    let good = Recording::new(vec![0.0, 1.0, 2.0, 1.0, 0.0], vec![0.0, 0.1, 0.9, 0.8, 0.0]);
+    let good = good.unwrap();
+    let empty = Recording {
+        input: Vec::new(),
+        output: Vec::new(),
+        ..good.clone()
+    };
+    for recordings in [vec![], vec![empty.clone()], vec![good, empty]] {
+        assert!(Fit::new().run(&recordings).is_err());
+    }
+}

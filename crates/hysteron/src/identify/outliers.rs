@@ -95,7 +95,7 @@ fn judged(
     for (recording, (own, mended)) in recordings.iter().zip(mended).enumerate() {
         let start = end;
         end += own.len();
-        // That of a single recording is not copied.
+        // The residual of a single recording is not copied.
         let mut residual = match recordings.len() {
             1 => std::mem::take(&mut residuals),
             _ => residuals[start..end].to_vec(),

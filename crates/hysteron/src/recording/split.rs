@@ -211,14 +211,10 @@ impl Recording {
         }
         let mut training = Vec::new();
         let mut begins = Vec::new();
-        let mut end = 0;
-        for alike in held_out.chunk_by(|a, b| a == b) {
-            let start = end;
-            end += alike.len();
-            if !alike[0] {
-                begins.push(start);
-                training.push(self.part(start..end));
-            }
+        let runs: Runs<bool> = held_out.iter().copied().collect();
+        for (samples, _) in runs.iter().filter(|(_, is_held_out)| !is_held_out) {
+            begins.push(samples.start);
+            training.push(self.part(samples));
         }
         Ok(Split {
             begins_inside: begins.iter().any(|begin| *begin > 0),

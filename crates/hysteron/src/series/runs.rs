@@ -8,7 +8,8 @@ use std::ops::Range;
 pub(crate) struct Runs<T> {
     /// The first sample of each run, and the value of all of them.
     runs: Vec<(usize, T)>,
-    /// For every [`BLOCK`] samples, the run of the first of them. From there it is not far to any.
+    /// For every [`BLOCK`] samples, the run of the first of them. The others are in this run or in
+    /// one shortly after it.
     of_block: Vec<usize>,
     len: usize,
 }

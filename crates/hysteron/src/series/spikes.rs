@@ -47,7 +47,8 @@ pub(crate) fn isolated(mut values: Vec<f64>, deviations: f64, floor: f64) -> Vec
     own.map(|(n, read)| (n - REACH, read - values[n])).collect()
 }
 
-/// Replaces what is above both, and returns the indices and what was read there.
+/// Replaces what stands out by more than `deviations` and `floor`. Returns the indices of what was
+/// replaced, and what was read there.
 fn remove_above(values: &mut [f64], deviations: f64, floor: f64) -> Vec<(usize, f64)> {
     let sigma = noise(values);
     // No threshold is lower, so what cannot reach this one needs no line.

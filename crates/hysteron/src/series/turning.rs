@@ -252,15 +252,14 @@ mod tests {
             let series: Vec<f64> = values.collect();
             let tolerance = [0.0, 0.5, 1.5, -1.0][rng.random_range(0..4)];
             let mut turning = Turning::new(tolerance);
-            let turns: Vec<usize> = series
+            let mut turns: Vec<usize> = series
                 .iter()
                 .filter_map(|&x| turning.push(x))
                 .map(|(n, _)| n)
                 .filter(|n| *n > 0)
                 .collect();
-            let mut ended: Vec<usize> = turns.clone();
-            ended.dedup();
-            let branch = |n: usize| ended.iter().filter(|turn| **turn < n).count();
+            turns.dedup();
+            let branch = |n: usize| turns.iter().filter(|turn| **turn < n).count();
             let expected: Vec<usize> = (0..series.len()).map(branch).collect();
             assert_eq!(branches(&series, tolerance), expected, "{series:?}");
             let count = expected.last().map_or(0, |last| last + 1);

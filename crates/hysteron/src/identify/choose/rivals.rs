@@ -6,7 +6,8 @@ use crate::identify::weights::units::Folds;
 use crate::model::RivalScore;
 use crate::recording::Recording;
 use crate::rivals::{Measured, Predictor, RivalKind};
-use crate::series::range;
+use crate::series::{Runs, range};
+use std::ops::Range;
 
 /// The errors of simple rivals on samples that their `folds` left out.
 ///
@@ -67,21 +68,14 @@ fn with_first(recordings: &[Recording]) -> impl Iterator<Item = (&Recording, usi
 fn pieces<'a>(recordings: &'a [Recording], folds: &Folds, fold: usize) -> Vec<Measured<'a>> {
     let mut pieces = Vec::new();
     for (recording, first) in with_first(recordings) {
-        let mut start = 0;
-        // One more than there are, so that the last run ends.
-        for n in 0..=recording.len() {
-            let is_kept = n < recording.len() && folds.of(first + n).is_some_and(|of| of != fold);
-            if !is_kept {
-                // A single sample has no direction.
-                if n > start + 1 {
-                    pieces.push(Measured {
-                        input: &recording.input[start..n],
-                        output: &recording.output[start..n],
-                    });
-                }
-                start = n + 1;
-            }
-        }
+        let is_kept = |n: usize| folds.of(first + n).is_some_and(|of| of != fold);
+        let runs: Runs<bool> = (0..recording.len()).map(is_kept).collect();
+        // A single sample has no direction.
+        let long = |(samples, kept): &(Range<usize>, bool)| *kept && samples.len() > 1;
+        pieces.extend(runs.iter().filter(long).map(|(samples, _)| Measured {
+            input: &recording.input[samples.clone()],
+            output: &recording.output[samples],
+        }));
     }
     pieces
 }
