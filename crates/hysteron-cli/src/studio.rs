@@ -17,7 +17,7 @@ pub(crate) fn stop() -> bool {
 }
 
 pub(crate) fn run(args: &args::Studio) -> Result<()> {
-    let mut server = Server::bind(args.port, args.memory.max_memory)?;
+    let mut server = Server::bind(args.port, args.memory.limit())?;
     if let Some(session) = &args.session {
         server.keep(session).map_err(worded)?;
     }

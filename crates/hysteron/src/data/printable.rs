@@ -1,4 +1,4 @@
-//! Makes text from files and names safe to show to people, and to paste into a shell.
+//! Makes text from files and names safe to show to people, and to paste into a shell or a program.
 
 use std::borrow::Cow;
 
@@ -41,6 +41,28 @@ pub fn shell_word(text: &str) -> String {
         true => text.to_owned(),
         false => format!("'{}'", text.replace('\'', "'\\''")),
     }
+}
+
+/// The text as a literal of Python.
+///
+/// ```
+/// assert_eq!(hysteron::python_literal("my wire's.csv"), r#""my wire's.csv""#);
+/// assert_eq!(hysteron::python_literal("a\"b\\c\n\u{202e}"), r#""a\"b\\c\x0a\U0000202e""#);
+/// ```
+#[must_use]
+pub fn python_literal(text: &str) -> String {
+    let mut literal = String::with_capacity(text.len() + 2);
+    literal.push('"');
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => literal.extend(['\\', character]),
+            '\0'..'\u{20}' | '\u{7f}' => literal += &format!("\\x{:02x}", u32::from(character)),
+            _ if is_active(character) => literal += &format!("\\U{:08x}", u32::from(character)),
+            _ => literal.push(character),
+        }
+    }
+    literal.push('"');
+    literal
 }
 
 /// Whether a character controls the display instead of being shown.

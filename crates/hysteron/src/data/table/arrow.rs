@@ -163,7 +163,7 @@ impl TableReader {
         match self.is_arrow {
             false => Ok(None),
             true => {
-                batches(&self.path, self.held.as_ref(), self.budget).map(|(found, _)| Some(found))
+                batches(&self.path, self.held.as_ref(), self.budget.another()).map(|(found, _)| Some(found))
             }
         }
     }
