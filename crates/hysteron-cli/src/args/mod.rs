@@ -169,7 +169,8 @@ pub(crate) struct Memory {
 
 impl Memory {
     pub(crate) fn limit(&self) -> u64 {
-        self.max_memory.unwrap_or_else(hysteron::ReadOptions::usual_memory)
+        self.max_memory
+            .unwrap_or_else(hysteron::ReadOptions::usual_memory)
     }
 }
 

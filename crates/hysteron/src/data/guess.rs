@@ -143,7 +143,9 @@ pub fn preview_table(table: &mut TableReader) -> Result<TablePreview> {
 
 /// Takes memory for the pictures of all columns.
 fn take(table: &mut TableReader, bytes: usize) -> Result<()> {
-    let taken = table.budget().take(bytes as u128, "a preview of its columns");
+    let taken = table
+        .budget()
+        .take(bytes as u128, "a preview of its columns");
     taken.map_err(|problem| table.fault_at(None, None, problem))
 }
 

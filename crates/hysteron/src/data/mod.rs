@@ -33,4 +33,4 @@ pub use printable::{printable, python_literal, shell_word};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
 pub(crate) use recording::{Group, Groups};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
-pub use table::{Budget, Column, Memory, ReadOptions, Remark, Row, TableReader};
+pub use table::{Budget, Column, Growing, Memory, ReadOptions, Remark, Row, TableReader};

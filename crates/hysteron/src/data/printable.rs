@@ -28,7 +28,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// The text as one word of a POSIX shell.
+/// The text as one word of a POSIX shell. No argument of a program can hold the character 0, which is
+/// left out.
 ///
 /// ```
 /// assert_eq!(hysteron::shell_word("data.csv"), "data.csv");
@@ -39,7 +40,7 @@ pub fn shell_word(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
     match !text.is_empty() && !text.starts_with('-') && text.chars().all(plain) {
         true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
+        false => format!("'{}'", text.replace('\0', "").replace('\'', "'\\''")),
     }
 }
 

@@ -83,6 +83,12 @@ impl Budget {
         Self { memory, taken: 0 }
     }
 
+    /// The account.
+    #[must_use]
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
     /// Nothing yet of the same account.
     pub(crate) fn another(&self) -> Self {
         Self::of(&self.memory)
@@ -123,7 +129,11 @@ impl Budget {
     ///
     /// # Errors
     /// The problem, if there is not enough left: what is too large, and what to do.
-    pub(crate) fn take(&mut self, bytes: u128, what: impl fmt::Display) -> std::result::Result<(), String> {
+    pub(crate) fn take(
+        &mut self,
+        bytes: u128,
+        what: impl fmt::Display,
+    ) -> std::result::Result<(), String> {
         if !self.memory.take(bytes) {
             return Err(self.refusal(bytes, what));
         }
@@ -137,7 +147,11 @@ impl Budget {
     }
 
     /// As [`Budget::take`], for memory that is released at once.
-    pub(crate) fn check(&self, bytes: u128, what: impl fmt::Display) -> std::result::Result<(), String> {
+    pub(crate) fn check(
+        &self,
+        bytes: u128,
+        what: impl fmt::Display,
+    ) -> std::result::Result<(), String> {
         if bytes > u128::from(self.left()) {
             return Err(self.refusal(bytes, what));
         }
@@ -195,20 +209,45 @@ fn not_there(bytes: u128, what: impl fmt::Display) -> String {
 }
 
 /// Bytes in memory that grow within an account.
-pub(crate) struct Growing {
+#[derive(Debug)]
+pub struct Growing {
     bytes: Vec<u8>,
     budget: Budget,
 }
 
 impl Growing {
-    pub(crate) fn new(memory: &Memory) -> Self {
+    /// No bytes yet.
+    #[must_use]
+    pub fn new(memory: &Memory) -> Self {
         let budget = Budget::of(memory);
         let bytes = Vec::new();
         Self { bytes, budget }
     }
 
-    pub(crate) fn into_bytes(self) -> Vec<u8> {
+    /// Takes room for so many bytes more.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::OutOfMemory`].
+    pub fn reserve(&mut self, more: usize) -> io::Result<()> {
+        let lacks = |problem: String| io::Error::new(io::ErrorKind::OutOfMemory, problem);
+        // While it grows, there is a copy.
+        let whole = self.bytes.len() as u128 + more as u128;
+        self.budget.check(whole, "the table").map_err(lacks)?;
+        self.budget.take(more as u128, "the table").map_err(lacks)?;
+        let grown = self.bytes.try_reserve_exact(more);
+        grown.map_err(|error| lacks(error.to_string()))
+    }
+
+    /// The bytes, which are no longer counted.
+    #[must_use]
+    pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
+    }
+
+    /// The bytes, and what is taken for them.
+    #[must_use]
+    pub fn into_parts(self) -> (Vec<u8>, Budget) {
+        (self.bytes, self.budget)
     }
 
     /// The bytes from the first one on. They are counted until the reader is dropped.
@@ -234,15 +273,8 @@ impl io::Read for Held {
 
 impl Write for Growing {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let lacks = |problem: String| io::Error::new(io::ErrorKind::OutOfMemory, problem);
         if self.bytes.capacity() - self.bytes.len() < bytes.len() {
-            let more = bytes.len().max(self.bytes.len());
-            // While it grows, there is a copy.
-            let whole = (self.bytes.len() + more) as u128;
-            self.budget.check(whole, "the table").map_err(lacks)?;
-            self.budget.take(more as u128, "the table").map_err(lacks)?;
-            let grown = self.bytes.try_reserve_exact(more);
-            grown.map_err(|error| lacks(error.to_string()))?;
+            self.reserve(bytes.len().max(self.bytes.len()))?;
         }
         self.bytes.extend_from_slice(bytes);
         Ok(bytes.len())
@@ -304,7 +336,10 @@ mod tests {
         let memory = Memory::new(u64::MAX);
         let mut budget = Budget::of(&memory);
         let refused = budget.take(1 << 60, "`x`").unwrap_err();
-        assert!(refused.contains("the machine does not have free"), "{refused}");
+        assert!(
+            refused.contains("the machine does not have free"),
+            "{refused}"
+        );
         assert_eq!(memory.left(), u64::MAX);
         assert!(!memory.has(1 << 60));
     }

@@ -127,7 +127,8 @@ pub(super) fn open(
             (opened.header, opened.numbers.with_times(opened.times))
         }
         Format::Arrow => {
-            let (batches, length) = arrow::batches(path, held, budget.another()).map_err(refused)?;
+            let (batches, length) =
+                arrow::batches(path, held, budget.another()).map_err(refused)?;
             let opened = arrow::open(batches, length, (labels, wanted)).map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }

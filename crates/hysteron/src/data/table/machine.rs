@@ -8,7 +8,8 @@ const ELSEWHERE: u64 = 2 << 30;
 
 /// Half of the memory that was free when this was first asked; 2 GiB on systems without `/proc`.
 pub(super) fn half_of_what_is_free() -> u64 {
-    static HALF: LazyLock<u64> = LazyLock::new(|| free(Path::new("/")).unwrap_or(2 * ELSEWHERE) / 2);
+    static HALF: LazyLock<u64> =
+        LazyLock::new(|| free(Path::new("/")).unwrap_or(2 * ELSEWHERE) / 2);
     *HALF
 }
 
@@ -18,7 +19,9 @@ fn free(root: &Path) -> Option<u64> {
     let read = |path: &Path| std::fs::read_to_string(root.join(path)).ok();
     let machine = kibibytes(&read(Path::new("proc/meminfo"))?, "MemAvailable:")?;
     let addresses = read(Path::new("proc/self/limits")).and_then(|limits| {
-        let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+        let line = limits
+            .lines()
+            .find_map(|line| line.strip_prefix("Max address space"))?;
         // `unlimited` is no number.
         let most = line.split_whitespace().next()?.parse::<u64>().ok()?;
         let taken = kibibytes(&read(Path::new("proc/self/status"))?, "VmSize:")?;
@@ -71,7 +74,10 @@ mod tests {
     /// A machine with 8 GiB free.
     fn machine(files: &[(&str, &str)]) -> Option<u64> {
         let root = tempfile::tempdir().unwrap();
-        let free = ("proc/meminfo", "MemTotal: 9 kB\nMemAvailable:    8388608 kB\n");
+        let free = (
+            "proc/meminfo",
+            "MemTotal: 9 kB\nMemAvailable:    8388608 kB\n",
+        );
         for (path, text) in files.iter().chain([&free]) {
             let path = root.path().join(path);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -85,9 +91,15 @@ mod tests {
         const GIB: u64 = 1 << 30;
         assert_eq!(machine(&[]), Some(8 * GIB));
         assert_eq!(free(Path::new("/no such folder")), None);
-        let unlimited = ("proc/self/limits", "Max address space  unlimited  unlimited  bytes\n");
+        let unlimited = (
+            "proc/self/limits",
+            "Max address space  unlimited  unlimited  bytes\n",
+        );
         assert_eq!(machine(&[unlimited]), Some(8 * GIB));
-        let limits = ("proc/self/limits", "Max address space  3221225472  unlimited  bytes\n");
+        let limits = (
+            "proc/self/limits",
+            "Max address space  3221225472  unlimited  bytes\n",
+        );
         let status = ("proc/self/status", "VmPeak: 9 kB\nVmSize:  1048576 kB\n");
         assert_eq!(machine(&[limits, status]), Some(2 * GIB));
         // A limit of a group above, beside one without.
@@ -97,13 +109,22 @@ mod tests {
             ("sys/fs/cgroup/a/b/memory.current", "1\n"),
             ("sys/fs/cgroup/a/memory.max", "1073741824\n"),
             ("sys/fs/cgroup/a/memory.current", "1073741824\n"),
-            ("sys/fs/cgroup/a/memory.stat", "anon 1\ninactive_file 536870912\n"),
+            (
+                "sys/fs/cgroup/a/memory.stat",
+                "anon 1\ninactive_file 536870912\n",
+            ),
         ];
         assert_eq!(machine(&two), Some(GIB / 2));
         let one = [
             ("proc/self/cgroup", "5:cpu,cpuacct:/x\n4:memory:/x\n"),
-            ("sys/fs/cgroup/memory/x/memory.limit_in_bytes", "2147483648\n"),
-            ("sys/fs/cgroup/memory/x/memory.usage_in_bytes", "1073741824\n"),
+            (
+                "sys/fs/cgroup/memory/x/memory.limit_in_bytes",
+                "2147483648\n",
+            ),
+            (
+                "sys/fs/cgroup/memory/x/memory.usage_in_bytes",
+                "1073741824\n",
+            ),
         ];
         assert_eq!(machine(&one), Some(GIB));
     }

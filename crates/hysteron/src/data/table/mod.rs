@@ -24,13 +24,12 @@ mod text;
 mod time;
 mod wanted;
 
-pub use budget::{Budget, Memory};
+pub use budget::{Budget, Growing, Memory};
 pub use options::ReadOptions;
 pub use remark::Remark;
 
 pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
 pub(crate) use block::Block;
-pub(crate) use budget::Growing;
 pub(crate) use labels::Label;
 
 use crate::data::recording::Places;
