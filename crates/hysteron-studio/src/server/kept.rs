@@ -35,6 +35,10 @@ impl Kept {
             path: path.to_owned(),
             source,
         };
+        if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
+            let problem = format!("{} is not a regular file", path.display());
+            return Err(Fault::not_kept(&problem));
+        }
         // A link is followed, so that two names of one file have one lock.
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let mut name = path.file_name().unwrap_or_default().to_owned();

@@ -105,6 +105,16 @@ impl Session {
         Self::within(Memory::new(budget))
     }
 
+    /// The session in a file that was saved.
+    ///
+    /// # Errors
+    /// [`Fault`] for bytes that are no session, or that take more than `budget` bytes of memory.
+    pub fn from_file(bytes: &[u8], budget: u64) -> Result<Self, Fault> {
+        let mut session = Self::new(budget);
+        session.restore(bytes)?;
+        Ok(session)
+    }
+
     fn within(memory: Memory) -> Self {
         Self {
             files: Vec::new(),
