@@ -70,10 +70,9 @@ fn texts(file: &Value) -> Result<Vec<(&'static str, String)>, String> {
 /// The words that the shell makes of a script whose programs are all replaced by one that prints.
 fn words(script: &str) -> Vec<Vec<String>> {
     let print = "hysteron() { printf '%s\\0' \"$@\"; printf '\\1\\0'; }\n";
-    let done = Command::new("sh")
-        .arg("-c")
-        .arg(format!("PATH=\n{print}{script}"));
-    let done = { done }.output().unwrap();
+    let mut shell = Command::new("/bin/sh");
+    let done = shell.arg("-c").arg(format!("PATH=\n{print}{script}"));
+    let done = done.output().unwrap();
     assert!(
         done.status.success() && done.stderr.is_empty(),
         "{script}\n{done:?}"
@@ -269,7 +268,7 @@ proptest! {
             let Some(value) = file.pointer_mut(place) else { continue };
             *value = match how {
                 0 | 1 => json!(text),
-                2 => json!([1e308, u64::MAX, -1][text.len() % 3]),
+                2 => [json!(1e308), json!(u64::MAX), json!(-1)][text.len() % 3].clone(),
                 3 => Value::Null,
                 4 => json!([value.clone(), value.clone()]),
                 _ => json!({text: value.clone()}),
