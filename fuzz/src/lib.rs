@@ -7,6 +7,7 @@ pub mod given;
 pub mod inverse;
 pub mod model_file;
 pub mod scenario;
+pub mod session;
 pub mod table;
 
 /// An error says something.

@@ -41,7 +41,7 @@ pub(crate) fn run(args: &args::Design) -> Result<()> {
     let recorded: Vec<Vec<f64>> = args
         .from
         .iter()
-        .map(|path| input_of(path, column, args.memory.max_memory))
+        .map(|path| input_of(path, column, args.memory.limit()))
         .collect::<Result<_>>()?;
     let inputs: Vec<&[f64]> = recorded.iter().map(Vec::as_slice).collect();
     let design = hysteron::design(&options, &inputs)?;

@@ -23,7 +23,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
         [&args.data, &args.model],
         args.out.as_deref(),
         &args.force,
-        (args.json.json, args.memory.max_memory),
+        (args.json.json, args.memory.limit()),
         what,
         |table, out, progress| {
             let what = hysteron::Simulate {
@@ -65,7 +65,7 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         [&args.data, &args.model],
         args.out.as_deref(),
         &args.force,
-        (args.json.json, args.memory.max_memory),
+        (args.json.json, args.memory.limit()),
         what,
         |table, out, progress| hysteron::invert_table(&model, state, table, how, out, progress),
     )

@@ -30,8 +30,8 @@ use std::path::PathBuf;
 ///     Drop rows without a number or cut short, sort times that go back, merge repeated ones. By
 ///     default they are refused.
 /// max_memory : int, optional
-///     Most memory in bytes that the contents of the file may take; more is refused. By default 4
-///     GiB.
+///     Most memory in bytes that the contents of the file may take; more is refused. By default half
+///     of what is free.
 ///
 /// Returns
 /// -------
@@ -92,7 +92,7 @@ pub(crate) fn read(
     };
     let options = ReadOptions {
         repair,
-        max_memory: max_memory.unwrap_or(ReadOptions::MAX_MEMORY),
+        max_memory: max_memory.unwrap_or_else(ReadOptions::usual_memory),
     };
     let (mut recording, notes) =
         py.detach(|| hysteron::Recording::read(&path, columns, options).raise())?;

@@ -233,3 +233,134 @@ fn many_fits_wait_for_one_another() {
     }
     studio.end();
 }
+
+/// Connections that bring nothing keep nobody out.
+#[test]
+fn half_open_connections_do_not_lock_the_owner_out() {
+    use std::io::Write;
+    let studio = Studio::start(1 << 24, &[]);
+    let mut open = Vec::new();
+    for n in 0..400 {
+        let mut stream = std::net::TcpStream::connect(("127.0.0.1", studio.port)).unwrap();
+        if n % 2 == 0 {
+            let _ = stream.write_all(b"GET / HTTP/1.1\r\nHost: ");
+        }
+        open.push(stream);
+    }
+    let get = "GET /TOKEN/ HTTP/1.1\nHost: 127.0.0.1:PORT";
+    assert_eq!(studio.call(get, b"").0, 200);
+    // The oldest ones gave way.
+    let mut first = &open[0];
+    first
+        .set_read_timeout(Some(std::time::Duration::from_secs(60)))
+        .unwrap();
+    let ended = std::io::Read::read(&mut first, &mut [0; 1]);
+    assert!(!ended.is_ok_and(|count| count > 0));
+    studio.end();
+}
+
+/// The page is shown from a page on the disk, and its calls come from itself.
+#[test]
+fn a_page_on_the_disk_leads_to_the_page_and_calls_nothing() {
+    let studio = Studio::start(1 << 24, &[]);
+    let from = "Host: 127.0.0.1:PORT\nSec-Fetch-Site: cross-site";
+    let shown = "Sec-Fetch-Mode: navigate\nSec-Fetch-Dest: document";
+    let status = |head: &str| studio.call(head, b"").0;
+    assert_eq!(
+        status(&format!("GET /?token=TOKEN HTTP/1.1\n{from}\n{shown}")),
+        303
+    );
+    assert_eq!(
+        status(&format!("GET /TOKEN/ HTTP/1.1\n{from}\n{shown}")),
+        200
+    );
+    assert_eq!(
+        status(&format!(
+            "GET /TOKEN/ HTTP/1.1\n{from}\nSec-Fetch-Dest: iframe"
+        )),
+        403
+    );
+    assert_eq!(
+        status(&format!("GET /TOKEN/main.js HTTP/1.1\n{from}\n{shown}")),
+        403
+    );
+    assert_eq!(
+        status(&format!("GET /TOKEN/api/events HTTP/1.1\n{from}\n{shown}")),
+        403
+    );
+    assert_eq!(status(&format!("GET /0/ HTTP/1.1\n{from}\n{shown}")), 403);
+    studio.end();
+}
+
+/// Twenty files that come at once, and do not end, take no more than the limit together.
+#[test]
+fn uploads_share_one_account() {
+    use std::io::Write;
+    let studio = Studio::start(8 << 20, &[]);
+    let head = format!(
+        "POST /{0}/api/open/a.csv HTTP/1.1\r\nHost: 127.0.0.1:{1}\r\n\
+         Origin: http://127.0.0.1:{1}\r\nContent-Length: 3000000\r\n\r\n",
+        studio.token, studio.port
+    );
+    let upload = || {
+        let mut stream = std::net::TcpStream::connect(("127.0.0.1", studio.port)).unwrap();
+        stream.write_all(head.as_bytes()).unwrap();
+        stream
+    };
+    let post = "POST /TOKEN/api/session HTTP/1.1\nHost: 127.0.0.1:PORT\n\
+                Origin: http://127.0.0.1:PORT\nContent-Type: application/json";
+    let taken = || -> u64 {
+        let (_, _, text) = studio.call(post, ASK.as_bytes());
+        let seen: serde_json::Value = serde_json::from_str(&text).unwrap();
+        seen["memory"][0].as_u64().unwrap()
+    };
+    let open: Vec<_> = (0..20).map(|_| upload()).collect();
+    let wait = || std::thread::sleep(std::time::Duration::from_millis(20));
+    assert!(
+        (0..500).inspect(|_| wait()).any(|_| taken() == 6_000_000),
+        "two have room"
+    );
+    drop(open);
+    assert!(
+        (0..500).inspect(|_| wait()).any(|_| taken() == 0),
+        "given back"
+    );
+    studio.end();
+}
+
+#[test]
+fn a_session_file_has_one_studio_and_is_not_replaced_when_another_changed_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.json");
+    let bound = || hysteron_studio::Server::bind(0, 1 << 24).unwrap();
+    let missing = bound().keep(&folder.path().join("no/s.json")).unwrap_err();
+    assert!(missing.problem.contains("no/s.json"), "{missing}");
+    let mut first = bound();
+    first.keep(&path).unwrap();
+    assert!(path.exists(), "written at once");
+    let second = bound().keep(&path).unwrap_err();
+    assert!(second.problem.contains("another studio"), "{second}");
+    // Another program writes it meanwhile.
+    std::fs::write(&path, "mine").unwrap();
+    let (stop, stopped) = std::sync::mpsc::channel();
+    drop(stop);
+    let ended = first.run(stopped).unwrap_err();
+    assert!(
+        ended.to_string().contains("changed by another program"),
+        "{ended}"
+    );
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
+    // The lock ends with the studio.
+    std::fs::remove_file(&path).unwrap();
+    bound().keep(&path).unwrap();
+}
+
+/// A device may have no end, or no room.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_session_is_not_kept_in_a_device() {
+    for device in ["/dev/full", "/dev/zero"] {
+        let mut server = hysteron_studio::Server::bind(0, 1 << 24).unwrap();
+        assert!(server.keep(std::path::Path::new(device)).is_err());
+    }
+}

@@ -52,11 +52,11 @@ pub use adapt::{
 pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
-    Added, Around, AtomicFile, AtomicFolder, Column, ColumnSummary, Columns, Counts, Destination,
-    Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair, Roles, Row,
-    STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
-    discard_unfinished, inspect_table, invert_table, preview_table, printable, refuse_one_file,
-    shell_word, simulate_table,
+    Added, Around, AtomicFile, AtomicFolder, Budget, Column, ColumnSummary, Columns, Counts,
+    Destination, Growing, Invert, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
+    ReadOptions, Remark, Repair, Roles, Row, STANDARD_OUTPUT, Simulate, TablePreview, TableReader,
+    TableSummary, TableWriter, discard_unfinished, inspect_table, invert_table, preview_table,
+    printable, python_literal, refuse_one_file, shell_word, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};

@@ -1,7 +1,7 @@
 //! Recordings in every format and dialect, and what is mended in them.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use hysteron::{Columns, Recording, Repair, TableReader, TableWriter};
+use hysteron::{Columns, Memory, Recording, Repair, TableReader, TableWriter};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -310,7 +310,7 @@ fn a_table_in_memory_has_the_bytes_of_the_file() {
         for rows in [0, 1, 7, 20_000] {
             let path = folder.path().join(name);
             let mut file = TableWriter::plain(Some((&path).into())).unwrap();
-            let mut memory = TableWriter::in_memory(name).unwrap();
+            let mut memory = TableWriter::in_memory(name, &Memory::new(1 << 24)).unwrap();
             for table in [&mut file, &mut memory] {
                 table.row(["u", "y [mm]", "number"]).unwrap();
                 for n in 0..rows {
@@ -324,8 +324,8 @@ fn a_table_in_memory_has_the_bytes_of_the_file() {
             fs::remove_file(&path).unwrap();
         }
     }
-    assert!(TableWriter::in_memory("a.xlsx").is_err());
-    let mut twice = TableWriter::in_memory("a.parquet").unwrap();
+    assert!(TableWriter::in_memory("a.xlsx", &Memory::new(1 << 24)).is_err());
+    let mut twice = TableWriter::in_memory("a.parquet", &Memory::new(1 << 24)).unwrap();
     twice.row(["u", "u"]).unwrap();
     assert!(twice.into_bytes().is_err());
 }

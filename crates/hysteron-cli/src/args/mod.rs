@@ -161,9 +161,17 @@ pub(crate) struct Repair {
 
 #[derive(Args)]
 pub(crate) struct Memory {
-    /// Limit of the memory for the contents of a file, in bytes or with K, M or G
-    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = parse_bytes)]
-    pub(crate) max_memory: u64,
+    /// Limit of the memory for the contents of a file, in bytes or with K, M or G [default: half of
+    /// what is free]
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    max_memory: Option<u64>,
+}
+
+impl Memory {
+    pub(crate) fn limit(&self) -> u64 {
+        self.max_memory
+            .unwrap_or_else(hysteron::ReadOptions::usual_memory)
+    }
 }
 
 impl From<&Repair> for hysteron::ReadOptions {
@@ -173,7 +181,7 @@ impl From<&Repair> for hysteron::ReadOptions {
                 true => hysteron::Repair::Mend,
                 false => hysteron::Repair::Refuse,
             },
-            max_memory: args.memory.max_memory,
+            max_memory: args.memory.limit(),
         }
     }
 }
@@ -181,7 +189,7 @@ impl From<&Repair> for hysteron::ReadOptions {
 impl Repair {
     /// For tables that are read without repair.
     pub(crate) fn max_memory(&self) -> u64 {
-        self.memory.max_memory
+        self.memory.limit()
     }
 }
 

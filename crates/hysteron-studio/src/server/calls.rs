@@ -1,18 +1,20 @@
 //! The calls of the page.
 
 use super::Shared;
+use super::connections::PART;
 use super::guard::Guard;
 use crate::page;
 use crate::{Fault, Request, Response as Found, Told};
 use axum::Json;
 use axum::body::Body;
-use axum::extract::rejection::JsonRejection;
 use axum::extract::{Path, State};
 use axum::http::header::{self, CONTENT_TYPE};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, Sse};
 use axum::response::{Html, IntoResponse, Response};
+use hysteron::Growing;
 use std::convert::Infallible;
+use std::io::Write;
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 use tokio_stream::wrappers::IntervalStream;
@@ -33,11 +35,15 @@ pub(super) async fn file(Path((_, name)): Path<(String, String)>) -> Response {
 }
 
 /// A request to the session, and its response or fault, as JSON.
-pub(super) async fn session(
-    State((_, shared)): State<Parts>,
-    request: Result<Json<Request>, JsonRejection>,
-) -> Response {
-    let Ok(Json(request)) = request else {
+pub(super) async fn session(State((_, shared)): State<Parts>, body: Body) -> Response {
+    /// The longest request.
+    const MOST: usize = 2 << 20;
+    let body = tokio::time::timeout(PART, axum::body::to_bytes(body, MOST)).await;
+    let request = match body {
+        Ok(Ok(body)) => serde_json::from_slice::<Request>(&body),
+        Ok(Err(_)) | Err(_) => return refused(&Fault::defect("a request was cut off")),
+    };
+    let Ok(request) = request else {
         return refused(&Fault::defect(
             "the page asked for what the session does not know",
         ));
@@ -73,24 +79,28 @@ pub(super) async fn open(
 ) -> Response {
     let length = headers.get(header::CONTENT_LENGTH);
     let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    let admitted = |length: u64| shared.session().admits(length);
-    if let Err(fault) = admitted(length.unwrap_or(0)) {
-        return refused(&fault);
+    let mut upload = shared.session().upload();
+    let lacks = || Fault::too_large("the file", shared.session().room());
+    let announced = usize::try_from(length.unwrap_or(0)).unwrap_or(usize::MAX);
+    if upload.reserve(announced).is_err() {
+        return refused(&lacks());
     }
-    let mut bytes = Vec::new();
     let mut parts = body.into_data_stream();
-    while let Some(part) = parts.next().await {
-        let Ok(part) = part else {
-            return refused(&Fault::missing("the file was cut off", "drop it again"));
-        };
-        if let Err(fault) = admitted((bytes.len() + part.len()) as u64) {
-            return refused(&fault);
+    while let Ok(part) = tokio::time::timeout(PART, parts.next()).await {
+        match part {
+            None => return opened(shared.clone(), name, upload).await,
+            Some(Err(_)) => break,
+            Some(Ok(part)) if upload.write_all(&part).is_err() => return refused(&lacks()),
+            Some(Ok(_)) => {}
         }
-        bytes.extend_from_slice(&part);
     }
+    refused(&Fault::missing("the file was cut off", "drop it again"))
+}
+
+async fn opened(shared: Arc<Shared>, name: String, upload: Growing) -> Response {
     let done = tokio::task::spawn_blocking(move || {
         let mut session = shared.session();
-        session.open(&name, bytes)?;
+        session.open_upload(&name, upload)?;
         let response = session.handle(Request::Overview)?.response;
         drop(session);
         shared.changed();

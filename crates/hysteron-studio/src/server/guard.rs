@@ -5,6 +5,7 @@
 //! - `Origin`, and `Sec-Fetch-Site` where the browser sends it, have to be this page's.
 //! - The first part of every path is the secret.
 
+use super::connections::Known;
 use crate::page::POLICY;
 use axum::extract::{Query, Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
@@ -48,12 +49,20 @@ impl Guard {
         }
         let site = HeaderName::from_static("sec-fetch-site");
         let own = |site: &str| matches!(site, "same-origin" | "none");
-        // The first call may come from a link in a terminal or a mail.
-        let entry = request.uri().path() == "/";
-        if headers.contains_key(&site) && !entry && !only(headers, &site).is_some_and(own) {
+        // The first call may come from a link in a terminal or a mail, or from the page on the disk
+        // that leads here. The browser then shows this page alone, whoever asked for it.
+        let path = request.uri().path();
+        let entry = path == "/";
+        let shown = only(headers, &HeaderName::from_static("sec-fetch-dest")) == Some("document");
+        let page = request.method() == Method::GET && shown && path.matches('/').count() == 2;
+        if headers.contains_key(&site)
+            && !entry
+            && !(page && path.ends_with('/'))
+            && !only(headers, &site).is_some_and(own)
+        {
             return Some("another page may not call the studio");
         }
-        let first = request.uri().path().split('/').nth(1).unwrap_or_default();
+        let first = path.split('/').nth(1).unwrap_or_default();
         match entry || self.knows(first) {
             true => None,
             false => Some("the address has no valid token: use the one that the command printed"),
@@ -76,7 +85,12 @@ pub(super) async fn check(
 ) -> Response {
     let mut response = match guard.refusal(&request) {
         Some(why) => (StatusCode::FORBIDDEN, why).into_response(),
-        None => next.run(request).await,
+        None => {
+            let known = request.extensions().get::<Known>();
+            let secret = request.uri().path() != "/";
+            known.filter(|_| secret).map(Known::note);
+            next.run(request).await
+        }
     };
     let headers = response.headers_mut();
     let sent = [

@@ -1,16 +1,20 @@
 //! The session over HTTP: a page, its calls, and the progress of the work as events.
 //!
 //! Only this machine and only this user: bound to 127.0.0.1, with a secret in every address.
-//! `guard` checks each call, `calls` answers.
+//! `guard` checks each call, `calls` answers. `connections` bounds how many there are, `kept` is the
+//! file of the session.
 
 mod calls;
+mod connections;
 mod guard;
+mod kept;
 
 use crate::{Fault, Session};
 use axum::Router;
 use axum::routing::{get, post};
 use guard::Guard;
-use hysteron::{AtomicFile, Own};
+use kept::Kept;
+use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,7 +27,7 @@ pub struct Server {
     listener: std::net::TcpListener,
     token: String,
     shared: Arc<Shared>,
-    kept: Option<PathBuf>,
+    kept: Option<Kept>,
 }
 
 /// What all calls share.
@@ -51,14 +55,14 @@ impl Shared {
         self.changes.send_modify(|count| *count += 1);
     }
 
-    /// Writes the session to a file, which is whole at every moment.
-    fn save(&self, path: &Path) {
-        let session = self.session().to_json();
-        let file = AtomicFile::create(path, Own::SAME_BYTES);
-        if let Err(error) = file.and_then(|file| file.commit_with(session.as_bytes())) {
+    /// Writes the session to its file. What is wrong is told to the page.
+    fn save(&self, kept: &mut Kept) -> Result<(), Fault> {
+        let saved = kept.save(&self.session());
+        if let Err(fault) = &saved {
             let mut failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner);
-            *failed = Some(Fault::from(error));
+            *failed = Some(fault.clone());
         }
+        saved
     }
 
     fn open_named(&self, path: &Path) -> Result<(), Fault> {
@@ -68,12 +72,23 @@ impl Shared {
         };
         let mut session = self.session();
         let room = session.room();
-        let about = std::fs::metadata(path).map_err(failed)?;
+        let mut file = std::fs::File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if about.len() > room {
-            return Err(Fault::too_large(&name, room));
+        let lacks = |_| Fault::too_large(&name, room);
+        let mut upload = session.upload();
+        upload
+            .reserve(usize::try_from(length).unwrap_or(usize::MAX))
+            .map_err(lacks)?;
+        let mut part = vec![0; 1 << 16];
+        loop {
+            let count = file.read(&mut part).map_err(failed)?;
+            if count == 0 {
+                break;
+            }
+            upload.write_all(&part[..count]).map_err(lacks)?;
         }
-        session.open(&name, std::fs::read(path).map_err(failed)?)?;
+        session.open_upload(&name, upload)?;
         Ok(())
     }
 }
@@ -120,21 +135,15 @@ impl Server {
         Ok(())
     }
 
-    /// Keeps the session in a file: opens it if it is there, and writes it soon after each change
-    /// and at the end. A studio that was killed goes on from there.
+    /// Keeps the session in a file: opens it if it is there, and writes it at once, soon after each
+    /// change and at the end. A studio that was killed goes on from there. A lock beside the file
+    /// holds it for this studio.
     ///
     /// # Errors
-    /// [`Fault`] for a file that is there and is no session.
+    /// [`Fault`] for a file that is there and is no session, that cannot be written, or that another
+    /// studio holds.
     pub fn keep(&mut self, path: &Path) -> Result<(), Fault> {
-        if path.exists() {
-            let failed = |source| hysteron::Error::File {
-                path: path.to_owned(),
-                source,
-            };
-            let bytes = std::fs::read(path).map_err(failed)?;
-            self.shared.session().restore(&bytes)?;
-        }
-        self.kept = Some(path.to_owned());
+        self.kept = Some(Kept::open(path, &mut self.shared.session())?);
         Ok(())
     }
 
@@ -150,7 +159,7 @@ impl Server {
     /// Serves until `stop` says so. Work under way is then cancelled.
     ///
     /// # Errors
-    /// Where the system takes the port away.
+    /// Where the system takes the port away, or the session could not be saved at the end.
     pub fn run(self, stop: std::sync::mpsc::Receiver<()>) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
@@ -163,9 +172,9 @@ impl Server {
             let _ = stop.recv();
             let _ = end.send(true);
         });
-        let kept = self.kept.clone();
-        if let Some(path) = self.kept {
-            runtime.spawn(keep(shared.clone(), path));
+        let kept = self.kept.map(|kept| Arc::new(Mutex::new(kept)));
+        if let Some(kept) = &kept {
+            runtime.spawn(keep(shared.clone(), kept.clone()));
         }
         let served = runtime.block_on(async move {
             let address: SocketAddr = self.listener.local_addr()?;
@@ -173,29 +182,33 @@ impl Server {
             let app = app(guard, self.shared);
             let listener = TcpListener::from_std(self.listener)?;
             tokio::select! {
-                served = axum::serve(listener, app) => served,
+                served = connections::serve(listener, app) => served,
                 _ = ended.wait_for(|ended| *ended) => Ok(()),
             }
         });
         shared.session().cancel_all();
-        if let Some(path) = kept {
-            shared.save(&path);
-        }
+        let saved = kept.map_or(Ok(()), |kept| {
+            shared.save(&mut kept.lock().unwrap_or_else(PoisonError::into_inner))
+        });
         // Events are open as long as a page is.
         runtime.shutdown_background();
-        served
+        served?;
+        saved.map_err(std::io::Error::other)
     }
 }
 
 /// Writes the session after its changes.
-async fn keep(shared: Arc<Shared>, path: PathBuf) {
+async fn keep(shared: Arc<Shared>, kept: Arc<Mutex<Kept>>) {
     let mut changes = shared.changes.subscribe();
     while changes.changed().await.is_ok() {
         // Changes come in groups.
         tokio::time::sleep(std::time::Duration::from_millis(300)).await;
         changes.mark_unchanged();
-        let (shared, path) = (shared.clone(), path.clone());
-        let saved = tokio::task::spawn_blocking(move || shared.save(&path));
+        let (shared, kept) = (shared.clone(), kept.clone());
+        let saved = tokio::task::spawn_blocking(move || {
+            // The page and the end of the studio tell what is wrong.
+            let _ = shared.save(&mut kept.lock().unwrap_or_else(PoisonError::into_inner));
+        });
         let _ = saved.await;
     }
 }

@@ -3,10 +3,11 @@
 use super::Session;
 use super::design::Wish;
 use super::fitted::Fitted;
+use super::fitting::FILES;
 use super::opened::Opened;
 use super::prepare::Steps;
 use super::request::Id;
-use hysteron::{Operator, Plane, shell_word};
+use hysteron::{Operator, Plane, python_literal, shell_word};
 
 /// The files of a fit that are still open.
 fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {
@@ -29,6 +30,12 @@ fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
         .collect()
 }
 
+/// An option and its value. A value that begins with a hyphen is no option.
+pub(super) fn option(name: &str, value: &str) -> String {
+    let between = if value.starts_with('-') { '=' } else { ' ' };
+    format!("--{name}{between}{}", shell_word(value))
+}
+
 /// A file as an argument: one that begins with a hyphen is no option.
 fn path(name: &str) -> String {
     match name.starts_with('-') {
@@ -43,9 +50,7 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
     let mut words = vec![format!("hysteron fit {}", names.join(" "))];
     let columns: Vec<String> = fitted.first().map_or(Vec::new(), |file| {
         let roles = roles(file).into_iter();
-        roles
-            .map(|(name, column)| format!("--{name} {}", shell_word(column)))
-            .collect()
+        roles.map(|(name, column)| option(name, column)).collect()
     });
     words.extend(columns.iter().cloned());
     words.extend(
@@ -60,20 +65,18 @@ pub(super) fn shell(session: &Session, fit: &Fitted) -> String {
             .find_map(|file| file.steps.as_ref())
             .map(Steps::as_options),
     );
-    let option = |(name, text): (&String, &String)| {
-        format!("--{} {}", name.replace('_', "-"), shell_word(text))
-    };
-    words.extend(fit.options.iter().map(option));
+    let options = fit.options.iter();
+    words.extend(options.map(|(name, text)| option(&name.replace('_', "-"), text)));
     words.extend(match fit.words.as_str() {
         "" => Vec::new(),
-        "files" => {
+        FILES => {
             let others = files(session, &fit.validated);
             others
                 .iter()
                 .map(|file| format!("--hold-out {}", path(&file.name)))
                 .collect()
         }
-        part => vec![format!("--hold-out {part}")],
+        part => vec![option("hold-out", part)],
     });
     words.push("-o model.json".into());
     let mut text = words.join(" \\\n    ") + "\n";
@@ -112,27 +115,27 @@ pub(super) fn design(session: &Session, fit: &Fitted, plane: &Plane, wish: &Wish
                 .map(|file| format!("--from {}", path(&file.name))),
         );
         let input = file.roles.input.as_deref().unwrap_or_default();
-        words.push(format!("--input {}", shell_word(input)));
+        words.push(option("input", input));
     }
     words.push("-o profile.csv".into());
     words.join(" \\\n    ") + "\n"
 }
 
-/// A string literal of Python or Rust. Of what both escape, names hold quotes and backslashes only.
+/// A string literal of Rust.
 fn literal(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+    format!("{text:?}")
 }
 
 pub(super) fn python(session: &Session, fit: &Fitted) -> String {
     let read = |file: &&Opened| {
         let roles = roles(file).into_iter();
         let mut words: Vec<String> = roles
-            .map(|(name, column)| format!("{name}={}", literal(column)))
+            .map(|(name, column)| format!("{name}={}", python_literal(column)))
             .collect();
         words.extend(file.mend.then(|| "repair=True".to_owned()));
         let read = format!(
             "pyhysteron.read({}, {})",
-            literal(&file.name),
+            python_literal(&file.name),
             words.join(", ")
         );
         match &file.steps {
@@ -154,14 +157,23 @@ pub(super) fn python(session: &Session, fit: &Fitted) -> String {
     );
     match fit.words.as_str() {
         "" => {}
-        "files" => {
+        FILES => {
             text += &format!("tests = {}\n", list(files(session, &fit.validated)));
             words.push("hold_out=tests".into());
         }
-        part => words.push(format!("hold_out={}", literal(part))),
+        part => words.push(format!("hold_out={}", python_literal(part))),
     }
     text += &format!("model = pyhysteron.fit({})\n", words.join(", "));
     text + "print(model.fit.nrmse_percent)\nmodel.save(\"model.json\")\n"
+}
+
+/// A number as Python writes it: without zeros before it, and finite.
+fn number(text: &str) -> Option<String> {
+    if let Ok(whole) = text.parse::<u64>() {
+        return Some(whole.to_string());
+    }
+    let number = text.parse::<f64>().ok()?;
+    number.is_finite().then(|| format!("{number:?}"))
 }
 
 fn python_value(name: &str, text: &str) -> String {
@@ -171,9 +183,14 @@ fn python_value(name: &str, text: &str) -> String {
         ("sign", "positive") => "1".into(),
         ("sign", "negative") => "-1".into(),
         ("smooth", "off") => "0.0".into(),
-        _ if text.contains(',') => format!("({text})"),
-        _ if text.parse::<f64>().is_ok() => text.into(),
-        _ => literal(text),
+        _ => {
+            let parts = text.split(',').map(|part| number(part.trim()));
+            match parts.collect::<Option<Vec<_>>>().as_deref() {
+                Some([one]) => one.clone(),
+                Some(several) => format!("({})", several.join(", ")),
+                None => python_literal(text),
+            }
+        }
     }
 }
 
@@ -219,7 +236,7 @@ pub(super) fn rust(session: &Session, fit: &Fitted) -> String {
     text += ";\n";
     text += &match fit.words.as_str() {
         "" => "let model = fit.run(&recordings)?;\n".to_owned(),
-        "files" => format!(
+        FILES => format!(
             "let hold_out = HoldOut::Recordings(vec![\n{}]);\n{HELD}",
             list(&fit.validated)
         ),

@@ -147,7 +147,7 @@ impl Session {
             model,
         };
         drive.push(drive.inputs.0)?;
-        let id = self.next();
+        let id = self.next()?;
         if self.drives.len() >= MOST {
             self.drives.pop_first();
         }

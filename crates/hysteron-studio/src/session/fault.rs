@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 /// | 103 | the work was cancelled |
 /// | 104 | a defect of the studio |
 /// | 105 | a session file that cannot be read |
+/// | 106 | a session file that is not written |
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{problem}")]
 pub struct Fault {
@@ -66,6 +67,15 @@ impl Fault {
     #[must_use]
     pub fn defect(what: &str) -> Self {
         Self::new(104, format!("a defect of the studio: {what}"))
+    }
+
+    /// Why the session is not written to its file.
+    pub(crate) fn not_kept(problem: &str) -> Self {
+        let remedy = "take the session home, and begin again with another file";
+        Self {
+            remedy: Some(remedy.into()),
+            ..Self::new(106, format!("the session is not saved: {problem}"))
+        }
     }
 
     pub(crate) fn session(problem: String) -> Self {

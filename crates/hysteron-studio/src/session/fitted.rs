@@ -1,7 +1,7 @@
 //! What a fit found, and which fit is the best.
 
 use super::request::Id;
-use hysteron::{Errors, HeldOut, Model, Quantity, State};
+use hysteron::{Budget, Errors, HeldOut, Model, Quantity, State};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) struct Fitted {
     /// Median time step of the recordings, in seconds.
     pub(super) dt: Option<f64>,
     /// The modelled output on each file that it was drawn with.
-    pub(super) courses: BTreeMap<Id, Arc<Vec<f64>>>,
+    pub(super) courses: BTreeMap<Id, (Arc<Vec<f64>>, Budget)>,
     /// A file, a number of its rows, and the state after them.
     pub(super) reached: Option<(Id, usize, State)>,
 }

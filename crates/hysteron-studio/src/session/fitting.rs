@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::job::{Finished, Job, Watch, build};
 use super::request::{Id, Purpose, Response};
-use super::{Answer, MOST, Session};
+use super::{Answer, MOST, Running, Session};
 use hysteron::{HoldOut, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,6 +24,24 @@ pub enum Held {
     Nothing,
     /// A part of each recording, as on the command line: `branches:20%`.
     Words(String),
+}
+
+/// What stands for files that tested a fit.
+pub(super) const FILES: &str = "files";
+
+/// A part that is held out, in words without spaces.
+///
+/// # Errors
+/// [`Fault`] for words that say no part.
+pub(super) fn part(words: &str) -> Result<String, Fault> {
+    words.parse::<HoldOut>()?;
+    Ok(words.split_whitespace().collect())
+}
+
+/// Memory of the numbers of a recording.
+pub(super) fn numbers_of(recording: &Recording) -> u64 {
+    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
+    series * (size_of::<f64>() * recording.len()) as u64
 }
 
 impl Session {
@@ -71,10 +89,10 @@ impl Session {
         let mut validated = Vec::new();
         let (hold_out, words) = match (held, marked.is_empty()) {
             (Held::Nothing, _) => (None, String::new()),
-            (Held::Words(words), _) => (Some(words.parse::<HoldOut>()?), words),
+            (Held::Words(words), _) => (Some(words.parse::<HoldOut>()?), part(&words)?),
             (Held::Usual, _) if !others.is_empty() => {
                 validated = of(Purpose::Validate).map(|file| file.id).collect();
-                (Some(HoldOut::Recordings(others)), "files".into())
+                (Some(HoldOut::Recordings(others)), FILES.into())
             }
             (Held::Usual, false) => {
                 let rows = marked.iter().map(|(first, last)| *first..=*last).collect();
@@ -91,9 +109,19 @@ impl Session {
             }
         };
         let fitted = of(Purpose::Fit).map(|file| file.id).collect();
-        let id = self.next();
+        let bytes = recordings.iter().chain(match &hold_out {
+            Some(HoldOut::Recordings(others)) => &others[..],
+            _ => &[],
+        });
+        let bytes = bytes.map(numbers_of).sum();
+        let held = self.held(bytes, "the recordings of the fit")?;
+        let id = self.next()?;
         let watch = Arc::new(Watch::default());
-        self.running.insert(id, watch.clone());
+        let running = Running {
+            watch: watch.clone(),
+            _held: held,
+        };
+        self.running.insert(id, running);
         let started = watch.view(id);
         let job = Job {
             id,
@@ -116,8 +144,8 @@ impl Session {
     /// # Errors
     /// [`Fault`] why there is none; 103 if it was cancelled.
     pub fn finish(&mut self, finished: Finished) -> Result<Id, Fault> {
-        let watch = self.running.remove(&finished.id);
-        if watch.is_some_and(|watch| watch.is_cancelled()) {
+        let running = self.running.remove(&finished.id);
+        if running.is_some_and(|running| running.watch.is_cancelled()) {
             return Err(Fault::cancelled());
         }
         let fitted = finished.found?;

@@ -105,6 +105,7 @@ pub(super) fn build(options: &BTreeMap<String, String>) -> Result<Fit<'static>, 
     for (name, text) in options {
         fit = fit.with(name, text)?;
     }
+    fit.check()?;
     Ok(fit)
 }
 

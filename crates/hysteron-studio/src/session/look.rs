@@ -1,9 +1,9 @@
 //! Pictures: lines with no more points than the page can show.
 
-use super::Session;
 use super::fault::Fault;
 use super::request::Id;
 use super::thinned::{Shape, histogram, rows, thinned, when};
+use super::{MOST, Session};
 use hysteron::{Recording, Start, forward};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -116,7 +116,7 @@ impl Session {
     pub(super) fn course(&mut self, fit: Id, file: Id) -> Result<Arc<Vec<f64>>, Fault> {
         let recording = self.file(file)?.recording()?.clone();
         let fitted = self.fitted(fit)?;
-        if let Some(course) = fitted.courses.get(&file) {
+        if let Some((course, _)) = fitted.courses.get(&file) {
             return Ok(course.clone());
         }
         // A model that found a start of one recording begins elsewhere on another.
@@ -125,11 +125,13 @@ impl Session {
             false => Start::Unknown,
         };
         let model = fitted.model.clone();
+        let bytes = (size_of::<f64>() * recording.len()) as u64;
+        let held = self.held(bytes, "the output of a model")?;
         let run = |start| forward(&model, &recording, start).map(|run| run.output_model);
         let course = Arc::new(run(start).or_else(|_| run(Start::Fitted))?);
         let fits = self.fits.iter_mut().find(|other| other.id == fit);
         if let Some(fitted) = fits {
-            fitted.courses.insert(file, course.clone());
+            fitted.courses.insert(file, (course.clone(), held));
         }
         Ok(course)
     }
@@ -137,6 +139,7 @@ impl Session {
     pub(super) fn curves(&mut self, view: &View) -> Result<Curves, Fault> {
         let recording = self.file(view.file)?.recording()?.clone();
         let marked = self.file(view.file)?.marked.clone();
+        few(&view.fits)?;
         let mut courses = Vec::new();
         for &fit in &view.fits {
             courses.push((fit, self.course(fit, view.file)?));
@@ -227,6 +230,17 @@ impl Session {
                 .map(|(a, b)| (when(&recording, a - 1), when(&recording, b - 1)))
                 .collect(),
         })
+    }
+}
+
+/// Refuses more fits than a session has.
+pub(super) fn few(fits: &[Id]) -> Result<(), Fault> {
+    match fits.len() > MOST {
+        false => Ok(()),
+        true => Err(Fault::missing(
+            &format!("{} fits are asked for", fits.len()),
+            &format!("take {MOST} at most"),
+        )),
     }
 }
 

@@ -38,6 +38,7 @@ pub use take_home::{Download, Take};
 
 use drive::Drive;
 use fitted::Fitted;
+use hysteron::{Budget, Growing, Memory};
 use job::Watch;
 use opened::Opened;
 use std::collections::BTreeMap;
@@ -46,15 +47,25 @@ use std::sync::Arc;
 /// The most fits, and the most models driven, that a session keeps. The oldest drive goes first.
 const MOST: usize = 100;
 
+/// The largest number that is given: JavaScript holds no larger one exactly.
+const LAST: Id = (1 << 53) - 1;
+
 /// What is open in the studio.
 #[derive(Debug)]
 pub struct Session {
     files: Vec<Opened>,
     fits: Vec<Fitted>,
-    running: BTreeMap<Id, Arc<Watch>>,
+    running: BTreeMap<Id, Running>,
     drives: BTreeMap<Id, Drive>,
     last: Id,
-    budget: u64,
+    memory: Memory,
+}
+
+/// A job under way, and what is taken for its recordings.
+#[derive(Debug)]
+struct Running {
+    watch: Arc<Watch>,
+    _held: Budget,
 }
 
 /// What a request leads to: a response, and a job where there is long work to do. The transport runs
@@ -77,7 +88,8 @@ impl From<Response> for Answer {
 }
 
 impl Session {
-    /// An empty session, whose files take at most `budget` bytes of memory.
+    /// An empty session. Its files, what is computed from them, and what is under way take at most
+    /// `budget` bytes of memory.
     ///
     /// ```
     /// use hysteron_studio::{Request, Response, Session};
@@ -90,13 +102,27 @@ impl Session {
     /// ```
     #[must_use]
     pub fn new(budget: u64) -> Self {
+        Self::within(Memory::new(budget))
+    }
+
+    /// The session in a file that was saved.
+    ///
+    /// # Errors
+    /// [`Fault`] for bytes that are no session, or that take more than `budget` bytes of memory.
+    pub fn from_file(bytes: &[u8], budget: u64) -> Result<Self, Fault> {
+        let mut session = Self::new(budget);
+        session.restore(bytes)?;
+        Ok(session)
+    }
+
+    fn within(memory: Memory) -> Self {
         Self {
             files: Vec::new(),
             fits: Vec::new(),
             running: BTreeMap::new(),
             drives: BTreeMap::new(),
             last: 0,
-            budget,
+            memory,
         }
     }
 
@@ -106,27 +132,45 @@ impl Session {
     /// # Errors
     /// [`Fault`] for a file that is no table, or that takes more memory than is left.
     pub fn open(&mut self, name: &str, bytes: Vec<u8>) -> Result<Id, Fault> {
+        let mut held = Budget::of(&self.memory);
         let name = opened::plain_name(name);
+        let taken = held.resize(bytes.len() as u64, &name);
+        taken.map_err(|_| Fault::too_large(&name, self.room()))?;
+        self.open_held(&name, bytes, held)
+    }
+
+    /// As [`Session::open`], for bytes that grew within the account of [`Session::upload`].
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_upload(&mut self, name: &str, upload: Growing) -> Result<Id, Fault> {
+        let (bytes, held) = upload.into_parts();
+        self.open_held(&opened::plain_name(name), bytes, held)
+    }
+
+    /// Room for a file that comes in parts. It is counted from its first part on.
+    #[must_use]
+    pub fn upload(&self) -> Growing {
+        Growing::new(&self.memory)
+    }
+
+    fn open_held(&mut self, name: &str, bytes: Vec<u8>, held: Budget) -> Result<Id, Fault> {
         if saved::is_session(&bytes) {
             return self.restore(&bytes);
         }
         let old = self.files.iter().position(|file| file.name == name);
-        let of_old = old.map_or(0, |n| self.files[n].size());
-        let left = self.room() + of_old;
-        if bytes.len() as u64 > left {
-            return Err(Fault::too_large(&name, left));
-        }
         match old {
             Some(n) => {
-                let again = self.files[n].again(bytes, left)?;
+                let again = self.files[n].again(bytes, held)?;
                 let id = again.id;
                 self.files[n] = again;
                 self.forget_courses(id);
                 Ok(id)
             }
             None => {
-                let id = self.next();
-                self.files.push(Opened::new(id, name, bytes, left)?);
+                let id = self.next()?;
+                let name = name.to_owned();
+                self.files.push(Opened::new(id, name, bytes, held)?);
                 Ok(id)
             }
         }
@@ -135,8 +179,7 @@ impl Session {
     /// Memory that is left for files, in bytes.
     #[must_use]
     pub fn room(&self) -> u64 {
-        let taken = self.files.iter().map(Opened::size).sum();
-        self.budget.saturating_sub(taken)
+        self.memory.left()
     }
 
     /// Refuses a file of so many bytes, before they are there, if it cannot have room.
@@ -145,8 +188,7 @@ impl Session {
     /// [`Fault`] 101.
     pub fn admits(&self, bytes: u64) -> Result<(), Fault> {
         let room = self.room();
-        // A session holds its recordings as text, which takes a third more.
-        match bytes > room.saturating_add(room / 2).saturating_add(1 << 20) {
+        match bytes > room {
             true => Err(Fault::too_large("the file", room)),
             false => Ok(()),
         }
@@ -165,13 +207,11 @@ impl Session {
                 self.forget_courses(file);
             }
             Request::Columns { file, roles } => {
-                let left = self.room();
-                self.file_mut(file)?.set_roles(roles, left);
+                self.file_mut(file)?.set_roles(roles);
                 self.forget_courses(file);
             }
             Request::Mend { file, on } => {
-                let left = self.room();
-                self.file_mut(file)?.set_mend(on, left);
+                self.file_mut(file)?.set_mend(on);
                 self.forget_courses(file);
             }
             Request::Prepare { file, steps } => {
@@ -186,8 +226,9 @@ impl Session {
             }
             Request::Fit { options, hold_out } => return self.fit(options, hold_out),
             Request::Cancel { job } => {
-                let watch = self.running.get(&job);
-                watch.ok_or_else(|| Fault::gone("work", job))?.cancel();
+                let running = self.running.get(&job);
+                let running = running.ok_or_else(|| Fault::gone("work", job))?;
+                running.watch.cancel();
             }
             Request::Forget { fit } => {
                 self.fitted(fit)?;
@@ -222,7 +263,7 @@ impl Session {
             best,
             best_by,
             options: &hysteron::FIT_OPTIONS,
-            memory: (self.budget - self.room(), self.budget),
+            memory: (self.memory.limit() - self.room(), self.memory.limit()),
         }
     }
 
@@ -230,24 +271,40 @@ impl Session {
     #[must_use]
     pub fn jobs(&self) -> Vec<JobView> {
         let jobs = self.running.iter();
-        jobs.map(|(id, watch)| watch.view(*id)).collect()
+        jobs.map(|(id, job)| job.watch.view(*id)).collect()
     }
 
     /// Says how far a job is that runs elsewhere. One that is not there is passed over.
     pub fn told(&self, job: Id, stage: String, share: f64) {
-        if let Some(watch) = self.running.get(&job) {
-            watch.at(stage.into(), share);
+        if let Some(running) = self.running.get(&job) {
+            running.watch.at(stage.into(), share);
         }
     }
 
     /// Cancels all work. Its threads end at their next report.
     pub fn cancel_all(&self) {
-        self.running.values().for_each(|watch| watch.cancel());
+        self.running.values().for_each(|job| job.watch.cancel());
     }
 
-    fn next(&mut self) -> Id {
+    /// The next number. A session file may hold the largest one.
+    fn next(&mut self) -> Result<Id, Fault> {
+        if self.last >= LAST {
+            let problem = "this session has given all its numbers";
+            return Err(Fault::missing(
+                problem,
+                "begin a new one, and open the files there",
+            ));
+        }
         self.last += 1;
-        self.last
+        Ok(self.last)
+    }
+
+    /// Takes memory for what is computed of a file.
+    fn held(&self, bytes: u64, what: &str) -> Result<Budget, Fault> {
+        let mut held = Budget::of(&self.memory);
+        let taken = held.resize(bytes, what);
+        taken.map_err(|_| Fault::too_large(what, self.room()))?;
+        Ok(held)
     }
 
     fn file(&self, id: Id) -> Result<&Opened, Fault> {

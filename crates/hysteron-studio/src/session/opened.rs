@@ -1,13 +1,14 @@
 //! A file that is open: its bytes, its columns, and the recording that they make.
 
 use super::fault::Fault;
+use super::fitting::numbers_of;
 use super::prepare::Steps;
 use super::request::{Id, Purpose};
 use super::thinned::when;
 use bytes::Bytes;
 use hysteron::{
-    ColumnSummary, Columns, Preparation, Progress, Quantity, ReadOptions, Recording, Repair,
-    TablePreview, TableReader, branches, prepare, preview_table, usual_tolerance,
+    Budget, ColumnSummary, Columns, Memory, PICTURE, Preparation, Progress, Quantity, Recording,
+    Repair, Step, TablePreview, TableReader, branches, prepare, preview_table, usual_tolerance,
 };
 use serde::{Deserialize, Serialize};
 use std::hash::{DefaultHasher, Hasher};
@@ -51,6 +52,8 @@ pub(super) struct Opened {
     branches: usize,
     repair: Option<RepairView>,
     notes: Vec<String>,
+    /// What is taken of the memory of the session.
+    held: Budget,
 }
 
 /// A column as the page shows it.
@@ -118,9 +121,10 @@ pub struct FileView {
 }
 
 impl Opened {
-    pub(super) fn new(id: Id, name: String, bytes: Vec<u8>, memory: u64) -> Result<Self, Fault> {
+    /// Opens bytes that are already counted in `held`.
+    pub(super) fn new(id: Id, name: String, bytes: Vec<u8>, held: Budget) -> Result<Self, Fault> {
         let bytes = Bytes::from(bytes);
-        let mut table = TableReader::from_bytes(&name, bytes.clone(), memory)?;
+        let mut table = TableReader::from_bytes(&name, bytes.clone(), held.memory().clone())?;
         let preview = preview_table(&mut table)?;
         let remarks = table.remarks().map(ToString::to_string).collect();
         let guess = preview.roles.clone();
@@ -147,14 +151,17 @@ impl Opened {
             branches: 0,
             repair: None,
             notes: Vec::new(),
+            held,
         };
-        opened.read(memory);
+        drop(table);
+        opened.hold()?;
+        opened.read();
         Ok(opened)
     }
 
     /// The file in a new version.
-    pub(super) fn again(&self, bytes: Vec<u8>, memory: u64) -> Result<Self, Fault> {
-        let mut new = Self::new(self.id, self.name.clone(), bytes, memory)?;
+    pub(super) fn again(&self, bytes: Vec<u8>, held: Budget) -> Result<Self, Fault> {
+        let mut new = Self::new(self.id, self.name.clone(), bytes, held)?;
         (new.mend, new.purpose, new.marked) = (self.mend, self.purpose, self.marked.clone());
         let same = |columns: &TablePreview| {
             let names = columns.table.columns.iter();
@@ -164,18 +171,18 @@ impl Opened {
         if same(&new.preview) == same(&self.preview) {
             new.roles = self.roles.clone();
         }
-        new.read(memory);
+        new.read();
         Ok(new)
     }
 
-    pub(super) fn set_roles(&mut self, roles: Part, memory: u64) {
+    pub(super) fn set_roles(&mut self, roles: Part) {
         self.roles = roles;
-        self.read(memory);
+        self.read();
     }
 
-    pub(super) fn set_mend(&mut self, on: bool, memory: u64) {
+    pub(super) fn set_mend(&mut self, on: bool) {
         self.mend = on;
-        self.read(memory);
+        self.read();
     }
 
     /// Prepares the recording, or takes it as it is. A refusal leaves it as it was.
@@ -185,8 +192,18 @@ impl Opened {
             Err(fault) => fault.clone(),
             Ok(_) => Fault::defect("not read yet"),
         })?;
-        let (recording, preparation) = prepared(&raw, steps.as_ref())?;
+        let steps = steps.map(Steps::checked).transpose()?;
+        let before = (
+            self.recording.clone(),
+            self.preparation.clone(),
+            self.steps.clone(),
+        );
+        let (recording, preparation) = prepared(&raw, steps.as_ref(), self.held.memory())?;
         (self.recording, self.preparation, self.steps) = (Ok(recording), preparation, steps);
+        if let Err(fault) = self.hold() {
+            (self.recording, self.preparation, self.steps) = before;
+            return Err(fault);
+        }
         self.keep_marked();
         Ok(())
     }
@@ -239,34 +256,42 @@ impl Opened {
         self.recording.as_ref().map_err(Clone::clone)
     }
 
-    /// Memory of the bytes, and of the numbers read from them.
-    pub(super) fn size(&self) -> u64 {
-        let samples = self
-            .recording
-            .as_ref()
-            .map_or(0, |recording| recording.len());
-        let raw = self.raw().map_or(0, |raw| raw.len());
-        (self.bytes.len() + 4 * size_of::<f64>() * (samples + raw)) as u64
+    /// Takes memory for the bytes, their preview, and the numbers read from them.
+    fn hold(&mut self) -> Result<(), Fault> {
+        let size = self.size();
+        let taken = self.held.resize(size, &self.name);
+        taken.map_err(|_| Fault::too_large(&self.name, self.held.memory().left()))
+    }
+
+    fn size(&self) -> u64 {
+        /// Of a column in the preview: its picture and what is summed up.
+        const COLUMN: usize = PICTURE * size_of::<Option<(f64, f64)>>() + 200;
+        let columns = self.preview.table.columns.iter();
+        let preview: usize = columns.map(|column| column.name.len() + COLUMN).sum();
+        let samples = self.recording.as_deref().map_or(0, numbers_of);
+        let raw = self.raw().map_or(0, |raw| numbers_of(raw));
+        (self.bytes.len() + preview) as u64 + samples + raw
     }
 
     /// Makes the recording of the columns.
-    fn read(&mut self, memory: u64) {
+    fn read(&mut self) {
         (self.raw, self.preparation, self.repair) = (None, None, None);
-        match self.try_read(memory, self.mend) {
+        match self.try_read(self.mend) {
             Ok((raw, notes)) => {
                 let raw = Arc::new(raw);
-                (self.recording, self.notes) = match prepared(&raw, self.steps.as_ref()) {
-                    Ok((recording, preparation)) => {
-                        self.preparation = preparation;
-                        (Ok(recording), notes)
-                    }
-                    Err(fault) => (Err(fault), notes),
-                };
+                (self.recording, self.notes) =
+                    match prepared(&raw, self.steps.as_ref(), self.held.memory()) {
+                        Ok((recording, preparation)) => {
+                            self.preparation = preparation;
+                            (Ok(recording), notes)
+                        }
+                        Err(fault) => (Err(fault), notes),
+                    };
                 self.raw = Some(raw);
             }
             Err(fault) => {
                 if !self.mend {
-                    let would = self.try_read(memory, true).ok();
+                    let would = self.try_read(true).ok();
                     self.repair = would.map(|(recording, notes)| RepairView {
                         notes,
                         samples: recording.len(),
@@ -274,6 +299,11 @@ impl Opened {
                 }
                 (self.recording, self.notes) = (Err(fault), self.remarks.clone());
             }
+        }
+        if let Err(fault) = self.hold() {
+            (self.recording, self.raw, self.preparation) = (Err(fault), None, None);
+            // It is less than before.
+            let _ = self.hold();
         }
         self.keep_marked();
     }
@@ -296,7 +326,7 @@ impl Opened {
         }
     }
 
-    fn try_read(&self, memory: u64, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
+    fn try_read(&self, mend: bool) -> Result<(Recording, Vec<String>), Fault> {
         let Part {
             input,
             output,
@@ -313,11 +343,8 @@ impl Opened {
             ..Columns::new(input, output)
         };
         let repair = if mend { Repair::Mend } else { Repair::Refuse };
-        let options = ReadOptions {
-            repair,
-            max_memory: memory,
-        };
-        let read = Recording::from_bytes(&self.name, self.bytes.clone(), columns, options);
+        let (bytes, memory) = (self.bytes.clone(), self.held.memory());
+        let read = Recording::from_bytes_within(&self.name, bytes, columns, repair, memory);
         let (recording, notes) = read?;
         Ok((recording, notes.iter().map(ToString::to_string).collect()))
     }
@@ -371,11 +398,20 @@ fn digest(bytes: &[u8]) -> u64 {
 fn prepared(
     raw: &Arc<Recording>,
     steps: Option<&Steps>,
+    memory: &Memory,
 ) -> Result<(Arc<Recording>, Option<Preparation>), Fault> {
     let Some(steps) = steps else {
         return Ok((raw.clone(), None));
     };
-    let (recording, report) = prepare(raw, &steps.options()?, Progress::NONE)?;
+    let options = steps.options()?;
+    // Equal steps may be many.
+    if let (Step::Value(step), Some([first, .., last])) = (options.resample, raw.time.as_deref()) {
+        let most = memory.left() as f64 / (8 * size_of::<f64>()) as f64;
+        if (last - first) / step > most {
+            return Err(Fault::too_large("a recording in such steps", memory.left()));
+        }
+    }
+    let (recording, report) = prepare(raw, &options, Progress::NONE)?;
     Ok((Arc::new(recording), Some(report)))
 }
 

@@ -2,6 +2,7 @@
 
 use super::Session;
 use super::fault::Fault;
+use super::look::few;
 use super::request::Id;
 use super::thinned::when;
 use hysteron::{Model, Recording, State, Surroundings, operators};
@@ -60,6 +61,7 @@ impl Session {
     /// The sample nearest to a time.
     pub(super) fn sample(&mut self, file: Id, fits: &[Id], at: f64) -> Result<SampleView, Fault> {
         let recording = self.file(file)?.recording()?.clone();
+        few(fits)?;
         let n = nearest(&recording, at);
         let mut modelled = Vec::new();
         for &fit in fits {

@@ -1,7 +1,8 @@
 //! The preparation of a file: its steps as texts, as on the command line.
 
+use super::commands::option;
 use super::fault::Fault;
-use hysteron::{PrepareOptions, Step};
+use hysteron::{PrepareOptions, Step, python_literal};
 use serde::{Deserialize, Serialize};
 
 /// The steps of a preparation, each `auto`, `off` or a number: [`hysteron::PrepareOptions`].
@@ -45,6 +46,21 @@ impl Steps {
         ]
     }
 
+    /// The same steps, each as it is understood.
+    ///
+    /// # Errors
+    /// [`Fault`] for a text that is no step.
+    pub(super) fn checked(self) -> Result<Self, Fault> {
+        let options = self.options()?;
+        Ok(Self {
+            spikes: text(options.spikes),
+            resample: text(options.resample),
+            low_pass: text(options.low_pass),
+            lag: text(options.lag),
+            dead_band: text(options.dead_band),
+        })
+    }
+
     pub(super) fn options(&self) -> Result<PrepareOptions, Fault> {
         Ok(PrepareOptions {
             spikes: step("spikes", &self.spikes)?,
@@ -67,14 +83,14 @@ impl Steps {
     pub(super) fn as_options(&self) -> String {
         let steps = self
             .changed()
-            .map(|(name, _, text)| format!(" --{name} {text}"));
+            .map(|(name, _, text)| format!(" {}", option(name, text)));
         format!("--prepare{}", steps.collect::<String>())
     }
 
     pub(super) fn as_python(&self) -> String {
         let steps = self.changed().map(|(_, name, text)| match text {
-            "auto" | "off" => format!(", {name}=\"{text}\""),
-            number => format!(", {name}={number}"),
+            number if number.parse::<f64>().is_ok() => format!(", {name}={number}"),
+            word => format!(", {name}={}", python_literal(word)),
         });
         steps.collect()
     }
@@ -90,13 +106,26 @@ impl Steps {
     }
 }
 
+fn text(step: Step) -> String {
+    match step {
+        Step::Auto => "auto".into(),
+        Step::Off => "off".into(),
+        Step::Value(value) => value.to_string(),
+    }
+}
+
 fn step(name: &str, text: &str) -> Result<Step, Fault> {
     match text {
         "auto" => Ok(Step::Auto),
         "off" => Ok(Step::Off),
-        _ => text.parse().map(Step::Value).map_err(|_| {
-            let problem = format!("“{name}” is neither auto nor off nor a number");
-            Fault::missing(&problem, "choose one of them")
-        }),
+        _ => text
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite())
+            .map(Step::Value)
+            .ok_or_else(|| {
+                let problem = format!("“{name}” is neither auto nor off nor a number");
+                Fault::missing(&problem, "choose one of them")
+            }),
     }
 }

@@ -1,17 +1,23 @@
 //! The session as a file: recordings with their columns, fits with their models.
 
-use super::Session;
 use super::fault::Fault;
 use super::fitted::Fitted;
+use super::fitting::{FILES, part};
+use super::job::build;
 use super::opened::{Opened, Part, plain_name};
 use super::prepare::Steps;
 use super::request::{Id, Purpose};
+use super::{LAST, MOST, Session};
 use base64::Engine;
+use base64::display::Base64Display;
 use base64::engine::general_purpose::STANDARD;
-use hysteron::{HeldOut, Model};
-use serde::{Deserialize, Serialize};
+use hysteron::{Budget, HeldOut, Model};
+use serde::de::Visitor;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
 use std::sync::Arc;
 
 const FORMAT: &str = "hysteron-studio";
@@ -19,16 +25,17 @@ const VERSION: u64 = 1;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct File<'f> {
     format: String,
     version: u64,
-    files: Vec<SavedFile>,
+    #[serde(borrow)]
+    files: Vec<SavedFile<'f>>,
     fits: Vec<SavedFit>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedFile {
+struct SavedFile<'f> {
     id: Id,
     name: String,
     roles: Part,
@@ -37,8 +44,59 @@ struct SavedFile {
     steps: Option<Steps>,
     purpose: Purpose,
     marked: Vec<(usize, usize)>,
-    /// The bytes of the file in base64.
-    bytes: String,
+    /// The bytes of the file in base64. Neither is copied, because they are large.
+    #[serde(borrow)]
+    bytes: Base64<'f>,
+}
+
+/// Bytes in base64: as a text that was read, or still to be written.
+enum Base64<'f> {
+    Text(Cow<'f, str>),
+    Bytes(&'f [u8]),
+}
+
+impl Serialize for Base64<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Text(text) => to.serialize_str(text),
+            Self::Bytes(bytes) => to.collect_str(&Base64Display::new(bytes, &STANDARD)),
+        }
+    }
+}
+
+impl<'de: 'f, 'f> Deserialize<'de> for Base64<'f> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Borrowed;
+        impl<'de> Visitor<'de> for Borrowed {
+            type Value = Cow<'de, str>;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("bytes in base64")
+            }
+            fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
+                Ok(Cow::Borrowed(text))
+            }
+            fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
+                Ok(Cow::Owned(text.to_owned()))
+            }
+        }
+        from.deserialize_str(Borrowed).map(Self::Text)
+    }
+}
+
+impl Base64<'_> {
+    fn length(&self) -> u64 {
+        match self {
+            Self::Text(text) => text.len() as u64,
+            Self::Bytes(bytes) => bytes.len() as u64,
+        }
+    }
+
+    fn decoded(&self) -> Result<Vec<u8>, base64::DecodeError> {
+        match self {
+            Self::Text(text) => STANDARD.decode(&**text),
+            Self::Bytes(bytes) => Ok(bytes.to_vec()),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -72,7 +130,18 @@ impl SavedFit {
         })
     }
 
+    /// The fit, each of whose words is one that the session itself could have written.
     pub(super) fn fitted(self) -> Result<Fitted, Fault> {
+        build(&self.options)?;
+        let words = match self.hold_out.as_str() {
+            "" | FILES => self.hold_out,
+            words => part(words)?,
+        };
+        for ids in [&self.files, &self.validated] {
+            if ids.iter().collect::<BTreeSet<_>>().len() < ids.len() {
+                return Err(Fault::session("a fit names a file twice".into()));
+            }
+        }
         let model = Model::from_json(&self.model.to_string())?;
         let record = model.fit.as_ref().and_then(|fit| fit.other.get("hold_out"));
         Ok(Fitted {
@@ -82,7 +151,7 @@ impl SavedFit {
             files: self.files,
             validated: self.validated,
             options: self.options,
-            words: self.hold_out,
+            words,
             advice: self.advice,
             input: self.input,
             output: self.output,
@@ -99,24 +168,27 @@ pub(super) fn is_session(bytes: &[u8]) -> bool {
 }
 
 impl Session {
-    pub(crate) fn to_json(&self) -> String {
-        let file = |file: &Opened| SavedFile {
-            id: file.id,
-            name: file.name.clone(),
-            roles: file.roles.clone(),
-            mend: file.mend,
-            steps: file.steps.clone(),
-            purpose: file.purpose,
-            marked: file.marked.clone(),
-            bytes: STANDARD.encode(&file.bytes),
-        };
+    /// Writes the session, with little memory of its own.
+    pub(crate) fn write_to(&self, out: impl Write) -> std::io::Result<()> {
+        fn of(file: &Opened) -> SavedFile<'_> {
+            SavedFile {
+                id: file.id,
+                name: file.name.clone(),
+                roles: file.roles.clone(),
+                mend: file.mend,
+                steps: file.steps.clone(),
+                purpose: file.purpose,
+                marked: file.marked.clone(),
+                bytes: Base64::Bytes(&file.bytes),
+            }
+        }
         let saved = File {
             format: FORMAT.into(),
             version: VERSION,
-            files: self.files.iter().map(file).collect(),
+            files: self.files.iter().map(of).collect(),
             fits: self.fits.iter().filter_map(SavedFit::of).collect(),
         };
-        serde_json::to_string(&saved).unwrap_or_default()
+        Ok(serde_json::to_writer(out, &saved)?)
     }
 
     /// Puts a saved session in the place of this one. Returns the number of its first file.
@@ -125,24 +197,24 @@ impl Session {
         if !self.running.is_empty() {
             return Err(Fault::missing("a fit is running", "cancel it first"));
         }
-        if bytes.len() as u64 > 2 * self.budget {
-            return Err(Fault::too_large("the session", self.budget));
-        }
         let saved: File = serde_json::from_slice(bytes).map_err(|error| bad(&error))?;
         if saved.version != VERSION {
             return Err(bad(&format!("version {} is not known", saved.version)));
         }
-        let mut new = Session::new(self.budget);
+        if saved.fits.len() > MOST {
+            return Err(bad(&format!("there are more than {MOST} fits")));
+        }
+        let mut new = Session::within(self.memory.clone());
         for file in saved.files {
-            let bytes = STANDARD.decode(&file.bytes).map_err(|error| bad(&error))?;
-            let left = new.room();
-            if bytes.len() as u64 > left {
-                return Err(Fault::too_large(&file.name, left));
-            }
-            let mut opened = Opened::new(file.id, plain_name(&file.name), bytes, left)?;
+            let name = plain_name(&file.name);
+            let mut held = Budget::of(&self.memory);
+            let taken = held.resize(file.bytes.length() / 4 * 3, &name);
+            taken.map_err(|_| Fault::too_large(&name, self.room()))?;
+            let bytes = file.bytes.decoded().map_err(|error| bad(&error))?;
+            let mut opened = Opened::new(file.id, name, bytes, held)?;
             (opened.mend, opened.purpose) = (file.mend, file.purpose);
-            opened.steps = file.steps;
-            opened.set_roles(file.roles, left);
+            opened.steps = file.steps.map(Steps::checked).transpose()?;
+            opened.set_roles(file.roles);
             for span in file.marked {
                 opened.mark(Some(span))?;
             }
@@ -156,6 +228,9 @@ impl Session {
         ids.sort_unstable();
         if ids.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(bad(&"a number is given twice"));
+        }
+        if ids.last().is_some_and(|last| *last > LAST) {
+            return Err(bad(&"a number is too large"));
         }
         // Numbers of this session are not given again: pages may still hold them.
         new.last = ids.last().copied().unwrap_or(0).max(self.last);

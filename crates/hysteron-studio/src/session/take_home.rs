@@ -89,6 +89,15 @@ fn base64<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
 
 impl Session {
     pub(super) fn take(&mut self, take: &Take) -> Result<Download, Fault> {
+        let found = self.taken(take)?;
+        // It goes to the page as text.
+        match self.memory.has(3 * found.bytes.len() as u64) {
+            true => Ok(found),
+            false => Err(Fault::too_large(&found.name, self.room())),
+        }
+    }
+
+    fn taken(&mut self, take: &Take) -> Result<Download, Fault> {
         let text = |name: &str, media, text: String| Download {
             name: name.into(),
             media,
@@ -133,8 +142,19 @@ impl Session {
                 "text/plain",
                 commands::rust(self, self.fitted(fit)?),
             ),
-            Take::Session => text("studio.session.json", "application/json", self.to_json()),
+            Take::Session => Download {
+                name: "studio.session.json".into(),
+                media: "application/json",
+                bytes: self.session_file()?,
+            },
         })
+    }
+
+    fn session_file(&self) -> Result<Vec<u8>, Fault> {
+        let mut file = self.upload();
+        let written = self.write_to(&mut file);
+        written.map_err(|_| Fault::too_large("the session", self.room()))?;
+        Ok(file.into_bytes())
     }
 
     fn c(&self, fit: Id) -> Result<Download, Fault> {
@@ -228,7 +248,7 @@ impl Session {
         }
         let rows = rows(&recording, view.window);
         let rows = rows.filter(|n| view.area.has(&recording, *n));
-        let mut table = TableWriter::in_memory(name)?;
+        let mut table = TableWriter::in_memory(name, &self.memory)?;
         table.row(&names)?;
         for n in rows {
             let mut cells: Vec<f64> = recording.time.iter().map(|time| time[n]).collect();

@@ -1,5 +1,6 @@
 //! Writes a designed input profile as a table.
 
+use crate::data::ReadOptions;
 use crate::data::output::TableWriter;
 use crate::design::Design;
 use crate::error::Result;
@@ -29,7 +30,8 @@ impl Design {
     /// # Errors
     /// [`Error::File`](crate::Error::File).
     pub fn to_csv(&self) -> Result<Vec<u8>> {
-        let mut table = TableWriter::in_memory("profile.csv")?;
+        let memory = ReadOptions::usual_memory().into();
+        let mut table = TableWriter::in_memory("profile.csv", &memory)?;
         self.fill(&mut table)?;
         table.into_bytes()
     }

@@ -107,10 +107,16 @@ const CHANGES: f64 = 0.2;
 /// # Errors
 /// As [`crate::inspect_table`].
 pub fn preview_table(table: &mut TableReader) -> Result<TablePreview> {
+    let count = table.header().len();
+    // Each is there twice: while the rows pass, and for the one who asked.
+    take(table, 2 * count * size_of::<Course>())?;
     let mut columns: Vec<Course> = table.header().iter().map(|_| Course::default()).collect();
     let places: Vec<_> = table.columns().collect();
     let mut rows = 0;
     while table.advance()? {
+        if rows < 2 * PICTURE as u64 {
+            take(table, 2 * count * size_of::<Option<(f64, f64)>>())?;
+        }
         rows += 1;
         for (course, &place) in columns.iter_mut().zip(&places) {
             course.push(table.value(place));
@@ -133,6 +139,14 @@ pub fn preview_table(table: &mut TableReader) -> Result<TablePreview> {
         pictures: columns.iter().map(Course::picture).collect(),
         roles,
     })
+}
+
+/// Takes memory for the pictures of all columns.
+fn take(table: &mut TableReader, bytes: usize) -> Result<()> {
+    let taken = table
+        .budget()
+        .take(bytes as u128, "a preview of its columns");
+    taken.map_err(|problem| table.fault_at(None, None, problem))
 }
 
 /// What is kept of a column while its rows pass.

@@ -29,8 +29,8 @@ pub use output::{
     discard_unfinished, refuse_one_file,
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
-pub use printable::{printable, shell_word};
+pub use printable::{printable, python_literal, shell_word};
 pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
 pub(crate) use recording::{Group, Groups};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
-pub use table::{Column, ReadOptions, Remark, Row, TableReader};
+pub use table::{Budget, Column, Growing, Memory, ReadOptions, Remark, Row, TableReader};

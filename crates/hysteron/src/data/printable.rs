@@ -1,4 +1,4 @@
-//! Makes text from files and names safe to show to people, and to paste into a shell.
+//! Makes text from files and names safe to show to people, and to paste into a shell or a program.
 
 use std::borrow::Cow;
 
@@ -28,7 +28,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// The text as one word of a POSIX shell.
+/// The text as one word of a POSIX shell. No argument of a program can hold the character 0, which is
+/// left out.
 ///
 /// ```
 /// assert_eq!(hysteron::shell_word("data.csv"), "data.csv");
@@ -39,8 +40,30 @@ pub fn shell_word(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:,%+=".contains(c);
     match !text.is_empty() && !text.starts_with('-') && text.chars().all(plain) {
         true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
+        false => format!("'{}'", text.replace('\0', "").replace('\'', "'\\''")),
     }
+}
+
+/// The text as a literal of Python.
+///
+/// ```
+/// assert_eq!(hysteron::python_literal("my wire's.csv"), r#""my wire's.csv""#);
+/// assert_eq!(hysteron::python_literal("a\"b\\c\n\u{202e}"), r#""a\"b\\c\x0a\U0000202e""#);
+/// ```
+#[must_use]
+pub fn python_literal(text: &str) -> String {
+    let mut literal = String::with_capacity(text.len() + 2);
+    literal.push('"');
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => literal.extend(['\\', character]),
+            '\0'..'\u{20}' | '\u{7f}' => literal += &format!("\\x{:02x}", u32::from(character)),
+            _ if is_active(character) => literal += &format!("\\U{:08x}", u32::from(character)),
+            _ => literal.push(character),
+        }
+    }
+    literal.push('"');
+    literal
 }
 
 /// Whether a character controls the display instead of being shown.

@@ -8,10 +8,11 @@ use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
 use crate::identify::stages::{self, Asked};
+use crate::identify::weights::problem::{check_gram, check_options};
 use crate::model::{Model, Sign, Smooth, Solver, Start};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use hysteron_core::Operator;
+use hysteron_core::{Operator, Plane};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -269,6 +270,24 @@ impl<'a> Fit<'a> {
     pub fn progress(mut self, progress: Progress<'a>) -> Self {
         self.progress = progress;
         self
+    }
+
+    /// Checks the options by themselves, as [`Fit::run`] does. Nothing is computed.
+    ///
+    /// ```
+    /// use hysteron::Fit;
+    /// assert!(Fit::new().levels(20).bootstrap(200).check().is_ok());
+    /// assert!(Fit::new().levels(1_000_000).check().is_err());
+    /// assert!(Fit::new().bootstrap(99_999_999).check().is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::Core`] and [`crate::Error::Fit`] for a value out of range, or levels that take
+    /// too much memory.
+    pub fn check(&self) -> Result<()> {
+        let plane = Plane::new(0.0, 1.0, self.options.levels)?;
+        check_gram(plane.operators())?;
+        check_options(&self.options)
     }
 
     /// Identifies the model. Several recordings are parts of one experiment, each with its own

@@ -11,11 +11,11 @@ use super::parquet::Kind;
 use super::table::Sink;
 use super::unfinished::bare;
 use crate::data::cells::push_row;
-use crate::data::table::{Block, Splitter};
+use crate::data::table::{Block, Growing, Memory, Splitter};
 use std::collections::HashSet;
 use std::fs::File;
 use std::hash::Hash;
-use std::io::{self, BufReader, Cursor, Read, Seek, Write};
+use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::Path;
 
 /// The stored rows. The first one is the header.
@@ -29,7 +29,7 @@ pub(super) struct Spool {
 
 enum Store {
     File(File),
-    Memory(Vec<u8>),
+    Memory(Growing),
 }
 
 impl Store {
@@ -40,7 +40,7 @@ impl Store {
                 file.rewind()?;
                 Box::new(BufReader::new(file))
             }
-            Store::Memory(bytes) => Box::new(Cursor::new(bytes)),
+            Store::Memory(held) => Box::new(held.read()),
         })
     }
 }
@@ -68,8 +68,8 @@ impl Spool {
         Ok(Self::of(Store::File(file)))
     }
 
-    pub(super) fn in_memory() -> Self {
-        Self::of(Store::Memory(Vec::new()))
+    pub(super) fn in_memory(account: &Memory) -> Self {
+        Self::of(Store::Memory(Growing::new(account)))
     }
 
     fn of(store: Store) -> Self {

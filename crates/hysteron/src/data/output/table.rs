@@ -9,7 +9,7 @@ use super::sign::is_our_table;
 use super::splice::{Original, Splice};
 use super::spool::Spool;
 use super::{AtomicFile, Destination, Own};
-use crate::data::table::{Block, TableReader};
+use crate::data::table::{Block, Growing, Memory, TableReader};
 use crate::error::{Error, Result};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub(crate) enum Needs {
 pub(super) enum Sink {
     Stdout(io::Stdout),
     File(AtomicFile),
-    Memory(Vec<u8>),
+    Memory(Growing),
 }
 
 impl Write for Sink {
@@ -147,11 +147,12 @@ impl TableWriter {
         Ok(Self { path, to })
     }
 
-    /// A table in memory, in the format that the ending of `name` decides. No file is touched.
+    /// A table in memory, within an account, in the format that the ending of `name` decides. No file
+    /// is touched.
     ///
     /// ```
-    /// use hysteron::TableWriter;
-    /// let mut table = TableWriter::in_memory("run.csv")?;
+    /// use hysteron::{Memory, TableWriter};
+    /// let mut table = TableWriter::in_memory("run.csv", &Memory::new(1 << 20))?;
     /// table.row(["temperature [degC]", "lift"])?;
     /// table.row(["20", "0.5"])?;
     /// assert_eq!(table.into_bytes()?, b"temperature [degC],lift\n20,0.5\n");
@@ -160,16 +161,16 @@ impl TableWriter {
     ///
     /// # Errors
     /// [`Error::File`] for a name with the ending of a format that cannot be written.
-    pub fn in_memory(name: &str) -> Result<Self> {
+    pub fn in_memory(name: &str, account: &Memory) -> Result<Self> {
         let path = PathBuf::from(name);
         let columnar = by_ending(&path).map_err(|source| Error::File {
             path: path.clone(),
             source,
         })?;
-        let memory = Sink::Memory(Vec::new());
+        let memory = Sink::Memory(Growing::new(account));
         let to = match columnar {
             None => Format::Csv(Csv::new(memory)),
-            Some(format) => Format::Spooled(Spool::in_memory(), memory, format),
+            Some(format) => Format::Spooled(Spool::in_memory(account), memory, format),
         };
         Ok(Self { path, to })
     }
@@ -304,7 +305,7 @@ impl TableWriter {
     /// [`Error::File`], as for two columns of one name in Parquet.
     pub fn into_bytes(self) -> Result<Vec<u8>> {
         match self.end()? {
-            Some(Sink::Memory(bytes)) => Ok(bytes),
+            Some(Sink::Memory(bytes)) => Ok(bytes.into_bytes()),
             Some(Sink::Stdout(_) | Sink::File(_)) | None => Ok(Vec::new()),
         }
     }

@@ -4,8 +4,7 @@ use crate::data::recording::columns::Columns;
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::{Samples, interpolate};
-use crate::data::table::ReadOptions;
-use crate::data::table::{Column, TableReader};
+use crate::data::table::{Column, Memory, ReadOptions, TableReader};
 use crate::error::Result;
 use crate::recording::{Origin, Quantity, Recording, Source};
 use crate::remedy::{Remedy, Setting};
@@ -59,9 +58,9 @@ impl Recording {
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Vec<Note>)> {
-        let options = options.into();
-        let table = TableReader::open_recording(path, None, options)?;
-        let (recording, _, notes) = Self::read_as(table, columns, options, false)?;
+        let ReadOptions { repair, max_memory } = options.into();
+        let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
+        let (recording, _, notes) = Self::read_as(table, columns, repair, false)?;
         Ok((recording, notes))
     }
 
@@ -76,9 +75,25 @@ impl Recording {
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Vec<Note>)> {
-        let options = options.into();
-        let table = TableReader::open_recording(Path::new(name), Some(bytes.into()), options)?;
-        let (recording, _, notes) = Self::read_as(table, columns, options, false)?;
+        let ReadOptions { repair, max_memory } = options.into();
+        Self::from_bytes_within(name, bytes, columns, repair, &max_memory.into())
+    }
+
+    /// As [`Recording::from_bytes`], within an account of memory that others draw from, too. What is
+    /// returned is no longer counted there.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn from_bytes_within(
+        name: &str,
+        bytes: impl Into<Bytes>,
+        columns: Columns<'_>,
+        repair: Repair,
+        memory: &Memory,
+    ) -> Result<(Self, Vec<Note>)> {
+        let held = Some(bytes.into());
+        let table = TableReader::open_recording(Path::new(name), held, repair, memory)?;
+        let (recording, _, notes) = Self::read_as(table, columns, repair, false)?;
         Ok((recording, notes))
     }
 
@@ -91,19 +106,18 @@ impl Recording {
         columns: Columns<'_>,
         options: impl Into<ReadOptions>,
     ) -> Result<(Self, Others, Vec<Note>)> {
-        let options = options.into();
-        let table = TableReader::open_recording(path, None, options)?;
-        let (recording, others, notes) = Self::read_as(table, columns, options, true)?;
+        let ReadOptions { repair, max_memory } = options.into();
+        let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
+        let (recording, others, notes) = Self::read_as(table, columns, repair, true)?;
         Ok((recording, others.unwrap_or_default(), notes))
     }
 
     fn read_as(
         mut table: TableReader,
         columns: Columns<'_>,
-        options: ReadOptions,
+        repair: Repair,
         with_others: bool,
     ) -> Result<(Self, Option<Others>, Vec<Note>)> {
-        let repair = options.repair;
         let path = table.path().to_owned();
         refuse_one_name(&table, columns)?;
         let pairs = [columns.input, columns.output].map(|name| table.pair(name));

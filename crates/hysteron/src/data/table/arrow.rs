@@ -162,9 +162,8 @@ impl TableReader {
     pub(in crate::data) fn batches(&self) -> Result<Option<Batches>, String> {
         match self.is_arrow {
             false => Ok(None),
-            true => {
-                batches(&self.path, self.held.as_ref(), self.budget).map(|(found, _)| Some(found))
-            }
+            true => batches(&self.path, self.held.as_ref(), self.budget.another())
+                .map(|(found, _)| Some(found)),
         }
     }
 }

@@ -120,14 +120,15 @@ pub(super) fn open(
         }
         Format::Parquet => {
             let opened = match held {
-                Some(bytes) => parquet::open_bytes(bytes, *budget, (labels, wanted)),
-                None => parquet::open(path, *budget, (labels, wanted)),
+                Some(bytes) => parquet::open_bytes(bytes, budget.another(), (labels, wanted)),
+                None => parquet::open(path, budget.another(), (labels, wanted)),
             };
             let opened = opened.map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
         Format::Arrow => {
-            let (batches, length) = arrow::batches(path, held, *budget).map_err(refused)?;
+            let (batches, length) =
+                arrow::batches(path, held, budget.another()).map_err(refused)?;
             let opened = arrow::open(batches, length, (labels, wanted)).map_err(refused)?;
             (opened.header, opened.numbers.with_times(opened.times))
         }
@@ -136,8 +137,9 @@ pub(super) fn open(
             mat::table(variables, budget).map_err(refused)?
         }
         Format::MatV5 => {
+            // Bytes that are there already are their holder's.
             let size = match held {
-                Some(bytes) => bytes.len() as u64,
+                Some(_) => 0,
                 None => std::fs::metadata(path).map_err(failed)?.len(),
             };
             budget.take(u128::from(size), "the file").map_err(refused)?;

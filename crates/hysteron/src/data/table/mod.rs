@@ -13,6 +13,7 @@ mod columns;
 mod format;
 mod hashing;
 mod labels;
+mod machine;
 mod mat;
 mod names;
 mod numbers;
@@ -23,12 +24,12 @@ mod text;
 mod time;
 mod wanted;
 
+pub use budget::{Budget, Growing, Memory};
 pub use options::ReadOptions;
 pub use remark::Remark;
 
 pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
 pub(crate) use block::Block;
-pub(crate) use budget::Budget;
 pub(crate) use labels::Label;
 
 use crate::data::recording::Places;
@@ -108,17 +109,18 @@ impl TableReader {
     /// # Errors
     /// [`Error::File`]; [`Error::Recording`] for an empty file, an invalid header, a file that is
     /// not of the format that it seems to be, or one that needs more memory than
-    /// [`ReadOptions::MAX_MEMORY`].
+    /// [`ReadOptions::usual_memory`].
     pub fn open(path: &Path) -> Result<Self> {
-        Self::open_with(path, ReadOptions::MAX_MEMORY)
+        Self::open_with(path, ReadOptions::usual_memory())
     }
 
-    /// As [`TableReader::open`], with a limit of `max_memory` bytes for the contents of the file.
+    /// As [`TableReader::open`], with a limit for the contents of the file: a number of bytes, or an
+    /// account that others draw from, too.
     ///
     /// # Errors
     /// As [`TableReader::open`].
-    pub fn open_with(path: &Path, max_memory: u64) -> Result<Self> {
-        Self::open_as(path, None, max_memory, None, None, None)
+    pub fn open_with(path: &Path, memory: impl Into<Memory>) -> Result<Self> {
+        Self::open_as(path, None, &memory.into(), None, None, None)
     }
 
     /// As [`TableReader::open_with`], for the bytes of a file. The ending of `name` counts as that
@@ -133,20 +135,25 @@ impl TableReader {
     ///
     /// # Errors
     /// As [`TableReader::open`].
-    pub fn from_bytes(name: &str, bytes: impl Into<Bytes>, max_memory: u64) -> Result<Self> {
+    pub fn from_bytes(
+        name: &str,
+        bytes: impl Into<Bytes>,
+        memory: impl Into<Memory>,
+    ) -> Result<Self> {
         let held = Some(bytes.into());
-        Self::open_as(Path::new(name), held, max_memory, None, None, None)
+        Self::open_as(Path::new(name), held, &memory.into(), None, None, None)
     }
 
     /// As [`TableReader::open`], for a recording: computes the hash for [`TableReader::sha256`],
-    /// and takes the options for bad rows.
+    /// and takes what is done with bad rows.
     pub(crate) fn open_recording(
         path: &Path,
         held: Option<Bytes>,
-        options: ReadOptions,
+        repair: Repair,
+        memory: &Memory,
     ) -> Result<Self> {
-        let (repair, hash) = (Some(options.repair), Some(Hash::default()));
-        Self::open_as(path, held, options.max_memory, repair, hash, None)
+        let (repair, hash) = (Some(repair), Some(Hash::default()));
+        Self::open_as(path, held, memory, repair, hash, None)
     }
 
     /// As [`TableReader::open`], for a table of several recordings, told apart by the column
@@ -155,18 +162,18 @@ impl TableReader {
     pub(crate) fn open_labelled(path: &Path, max_memory: u64, label: &str) -> Result<Self> {
         let labels = labels::Labels::new(label);
         let repair = Some(Repair::Mend);
-        Self::open_as(path, None, max_memory, repair, None, Some(labels))
+        Self::open_as(path, None, &max_memory.into(), repair, None, Some(labels))
     }
 
     fn open_as(
         path: &Path,
         held: Option<Bytes>,
-        max_memory: u64,
+        memory: &Memory,
         repair: Option<Repair>,
         hash: Option<Hash>,
         labels: Option<labels::Labels>,
     ) -> Result<Self> {
-        let mut budget = Budget::new(max_memory);
+        let mut budget = Budget::of(memory);
         let wanted = Wanted::default();
         let format::Opened {
             header,

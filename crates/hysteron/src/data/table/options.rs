@@ -1,5 +1,6 @@
 //! Options for reading a file.
 
+use super::machine::half_of_what_is_free;
 use crate::data::recording::Repair;
 
 /// Options for reading a recording or a table from a file.
@@ -7,7 +8,7 @@ use crate::data::recording::Repair;
 /// | field | default | range | purpose |
 /// | --- | --- | --- | --- |
 /// | `repair` | refuse | refuse, mend | what to do with rows that cannot be used |
-/// | `max_memory` | 4 GiB | any | largest memory for the contents of the file, bytes |
+/// | `max_memory` | half of what is free | any | largest memory for the contents of the file, bytes |
 ///
 /// A [`Repair`] converts into options with the defaults for all other fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,15 +21,20 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Default of `max_memory`: 4 GiB.
-    pub const MAX_MEMORY: u64 = 4 << 30;
+    /// Default of `max_memory`: half of the memory that was free when this process first asked.
+    /// That is the least of what Linux says to be available, what the control groups of the
+    /// process may take, and what its limit of addresses leaves. On other systems: 2 GiB.
+    #[must_use]
+    pub fn usual_memory() -> u64 {
+        half_of_what_is_free()
+    }
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             repair: Repair::default(),
-            max_memory: Self::MAX_MEMORY,
+            max_memory: Self::usual_memory(),
         }
     }
 }

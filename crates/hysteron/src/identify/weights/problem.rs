@@ -33,7 +33,7 @@ pub(crate) struct Fitted {
 
 impl<'a> Problem<'a> {
     pub(crate) fn new(recordings: &'a [Recording], options: &FitOptions) -> Result<Self> {
-        check(options)?;
+        check_options(options)?;
         let experiment = Experiment::new(recordings, options)?;
         if options.offset.is_some() && experiment.load_range.is_some() {
             return Err(Error::Fit(
@@ -221,7 +221,8 @@ pub(crate) fn check_gram(columns: usize) -> Result<()> {
     )))
 }
 
-fn check(options: &FitOptions) -> Result<()> {
+/// Checks what the data do not decide.
+pub(crate) fn check_options(options: &FitOptions) -> Result<()> {
     let FitOptions {
         offset,
         smooth,

@@ -58,7 +58,10 @@ fn unpacked(compressed: Elements<'_>, budget: &mut Budget) -> Result<Vec<u8>, St
         return Err(DAMAGED.into());
     }
     budget.take(length as u128, "a compressed variable")?;
-    let mut unpacked = Vec::with_capacity(length);
+    let mut unpacked = Vec::new();
+    unpacked
+        .try_reserve_exact(length)
+        .map_err(|error| error.to_string())?;
     unpacked.extend_from_slice(&tag);
     let mut rest = decoder.take(size as u64);
     rest.read_to_end(&mut unpacked).map_err(|_| DAMAGED)?;

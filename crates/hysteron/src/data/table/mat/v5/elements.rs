@@ -79,7 +79,8 @@ impl<'b> Elements<'b> {
 
     /// The numbers of an element. `count` is the result of [`Elements::count`].
     pub(super) fn values(&self, kind: u32, data: &[u8], count: usize) -> Option<Vec<f64>> {
-        let mut values = Vec::with_capacity(count);
+        let mut values = Vec::new();
+        values.try_reserve_exact(count).ok()?;
         macro_rules! numbers {
             ($type:ty) => {
                 for bytes in data.chunks_exact(size_of::<$type>()) {
