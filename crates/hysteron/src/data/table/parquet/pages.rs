@@ -3,8 +3,9 @@
 use super::claims::{Claims, ReadSeek};
 use super::{caught, check_claims, refused};
 use crate::data::table::budget::Budget;
+use parquet::basic::ConvertedType as C;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::DataType;
+use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -51,6 +52,12 @@ impl Pages {
             let group = self.reader.get_row_group(group)?;
             for column in columns {
                 use ColumnReader as R;
+                let converted = group
+                    .metadata()
+                    .column(column)
+                    .column_descr()
+                    .converted_type();
+                let is_text = matches!(converted, C::UTF8 | C::ENUM | C::JSON);
                 match group.get_column_reader(column)? {
                     R::BoolColumnReader(reader) => read(reader, rows),
                     R::Int32ColumnReader(reader) => read(reader, rows),
@@ -58,6 +65,7 @@ impl Pages {
                     R::Int96ColumnReader(reader) => read(reader, rows),
                     R::FloatColumnReader(reader) => read(reader, rows),
                     R::DoubleColumnReader(reader) => read(reader, rows),
+                    R::ByteArrayColumnReader(reader) if is_text => read_as(reader, rows, text),
                     R::ByteArrayColumnReader(reader) => read(reader, rows),
                     R::FixedLenByteArrayColumnReader(reader) => read(reader, rows),
                 }?;
@@ -68,12 +76,26 @@ impl Pages {
 }
 
 /// Reads the records of a column, and forgets them. There have to be as many as rows.
-fn read<T: DataType>(mut reader: ColumnReaderImpl<T>, rows: usize) -> Result<(), ParquetError> {
+fn read<T: DataType>(reader: ColumnReaderImpl<T>, rows: usize) -> Result<(), ParquetError> {
+    read_as(reader, rows, |_| Ok(()))
+}
+
+/// Text has to be UTF-8.
+fn text(value: &ByteArray) -> Result<(), ParquetError> {
+    value.as_utf8().map(|_| ())
+}
+
+fn read_as<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    rows: usize,
+    check: impl Fn(&T::T) -> Result<(), ParquetError>,
+) -> Result<(), ParquetError> {
     let (mut values, mut defined, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
     let mut found = 0;
     loop {
         let levels = (Some(&mut defined), Some(&mut repeated));
         let (records, ..) = reader.read_records(RECORDS, levels.0, levels.1, &mut values)?;
+        values.iter().try_for_each(&check)?;
         found += records;
         if records == 0 {
             break;
