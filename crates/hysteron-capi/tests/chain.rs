@@ -205,6 +205,7 @@ fn by_load(seed: u64, parts: usize, alone: bool) -> String {
         |count: usize| -> Vec<f64> { (0..count).map(|_| random.random_range(0.0..2.0)).collect() };
     let part = |_| json!({"offset": numbers(1)[0], "weights": numbers(6)});
     file["load"]["parts"] = (0..parts).map(part).collect();
+    at_middle(&mut file);
     if alone {
         for stage in ["thermal", "drive", "spacing", "creep", "lag", "start"] {
             file.as_object_mut().unwrap().remove(stage);
@@ -367,4 +368,19 @@ fn parts_are_checked() {
         own.invert(0.5, 0.1, 60.0, null()).0,
         HYSTERON_NEGATIVE_WEIGHTS
     );
+}
+
+/// Weights and offset of a file that are those in the middle of its parts.
+fn at_middle(file: &mut serde_json::Value) {
+    let parts = file["load"]["parts"].as_array().unwrap().clone();
+    let mut factors = vec![0.0; parts.len()];
+    hysteron_core::bernstein(0.5, &mut factors);
+    let sum = |of: &dyn Fn(&serde_json::Value) -> f64| -> f64 {
+        let pairs = factors.iter().zip(&parts);
+        pairs.map(|(f, part)| f * of(part)).sum()
+    };
+    let count = parts[0]["weights"].as_array().unwrap().len();
+    let weight = |n: usize| sum(&|part| part["weights"][n].as_f64().unwrap());
+    file["weights"] = (0..count).map(weight).collect();
+    file["output"]["offset"] = sum(&|part| part["offset"].as_f64().unwrap()).into();
 }

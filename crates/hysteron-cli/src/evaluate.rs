@@ -120,8 +120,14 @@ fn to_text(evaluation: &Evaluation, recording: &Recording) -> String {
     if let Err(reason) = &evaluation.inverse {
         result += &format!("\nno inverse: {reason}");
     }
-    if evaluation.clipped > 0 {
-        result += &format!("\n{} inputs outside the plane", evaluation.clipped);
+    let samples = recording.len();
+    match evaluation.clipped {
+        0 => result,
+        // These errors are about inputs that the model does not know.
+        clipped if 5 * clipped > samples => format!(
+            "{clipped} of {samples} inputs are outside the plane: the model was not made for this \
+             recording, and the errors say little\n{result}"
+        ),
+        clipped => result + &format!("\n{clipped} inputs outside the plane"),
     }
-    result
 }

@@ -40,6 +40,9 @@ pub trait Real:
     const INFINITY: Self;
     /// Distance from one to the next larger number: 2⁻²³ for `f32`, 2⁻⁵² for `f64`.
     const EPSILON: Self;
+    /// The largest constant of a stage: its square, and its products with factors of up to a
+    /// million, are numbers too. 10¹⁵ for `f32`, 10¹⁴⁰ for `f64`.
+    const LARGEST: Self;
 
     /// The number nearest to `n`, for `n < 2³¹`.
     fn from_index(n: usize) -> Self;
@@ -82,13 +85,14 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ty, $round:expr, $exp:path) => {
+    ($t:ty, $round:expr, $exp:path, $largest:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
             const INFINITY: Self = <$t>::INFINITY;
             const EPSILON: Self = <$t>::EPSILON;
+            const LARGEST: Self = $largest;
 
             #[inline(always)]
             fn from_index(n: usize) -> Self {
@@ -136,5 +140,5 @@ macro_rules! real {
         }
     };
 }
-real!(f32, 12_582_912.0, libm::expf); // 1.5 · 2²³
-real!(f64, 6_755_399_441_055_744.0, libm::exp); // 1.5 · 2⁵²
+real!(f32, 12_582_912.0, libm::expf, 1e15); // 1.5 · 2²³
+real!(f64, 6_755_399_441_055_744.0, libm::exp, 1e140); // 1.5 · 2⁵²

@@ -686,7 +686,9 @@ fn constants_out_of_range_are_refused_by_name() {
         (&[0.0, 1.0, 1.0 + 8.0 * ulp], true),
         (&[-1.0 - 2.0 * ulp, -1.0, 0.0], false),
         (&[-1.0 - 8.0 * ulp, -1.0, 0.0], true),
-        (&[1e-300, 2e-300, 3e-300], true),
+        (&[1e-100, 2e-100, 3e-100], true),
+        // A slope of 1e300 is beyond the bound of slopes.
+        (&[1e-300, 2e-300, 3e-300], false),
     ] {
         let stages = Stages {
             axis: Axis { spacing, ..axis },

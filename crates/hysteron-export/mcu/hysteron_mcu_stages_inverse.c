@@ -3,6 +3,7 @@
 #include "hysteron_mcu_stages_internal.h"
 
 static const hys_real EIGHT_EPSILON = (hys_real)8 * HYS_EPSILON;
+static const hys_real THOUSANDTH = (hys_real)1 / (hys_real)1000;
 
 static hys_real magnitude(hys_real x)
 {
@@ -191,7 +192,7 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     const hys_actuator *actuator;
     const hys_model *model;
     loaded_axis at;
-    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets;
+    hys_real aim, gain, input, to, size, slack, reached, error, rounding, offsets, most;
     int found = HYS_LIMITED;
     int code = usable_actuator(state);
     if (code != HYS_OK) {
@@ -242,7 +243,8 @@ int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int he
     rounding = gain * (model->rounding + model->total * (slack / model->step));
     error = hys_max(reached - target, target - reached);
     offsets = magnitude(offset_of(state)) + magnitude(at.offset) + magnitude(target);
-    if (error <= hys_max(tolerance, ZERO) + rounding + EIGHT_EPSILON * offsets) {
+    most = gain * (own_sum(model, model->total) - own_sum(model, ZERO)) * THOUSANDTH;
+    if (error <= hys_max(tolerance, ZERO) + hys_min(rounding + EIGHT_EPSILON * offsets, most)) {
         found = HYS_REACHED;
     } else {
         int beyond = reach_of(state, &at, target, tolerance);

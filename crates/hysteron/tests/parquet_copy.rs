@@ -6,6 +6,7 @@ use hysteron::{
     simulate_table,
 };
 use parquet::basic::Compression;
+use parquet::column::writer::ColumnCloseResult;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type, Int64Type};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -13,6 +14,8 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::record::Field;
 use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::Type;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::fs::{self, File};
 use std::path::Path;
 use std::sync::Arc;
@@ -317,4 +320,117 @@ fn csv_becomes_parquet_with_the_kinds_that_its_cells_have() {
         assert!(matches!(row[4], (ref name, Field::Double(_)) if name == "output_model"));
     }
     assert_eq!(rows.len(), 3);
+}
+
+/// Simulates `source` into `out`, and says what was wrong.
+fn simulated(source: &Path, out: &Path) -> hysteron::Result<()> {
+    let mut table = TableReader::open(source)?;
+    let what = Simulate {
+        input: "x",
+        around: Default::default(),
+        band: None,
+    };
+    let writer = TableWriter::create(Some(out.into()))?;
+    let model = model();
+    simulate_table(
+        &model,
+        model.start(),
+        &mut table,
+        what,
+        Some(writer),
+        |_| {},
+    )
+    .map(|_| ())
+}
+
+/// What is damaged in a column that the command does not read is refused, or can be read: no copy
+/// is damaged as its source is.
+#[test]
+fn a_damaged_file_is_not_copied() {
+    let folder = tempfile::tempdir().unwrap();
+    let [source, out] = ["in.parquet", "out.parquet"].map(|name| folder.path().join(name));
+    let (mut refused, mut copied) = (0, 0);
+    for (seed, codec) in [
+        Compression::UNCOMPRESSED,
+        Compression::SNAPPY,
+        Compression::ZSTD(Default::default()),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        write(&source, &[40, 60], codec, seed != 1);
+        let whole = fs::read(&source).unwrap();
+        let mut random = ChaCha8Rng::seed_from_u64(seed as u64);
+        for case in 0..250 {
+            let mut bytes = whole.clone();
+            for _ in 0..random.random_range(1..4) {
+                let at = random.random_range(4..bytes.len() - 8);
+                bytes[at] = random.random::<u32>() as u8;
+            }
+            fs::write(&source, &bytes).unwrap();
+            let _ = fs::remove_file(&out);
+            match simulated(&source, &out) {
+                Ok(()) => {
+                    let copy = std::panic::catch_unwind(|| read(&out));
+                    assert_eq!(
+                        copy.map(|(_, rows)| rows.len()).unwrap_or(0),
+                        100,
+                        "{codec} {case}"
+                    );
+                    copied += 1;
+                }
+                Err(_) => {
+                    assert!(!out.exists(), "{codec} {case}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    println!("{refused} refused, {copied} copied");
+    assert!(
+        refused > 100 && copied > 50,
+        "{refused} refused, {copied} copied"
+    );
+}
+
+/// A codec that is not read is told by its name, and not as damage.
+#[test]
+fn a_codec_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plain, packed, out] =
+        ["plain.parquet", "in.parquet", "out.parquet"].map(|name| folder.path().join(name));
+    write(&plain, &[10], Compression::UNCOMPRESSED, false);
+    for (codec, name) in [
+        (Compression::BROTLI(Default::default()), "Brotli"),
+        (Compression::LZO, "LZO"),
+    ] {
+        // The same pages, said to be packed.
+        let reader = SerializedFileReader::new(File::open(&plain).unwrap()).unwrap();
+        let schema = reader
+            .metadata()
+            .file_metadata()
+            .schema_descr()
+            .root_schema_ptr();
+        let file = File::create(&packed).unwrap();
+        let mut writer = SerializedFileWriter::new(file, schema, Default::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        for column in reader.metadata().row_group(0).columns() {
+            let metadata = column.clone().into_builder().set_compression(codec);
+            let stored = ColumnCloseResult {
+                bytes_written: column.compressed_size() as u64,
+                rows_written: 10,
+                metadata: metadata.build().unwrap(),
+                bloom_filter: None,
+                column_index: None,
+                offset_index: None,
+            };
+            group
+                .append_column(&File::open(&plain).unwrap(), stored)
+                .unwrap();
+        }
+        group.close().unwrap();
+        writer.close().unwrap();
+        let said = simulated(&packed, &out).unwrap_err().to_string();
+        assert!(said.contains(name) && !said.contains("damaged"), "{said}");
+    }
 }

@@ -46,6 +46,7 @@ fn by_load(seed: u64, count: usize, alone: bool) -> Model {
     let part =
         |weights| serde_json::json!({"offset": rng.random_range(2.0..4.0), "weights": weights});
     file["load"]["parts"] = parts.into_iter().map(part).collect();
+    at_middle(&mut file);
     if alone {
         for stage in ["thermal", "drive", "spacing", "creep", "lag", "start"] {
             file.as_object_mut().unwrap().remove(stage);
@@ -224,4 +225,19 @@ fn loads_outside_act_as_the_ends() {
         };
         assert_eq!(at(load), at(end));
     }
+}
+
+/// Weights and offset of a file that are those in the middle of its parts.
+fn at_middle(file: &mut serde_json::Value) {
+    let parts = file["load"]["parts"].as_array().unwrap().clone();
+    let mut factors = vec![0.0; parts.len()];
+    hysteron_core::bernstein(0.5, &mut factors);
+    let sum = |of: &dyn Fn(&serde_json::Value) -> f64| -> f64 {
+        let pairs = factors.iter().zip(&parts);
+        pairs.map(|(f, part)| f * of(part)).sum()
+    };
+    let count = parts[0]["weights"].as_array().unwrap().len();
+    let weight = |n: usize| sum(&|part| part["weights"][n].as_f64().unwrap());
+    file["weights"] = (0..count).map(weight).collect();
+    file["output"]["offset"] = sum(&|part| part["offset"].as_f64().unwrap()).into();
 }

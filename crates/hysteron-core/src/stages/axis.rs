@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::plane::Plane;
 use crate::scalar::Real;
+use crate::stages::limits::{is_factor, is_size, is_slope};
 
 /// What a load `σ` does: curves over the load, piecewise linear between the loads `loads`.
 ///
@@ -123,22 +124,22 @@ impl<T: Real> Load<'_, T> {
 
     fn check(&self) -> Result<(), Error> {
         let fault = |stage| Err(Error::Stage { stage });
-        let finite = |values: &[T]| values.iter().all(|v| v.is_finite());
-        let ascending = |values: &[T]| values.windows(2).all(|pair| pair[0] < pair[1]);
-        if !(finite(self.loads) && ascending(self.loads)) {
+        let sizes = |values: &[T]| values.iter().all(|v| is_size(*v));
+        // Curves are divided by these distances.
+        let ascending = |values: &[T]| values.windows(2).all(|pair| is_slope(pair[1] - pair[0]));
+        if !(sizes(self.loads) && ascending(self.loads)) {
             return fault("loads");
         }
-        let fits = |values: &[T]| {
-            (values.is_empty() || values.len() == self.loads.len()) && finite(values)
-        };
-        let positive = |values: &[T]| values.iter().all(|v| *v > T::ZERO);
+        let fits =
+            |values: &[T]| (values.is_empty() || values.len() == self.loads.len()) && sizes(values);
+        let factors = |values: &[T]| values.iter().all(|v| is_factor(*v));
         if !fits(self.shifts) {
             return fault("shifts");
         }
-        if !(fits(self.scales) && positive(self.scales)) {
+        if !(fits(self.scales) && factors(self.scales)) {
             return fault("scales");
         }
-        if !(fits(self.gains) && positive(self.gains)) {
+        if !(fits(self.gains) && factors(self.gains)) {
             return fault("gains");
         }
         if !fits(self.offsets) {
@@ -233,20 +234,25 @@ impl<T: Real> Axis<'_, T> {
         T::from_index(8) * T::EPSILON * (effective * slope + ends)
     }
 
-    /// Checks lengths, order and finiteness.
+    /// Checks lengths, order and size.
     pub(crate) fn check(&self, plane: &Plane<T>) -> Result<(), Error> {
         self.load.check()?;
-        // Corners that are several rounding units apart have finite slopes.
+        // Corners that are several rounding units apart do not coincide; those that both are about
+        // zero have a slope of their own.
         let apart = |pair: &[T]| {
             let size = pair[0].max(-pair[0]).max(pair[1].max(-pair[1]));
             pair[1] - pair[0] > size * T::EPSILON * T::from_index(4)
+                && is_slope(plane.step() / (pair[1] - pair[0]))
         };
         let placed = self.spacing.len() == plane.levels() + 1
-            && self.spacing.iter().all(|corner| corner.is_finite())
+            && self.spacing.iter().all(|corner| is_size(*corner))
             && self.spacing.windows(2).all(apart);
-        match self.spacing.is_empty() || placed {
+        if !(self.spacing.is_empty() || placed) {
+            return Err(Error::Stage { stage: "spacing" });
+        }
+        match is_size(plane.bottom()) && is_size(plane.max()) && is_slope(plane.step()) {
             true => Ok(()),
-            false => Err(Error::Stage { stage: "spacing" }),
+            false => Err(Error::Stage { stage: "plane" }),
         }
     }
 }

@@ -2,12 +2,14 @@
 
 use crate::branch::Turn;
 use crate::error::Error;
+use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::{Model, Output};
 use crate::scalar::Real;
 use crate::stages::after::{Creep, Fade, MAX_CREEP, Past};
 use crate::stages::axis::{Axis, Loaded};
 use crate::stages::body::{Body, Decay};
+use crate::stages::limits::{is_share, is_size, is_slope, is_time};
 use crate::state::State;
 
 /// The constants of all stages around the operators of a [`Model`]. Each stage can be left out.
@@ -153,40 +155,48 @@ impl<T: Real> Stages<'_, T> {
         falling: false,
     };
 
-    /// Checks the constants of all stages, for operators on the plane of `model`.
+    /// Checks the constants of all stages, for the operators of `model`: that they fit each other,
+    /// and that they are of a size with which no step overflows. Time constants are from 10⁻⁹ s to
+    /// 10⁹ s, coefficients of the creep at most 10⁶, gains and scales from 10⁻⁶ to 10⁶; all other
+    /// numbers, the output too, at most [`Real::LARGEST`].
     ///
     /// # Errors
     /// [`Error::Stage`] with the name of the constant.
     pub fn check<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> Result<(), Error> {
         let fault = |stage| Err(Error::Stage { stage });
-        let positive = |value: T| value > T::ZERO && value.is_finite();
         if let Some(body) = self.body {
-            if !body.ambient.is_finite() {
-                return fault("ambient");
-            }
             let constants = [
-                ("gain", body.gain),
-                ("tau_heating", body.tau_heating),
-                ("tau_cooling", body.tau_cooling),
+                ("ambient", is_size(body.ambient)),
+                ("gain", is_slope(body.gain)),
+                ("tau_heating", is_time(body.tau_heating)),
+                ("tau_cooling", is_time(body.tau_cooling)),
             ];
-            if let Some((name, _)) = constants.into_iter().find(|(_, value)| !positive(*value)) {
+            if let Some((name, _)) = constants.into_iter().find(|(_, fits)| !fits) {
                 return fault(name);
             }
         }
         self.axis.check(model.plane())?;
         let Creep { coefficients, taus } = self.creep;
         let fits = coefficients.len() <= MAX_CREEP && taus.len() == coefficients.len();
-        let valid = |c: &T| *c >= T::ZERO && c.is_finite();
-        if !(fits && coefficients.iter().all(valid) && taus.iter().all(|tau| positive(*tau))) {
+        let shares = coefficients.iter().all(|c| is_share(*c));
+        if !(fits && shares && taus.iter().all(|tau| is_time(*tau))) {
             return fault("creep");
         }
-        if !(self.lag >= T::ZERO && self.lag.is_finite()) {
+        if !(self.lag == T::ZERO || is_time(self.lag)) {
             return fault("lag");
         }
-        if !self.offset.is_finite() {
+        if !is_size(self.offset) {
             return fault("offset");
         }
-        Ok(())
+        // Two entries of the table make an output of KP and of relays.
+        let entries = &model.table()[..table_len(model.plane().levels())];
+        let most = entries
+            .iter()
+            .fold(T::ZERO, |most, e| most.max(*e).max(-*e));
+        match is_size(self.gain_most() * self.creep.gain() * (most + most)) {
+            true => Ok(()),
+            false => fault("weights"),
+        }
     }
 
     /// The output after creep and lag from that of the operators, `h`, in its unit and with its sign.
@@ -233,10 +243,14 @@ impl<T: Real> Stages<'_, T> {
     /// The range of the operators' sum, at the load where it is widest.
     pub(crate) fn range<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> T {
         let (off, on) = model.output_range();
+        (on - off).max(off - on) * self.gain_most()
+    }
+
+    /// The largest gain of the load; 1 without one.
+    fn gain_most(&self) -> T {
         let gains = self.axis.load.gains.iter();
         let gain = gains.fold(T::ZERO, |most, gain| most.max(*gain));
-        let gain = if gain > T::ZERO { gain } else { T::ONE };
-        (on - off).max(off - on) * gain
+        if gain > T::ZERO { gain } else { T::ONE }
     }
 
     /// Whether a stage depends on time, so that each sample needs its `dt`.

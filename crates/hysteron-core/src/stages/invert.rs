@@ -9,6 +9,7 @@ use crate::scalar::Real;
 use crate::solution::{Solution, Status};
 use crate::stages::axis::Loaded;
 use crate::stages::chain::{Rates, StageState, Stages};
+use crate::stages::limits::thousandth;
 use crate::state::State;
 use crate::target::{Direction, Target};
 
@@ -53,7 +54,9 @@ impl<T: Real> Stages<'_, T> {
     ///
     /// Each stage is inverted for the present sample, from the last to the first. The status is
     /// [`Status::Ok`] only where [`Stages::step`] with the drive found gives the target, up to its
-    /// tolerance and rounding.
+    /// tolerance and rounding. What rounding may amount to is at most a thousandth of the range of
+    /// outputs: where the digits of the number type do not tell more, the status is
+    /// [`Status::Limited`].
     ///
     /// # Errors
     /// As [`Stages::step`], and [`Error::Stage`] for a range of drives whose ends are not in order.
@@ -181,7 +184,9 @@ impl<T: Real> Stages<'_, T> {
         let magnitude = |v: T| v.max(-v);
         let offsets = magnitude(self.offset) + magnitude(loaded.offset) + magnitude(target.output);
         let spread = T::from_index(8) * T::EPSILON * offsets;
-        let met = error <= target.tolerance.max(T::ZERO) + rounding + spread;
+        let (off, on) = model.output_range();
+        let allowed = (rounding + spread).min(thousandth(gain * (on - off)));
+        let met = error <= target.tolerance.max(T::ZERO) + allowed;
         let static_reach = self.reach(inverse, loaded, target);
         let status = match solution.status {
             _ if met => Status::Ok,

@@ -18,6 +18,7 @@ mod axis;
 mod body;
 mod chain;
 mod invert;
+mod limits;
 mod mix;
 mod parts;
 

@@ -6,6 +6,7 @@ use crate::everett::table_len;
 use crate::memory::Memory;
 use crate::model::Model;
 use crate::scalar::Real;
+use crate::stages::limits::{is_size, is_slope};
 use crate::stages::mix::mix;
 use crate::state::State;
 
@@ -86,13 +87,13 @@ impl<T: Real> Parts<'_, T> {
     pub fn check<C: AsRef<[T]>>(&self, model: &Model<T, C>) -> Result<(), Error> {
         let (low, high) = self.range;
         let count = self.offsets.len();
-        let finite = |numbers: &[T]| numbers.iter().all(|number| number.is_finite());
-        if !(low < high && (high - low).is_finite()) {
+        let sizes = |numbers: &[T]| numbers.iter().all(|number| is_size(*number));
+        if !(is_size(low) && is_size(high) && is_slope(high - low)) {
             return Err(Error::Stage { stage: "load" });
         }
         let fits = (1..=MAX_PARTS).contains(&count)
             && self.tables.len() == count * table_len(model.plane().levels());
-        match fits && finite(self.offsets) && finite(self.tables) {
+        match fits && sizes(self.offsets) && sizes(self.tables) {
             true => Ok(()),
             false => Err(Error::Stage { stage: "parts" }),
         }

@@ -54,6 +54,23 @@ fn curves(rng: &mut StdRng, width: f64) -> (Value, (f64, f64)) {
     (all, range)
 }
 
+/// Weights and offset of the file are those in the middle of the parts.
+fn at_middle(file: &mut Value, parts: &[Value]) {
+    let mut factors = vec![0.0; parts.len()];
+    hysteron_core::bernstein(0.5, &mut factors);
+    let sum = |of: &dyn Fn(&Value) -> f64| -> f64 {
+        factors
+            .iter()
+            .zip(parts)
+            .map(|(f, part)| f * of(part))
+            .sum()
+    };
+    let count = parts[0]["weights"].as_array().unwrap().len();
+    let weight = |n: usize| sum(&|part| part["weights"][n].as_f64().unwrap());
+    file["weights"] = (0..count).map(weight).collect();
+    file["output"]["offset"] = sum(&|part| part["offset"].as_f64().unwrap()).into();
+}
+
 /// A model whose file says its stages; each is there as a coin falls, or all with `every`.
 pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) -> Case {
     let plain = walks::model(rng, operator, levels);
@@ -76,6 +93,7 @@ pub fn case(rng: &mut StdRng, operator: Operator, levels: usize, every: bool) ->
             json!({"offset": part.offset(), "weights": part.weights()})
         };
         let parts: Vec<Value> = (0..count).map(part).collect();
+        at_middle(&mut file, &parts);
         file["load"] = json!({
             "name": "stress", "min": range.0 - 1.0, "max": range.1 + 1.0, "curves": curves,
             "parts": parts,

@@ -259,8 +259,15 @@ impl Model {
             model.output.name = name;
         }
         model.load = file.load.map(|entry| entry.into_load(&model)).transpose()?;
+        if let Some(load) = &model.load {
+            agrees_with_parts(&model, load)?;
+        }
         model.thermal = file.thermal.map(ThermalEntry::check).transpose()?;
         model.drive = file.drive.map(DriveEntry::check).transpose()?;
+        if model.drive.is_some() && model.thermal.is_none() {
+            let problem = "it is the range of the drive of a thermal body, and there is none";
+            return Err(fault("drive", problem.into()));
+        }
         model.spacing = file.spacing;
         model.after = After::new(&file.creep, file.lag.unwrap_or_default());
         model.check_stages().map_err(|error| {
@@ -269,6 +276,10 @@ impl Model {
                     stage @ ("loads" | "shifts" | "scales" | "gains" | "offsets") => {
                         format!("load.curves.{stage}")
                     }
+                    stage @ ("ambient" | "gain" | "tau_heating" | "tau_cooling") => {
+                        format!("thermal.{stage}")
+                    }
+                    "offset" => "output.offset".to_owned(),
                     stage => stage.to_owned(),
                 },
                 _ => "spacing".into(),
@@ -407,19 +418,57 @@ impl DriveEntry {
     }
 }
 
+/// Weights and offset of a model that depends on a load stand in the file twice: as they are, and as
+/// the middle of the parts. They may differ by the rounding of digits, no more.
+fn agrees_with_parts(model: &Model, load: &LoadDependence) -> Result<()> {
+    const DIGITS: f64 = 1e-6;
+    for (n, part) in load.parts().iter().enumerate() {
+        let sum: f64 = part.weights.iter().map(|mu| mu.abs()).sum();
+        let fits = sum <= LARGEST && part.offset.abs() <= LARGEST;
+        if !fits {
+            let problem = format!("its sum is beyond {LARGEST:e}: use another unit");
+            return Err(fault(&format!("load.parts[{n}]"), problem));
+        }
+    }
+    let middle = LoadPart::at_middle(load.parts());
+    let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, mu| most.max(mu.abs()));
+    let most = largest(&middle.weights).max(largest(model.weights()));
+    let pairs = model.weights().iter().zip(&middle.weights);
+    let differs = |(mu, of_parts): (&f64, &f64)| (mu - of_parts).abs() > DIGITS * most;
+    if let Some(n) = pairs.clone().position(differs) {
+        let (mu, of_parts) = (model.weights()[n], middle.weights[n]);
+        let problem = format!(
+            "weight number {n} (from 0) is {mu}, but {of_parts} in the middle of `load.parts`"
+        );
+        return Err(fault("weights", problem));
+    }
+    let (offset, of_parts) = (model.offset(), middle.offset);
+    let size = offset.abs().max(of_parts.abs()).max(most);
+    match (offset - of_parts).abs() <= DIGITS * size {
+        true => Ok(()),
+        false => {
+            let problem = format!("{offset}, but {of_parts} in the middle of `load.parts`");
+            Err(fault("output.offset", problem))
+        }
+    }
+}
+
 /// What a stage has to be.
 fn hint(field: &str) -> &'static str {
     match field {
-        "load.curves.loads" => ": loads ascend and are finite numbers",
+        "load.curves.loads" => ": loads ascend, and are no larger than 1e140",
         "load.curves.shifts" | "load.curves.offsets" => {
-            ": it has a finite number for each load, or none at all"
+            ": it has a number up to 1e140 for each load, or none at all"
         }
         "load.curves.scales" | "load.curves.gains" => {
-            ": it has a number above zero for each load, or none at all"
+            ": it has a number from 1e-6 to 1e6 for each load, or none at all"
         }
         "spacing" => ": it has K + 1 finite numbers, one above the other",
-        "creep" => ": at most 4 terms, coefficients from 0 on, time constants above zero",
-        "lag" => ": a finite number of seconds, 0 or more",
+        "creep" => ": at most 4 terms, coefficients from 0 to 1e6, times from 1e-9 s to 1e9 s",
+        "lag" => ": 0, or from 1e-9 s to 1e9 s",
+        "thermal.tau_heating" | "thermal.tau_cooling" => ": from 1e-9 s to 1e9 s",
+        "thermal.gain" => ": from 1e-140 to 1e140",
+        "thermal.ambient" | "output.offset" | "weights" => ": outputs and inputs are up to 1e140",
         _ => "",
     }
 }

@@ -264,7 +264,7 @@ impl LoadDependence {
     /// ```
     /// let model = hysteron::Model::from_json(r#"{"format": "hysteron-model", "version": 2,
     ///     "operator": "mkp", "plane": {"min": 1, "max": 2, "levels": 2}, "weights": [1, 1, 1],
-    ///     "load": {"min": 0, "max": 9, "parts": [
+    ///     "output": {"offset": 2}, "load": {"min": 0, "max": 9, "parts": [
     ///         {"offset": 0, "weights": [1, 0, 1]}, {"offset": 4, "weights": [1, 2, 1]}]}}"#)?;
     /// let (offsets, weights) = model.load.as_ref().unwrap().joined();
     /// assert_eq!((offsets, weights), (&[0.0, 4.0][..], &[1.0, 0.0, 1.0, 1.0, 2.0, 1.0][..]));

@@ -1,20 +1,18 @@
 //! Copies a Parquet file and adds columns. The stored columns of the source are copied as bytes,
-//! whatever their type.
+//! whatever their type, once their pages have been read: a damaged file is refused, not copied.
 
 use super::added::{Added, AddedCells};
 use super::parquet::{Cells, Kind, field, io_error, properties};
 use super::spool::distinct;
 use super::table::Sink;
-use crate::data::table::caught;
+use crate::data::table::{Pages, TableReader, caught};
 use parquet::column::writer::ColumnCloseResult;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{KeyValue, ParquetMetaData};
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::metadata::KeyValue;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Metadata of Apache Arrow about the columns. It would no longer describe all of them, so it is
@@ -24,12 +22,13 @@ const ARROW_SCHEMA: &str = "ARROW:schema";
 /// A Parquet file that is copied column by column.
 pub(super) struct Original {
     file: File,
-    about: ParquetMetaData,
+    pages: Pages,
 }
 
 impl Original {
-    /// Opens the file; `None` for another format.
-    pub(super) fn open(path: &Path) -> io::Result<Option<Self>> {
+    /// Opens the file of a table; `None` for another format.
+    pub(super) fn open(table: &TableReader) -> io::Result<Option<Self>> {
+        let path = table.path();
         if !path.is_file() {
             return Ok(None);
         }
@@ -39,14 +38,12 @@ impl Original {
         if head != b"PAR1" {
             return Ok(None);
         }
-        let again = file.try_clone()?;
-        let about = caught(|| Ok(SerializedFileReader::new(again)?.metadata().clone()));
-        let about = about.map_err(io::Error::other)?;
-        Ok(Some(Self { file, about }))
+        let pages = table.pages(&file).map_err(io::Error::other)?;
+        Ok(Some(Self { file, pages }))
     }
 
     fn rows(&self, group: usize) -> Option<u64> {
-        let group = self.about.row_groups().get(group)?;
+        let group = self.pages.about().row_groups().get(group)?;
         Some(group.num_rows().max(0) as u64)
     }
 }
@@ -62,7 +59,7 @@ pub(super) struct Splice {
 
 impl Splice {
     pub(super) fn start(original: Original, out: Sink, added: &[Added]) -> io::Result<Self> {
-        let about = original.about.file_metadata();
+        let about = original.pages.about().file_metadata();
         let root = about.schema_descr().root_schema();
         let there = root.get_fields().iter();
         let names: Vec<String> = there.map(|field| field.name().to_owned()).collect();
@@ -132,6 +129,8 @@ impl Splice {
     /// Writes the row groups that are complete. A row group without rows is always complete.
     fn end_groups(&mut self) -> io::Result<()> {
         while self.original.rows(self.group) == Some(self.rows) {
+            let checked = self.original.pages.check(self.group);
+            checked.map_err(io::Error::other)?;
             caught(|| self.write_group()).map_err(io::Error::other)?;
             (self.group, self.rows) = (self.group + 1, 0);
         }
@@ -139,7 +138,7 @@ impl Splice {
     }
 
     fn write_group(&mut self) -> Result<(), ParquetError> {
-        let about = self.original.about.row_group(self.group);
+        let about = self.original.pages.about().row_group(self.group);
         let mut group = self.writer.next_row_group()?;
         for column in about.columns() {
             let stored = ColumnCloseResult {

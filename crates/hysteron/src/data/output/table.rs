@@ -201,7 +201,7 @@ impl TableWriter {
             source,
         };
         if format == Columnar::Parquet {
-            let original = Original::open(table.path());
+            let original = Original::open(table);
             if let Some(original) = original.map_err(|source| of(table.path(), source))? {
                 let splice = Splice::start(original, sink, added);
                 let splice = splice.map_err(|source| of(path, source))?;

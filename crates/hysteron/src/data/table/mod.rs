@@ -3,8 +3,8 @@
 //! `format` detects the format; `text`, `parquet`, `arrow` and `mat` read it. `columns` and `names`
 //! find columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
 //! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are
-//! the settings, `hashing` computes the file's digest. `labels` is the column whose text tells which
-//! recording a row belongs to.
+//! the settings, `hashing` computes the file's digest. `quiet` turns panics of libraries into
+//! errors. `labels` is the column whose text tells which recording a row belongs to.
 
 mod arrow;
 mod block;
@@ -19,6 +19,7 @@ mod names;
 mod numbers;
 mod options;
 mod parquet;
+mod quiet;
 mod remark;
 mod text;
 mod time;
@@ -38,6 +39,7 @@ use crate::error::{Error, Place, Result};
 use bytes::Bytes;
 use hashing::Hash;
 use numbers::Numbers;
+pub(in crate::data) use parquet::Pages;
 pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
 pub(in crate::data) use text::Splitter;
@@ -216,6 +218,14 @@ impl TableReader {
             Source::Numbers(_) => &[],
         };
         of_text.iter().chain(&self.remarks)
+    }
+
+    /// All pages of this table, of which `file` is opened once more.
+    pub(in crate::data) fn pages(
+        &self,
+        file: &std::fs::File,
+    ) -> std::result::Result<Pages, String> {
+        Pages::open(file, self.budget)
     }
 
     pub(crate) fn budget(&mut self) -> &mut Budget {

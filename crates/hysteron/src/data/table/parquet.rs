@@ -1,25 +1,28 @@
 //! Reads Parquet files, one row group at a time.
 
 mod claims;
+mod pages;
 mod thrift;
 
 use super::budget::Budget;
 use super::labels::Labels;
 use super::numbers::{Group, Numbers};
+use super::quiet;
 use super::wanted::Wanted;
 use bytes::Bytes;
 pub(super) use claims::ReadSeek;
 use claims::{Claims, Refusal};
+pub(in crate::data) use pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// An open file: names, rows, times.
@@ -75,7 +78,6 @@ fn open_as(
         .filter(|n| numeric[*n].1.is_time)
         .collect();
     let rows = reader.metadata().file_metadata().num_rows();
-    let mut columns: Vec<usize> = numeric.iter().map(|(column, _)| *column).collect();
     let names: Vec<String> = (0..schema.num_columns())
         .map(|n| schema.column(n).path().string())
         .collect();
@@ -90,17 +92,17 @@ fn open_as(
                 ));
             }
             header.push(names[column].clone());
-            columns.push(column);
             Some((column, labels.clone()))
         }
     };
     let wanted = wanted.clone();
     let groups = (0..reader.num_row_groups()).map(move |n| {
-        // Negative sizes make the library panic here too.
         let about = &reader.metadata().row_groups()[n];
-        let fits = catch_unwind(AssertUnwindSafe(|| claims.check_group(about, &columns)));
-        fits.map_err(|_| damaged("it contradicts itself"))?
-            .map_err(refused)?;
+        let read_here = numeric.iter().enumerate();
+        let read_here = read_here.filter(|(n, _)| wanted.contains(*n));
+        let read_here = read_here.map(|(_, (column, _))| *column);
+        let columns: Vec<usize> = read_here.chain(labels.iter().map(|(n, _)| *n)).collect();
+        check_claims(&mut claims, about, &columns)?;
         caught(|| {
             let group = reader.get_row_group(n)?;
             let columns = numeric.iter().enumerate();
@@ -125,17 +127,31 @@ fn open_as(
 fn refused(refusal: Refusal) -> String {
     match refusal {
         Refusal::Damaged(problem) => damaged(problem),
-        Refusal::TooLarge(problem) => problem,
+        Refusal::Unread(problem) | Refusal::TooLarge(problem) => problem,
     }
 }
 
 /// Calls the Parquet library. It panics if a damaged file contradicts itself; the panic becomes an
 /// error.
 pub(crate) fn caught<T>(use_it: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, String> {
-    match catch_unwind(AssertUnwindSafe(use_it)) {
-        Ok(result) => result.map_err(damaged),
-        Err(_) => Err(damaged("it contradicts itself")),
-    }
+    quiet::caught(use_it)
+        .ok_or_else(contradiction)?
+        .map_err(damaged)
+}
+
+/// Checks what a row group claims of these columns. Negative sizes make the library panic here too.
+fn check_claims(
+    claims: &mut Claims,
+    group: &RowGroupMetaData,
+    columns: &[usize],
+) -> Result<(), String> {
+    quiet::caught(|| claims.check_group(group, columns))
+        .ok_or_else(contradiction)?
+        .map_err(refused)
+}
+
+fn contradiction() -> String {
+    damaged("it contradicts itself")
 }
 
 fn damaged(error: impl Display) -> String {

@@ -3,6 +3,7 @@
 
 use crate::data::table::budget::Budget;
 use crate::data::table::parquet::ReadSeek;
+use crate::data::table::quiet;
 use arrow_array::{ArrayRef, RecordBatch};
 use arrow_buffer::{Buffer, MutableBuffer};
 use arrow_ipc::convert::try_fb_to_schema;
@@ -12,7 +13,6 @@ use arrow_schema::{ArrowError, SchemaRef};
 use std::collections::HashMap;
 use std::fmt::Display;
 use std::io::SeekFrom;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::vec::IntoIter;
 
@@ -224,10 +224,9 @@ fn no_header() -> String {
 pub(in crate::data) fn caught<T>(
     use_it: impl FnOnce() -> Result<T, ArrowError>,
 ) -> Result<T, String> {
-    match catch_unwind(AssertUnwindSafe(use_it)) {
-        Ok(result) => result.map_err(damaged),
-        Err(_) => Err(no_header()),
-    }
+    quiet::caught(use_it)
+        .ok_or_else(no_header)?
+        .map_err(damaged)
 }
 
 fn damaged(error: impl Display) -> String {

@@ -2,9 +2,9 @@
 
 use super::{DEEPEST, Variable};
 use crate::data::table::budget::Budget;
+use crate::data::table::quiet::caught;
 use bytes::Bytes;
-use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Layout};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use hdf5_pure::{AttrValue, DType, Dataset, Error, File, FormatError, Group, Layout};
 use std::path::Path;
 
 /// Largest number of groups that are read. Links between groups can form circles.
@@ -37,12 +37,31 @@ pub(in crate::data::table) fn read(
         found.group(&file.root(), "", 0)
     };
     // The library panics if a damaged file contradicts itself.
-    match catch_unwind(AssertUnwindSafe(read)) {
-        Ok(done) => done?,
-        Err(_) => return Err(damaged("it contradicts itself")),
-    }
+    caught(read).ok_or_else(|| damaged("it contradicts itself"))??;
     found.budget.give_back(2 * u128::from(size));
     Ok(found.variables)
+}
+
+/// The library names a filter by its number in the registry of HDF5.
+fn unread(filter: u16) -> String {
+    let name = match filter {
+        4 => "szip".into(),
+        5 => "n-bit".into(),
+        32_000 => "LZF".into(),
+        32_001 => "Blosc".into(),
+        32_004 => "LZ4".into(),
+        32_008 => "bitshuffle".into(),
+        32_015 => "Zstandard".into(),
+        other => format!("filter {other}"),
+    };
+    format!("an array is packed with {name}, which is not read here: save the file with gzip")
+}
+
+fn read_failed(error: Error) -> String {
+    match error {
+        Error::Format(FormatError::UnsupportedFilter(filter)) => unread(filter),
+        other => damaged(other),
+    }
 }
 
 fn damaged(error: impl std::fmt::Display) -> String {
@@ -112,7 +131,7 @@ impl Found<'_> {
             return Err(damaged("an array has more chunks than it claims"));
         }
         self.budget.take(held, format_args!("`{name}`"))?;
-        let values = data.read_f64().map_err(damaged)?;
+        let values = data.read_f64().map_err(read_failed)?;
         if values.len() as u128 != count {
             return Err(damaged("an array is not of the size that it claims"));
         }

@@ -24,10 +24,12 @@ pub(in crate::data) trait ReadSeek: Read + Seek + Send {}
 
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
-/// Why a file is refused: it is damaged, or it takes too much memory.
+/// Why a file is refused.
 pub(super) enum Refusal {
     Damaged(String),
     TooLarge(String),
+    /// It is whole, but needs what is not there.
+    Unread(String),
 }
 
 impl From<std::io::Error> for Refusal {
@@ -95,6 +97,7 @@ impl Claims {
         self.check(numbers, format_args!("a group of {rows} rows"))?;
         for column in columns {
             let chunk = group.columns().get(*column).ok_or_else(damaged)?;
+            check_codec(chunk)?;
             let page = self.largest_page(chunk)?;
             self.check(numbers + page, "a page of a column")?;
         }
@@ -184,6 +187,22 @@ impl Claims {
     fn take(&mut self, bytes: u128, what: &str) -> Result<(), Refusal> {
         self.budget.take(bytes, what).map_err(Refusal::TooLarge)
     }
+}
+
+/// Refuses a column that is packed with a codec that is not read.
+fn check_codec(chunk: &ColumnChunkMetaData) -> Result<(), Refusal> {
+    let codec = match chunk.compression() {
+        Compression::BROTLI(_) => "Brotli",
+        Compression::LZO => "LZO",
+        // It is C, and not in a browser.
+        Compression::ZSTD(_) if cfg!(target_family = "wasm") => "Zstandard",
+        _ => return Ok(()),
+    };
+    let column = chunk.column_path().string();
+    Err(Refusal::Unread(format!(
+        "column `{column}` is packed with {codec}, which is not read here: write the file with \
+         Snappy, gzip or LZ4, or without compression"
+    )))
 }
 
 /// The sizes in the header of a page.
