@@ -940,6 +940,8 @@ def prepare(
     low_pass: float | Literal['auto', 'off'] = "auto",
     lag: float | Literal['auto', 'off'] = "off",
     dead_band: float | Literal['auto', 'off'] = "auto",
+    signs: bool = False,
+    believe: bool = False,
     time: _Times | None = None,
     load: ArrayLike | None = None,
     progress: _Progress = None,

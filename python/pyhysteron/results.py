@@ -32,6 +32,7 @@ __all__ = [
     "ConfidenceSummary",
     "CreepTerm",
     "DeadBand",
+    "Doubt",
     "Drift",
     "Errors",
     "Evaluation",
@@ -43,6 +44,7 @@ __all__ = [
     "HeldOut",
     "InverseRun",
     "InverseTest",
+    "Judged",
     "LearningTable",
     "LeftOut",
     "LoadCurves",
@@ -917,6 +919,8 @@ class RecordingSummary(_Result):
     determined : int or None
         Number of these combinations that the noise of the output leaves: their standard error is at
         most the weight that each operator has where all share the range of the output evenly.
+    doubts : tuple of Doubt
+        What is not to be believed unasked.
     """
 
     samples: int
@@ -929,6 +933,55 @@ class RecordingSummary(_Result):
     excited: int
     rank: int | _MaybeNone
     determined: int | _MaybeNone
+    doubts: tuple[Doubt, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Doubt(_Result):
+    """A reason not to believe a recording. `prepare` refuses it, unless `believe` is set.
+
+    Attributes
+    ----------
+    kind : str
+        'frozen': a series stands still while the other covers most of its range. 'repeated': rows
+        are the same as earlier ones. 'disagree': no model follows these rows and the others.
+    rows : tuple of (int, int)
+        First and last row of each stretch, counted from 1.
+    text : str
+        The same in words.
+    """
+
+    kind: str
+    rows: tuple[tuple[int, int], ...]
+    text: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Judged(_Result):
+    """What a step of `prepare` was worth.
+
+    The errors are those of a small model on parts of the recording that it was not fitted to: mean
+    distances from the output as measured, in its unit.
+
+    Attributes
+    ----------
+    step : str
+        The step, and the series that it changes.
+    samples : int
+        Number of samples that it changes.
+    before : float or None
+        The error without the step; None if no model can be fitted.
+    after : float or None
+        The error with the step; None if no model can be fitted.
+    kept : bool
+        Whether the step was taken.
+    """
+
+    step: str
+    samples: int
+    before: float | _MaybeNone
+    after: float | _MaybeNone
+    kept: bool
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -956,15 +1009,15 @@ class Spikes(_Result):
 
     Attributes
     ----------
-    deviations : float
-        Median absolute deviations that make a spike.
+    deviations : float or None
+        Median absolute deviations that make a spike; None if only signs were restored.
     input : Repairs
         Of the input.
     output : Repairs
         Of the output.
     """
 
-    deviations: float
+    deviations: float | _MaybeNone
     input: Repairs
     output: Repairs
 
@@ -1097,6 +1150,8 @@ class Preparation(_Result):
         The sensor's lag.
     dead_band : DeadBand or None
         The dead band for reversals of the input.
+    judged : tuple of Judged
+        What each step that was left to the data gained. A step that was not kept has done nothing.
     rate : RateDependence or None
         How much the output depends on the rate of the input; None without time.
     rate_dependent : bool or None
@@ -1112,6 +1167,7 @@ class Preparation(_Result):
     low_pass: LowPass | _MaybeNone
     lag: SensorLag | _MaybeNone
     dead_band: DeadBand | _MaybeNone
+    judged: tuple[Judged, ...]
     rate: RateDependence | _MaybeNone
     rate_dependent: bool | None
 

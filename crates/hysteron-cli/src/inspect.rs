@@ -1,6 +1,7 @@
 //! `hysteron inspect`
 
-use crate::terminal::{Result, print};
+use crate::remedy::text_of_doubt;
+use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
     Columns, ConfidenceSummary, Criterion, Model, Plane, RecordingSummary, TableReader, Uncertain,
@@ -63,6 +64,9 @@ fn summary(args: &args::Inspect, input: &str, output: &str) -> Result<()> {
     let summary = hysteron::inspect_recording(&recording, plane)?;
     if args.json.json {
         return print(&json!(summary).to_string());
+    }
+    for doubt in &summary.doubts {
+        say(format_args!("{}", text_of_doubt(doubt)));
     }
     print(&recording_text(&summary))
 }

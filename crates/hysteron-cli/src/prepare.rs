@@ -3,8 +3,8 @@
 use crate::terminal::{Result, print, say};
 use crate::{args, recording, text};
 use hysteron::{
-    Columns, LowPass, Preparation, PrepareOptions, RateDependence, Recording, Repairs, SensorLag,
-    Smoothed, Step, TableWriter,
+    Columns, Judged, LowPass, Preparation, PrepareOptions, Quantity, RateDependence, Recording,
+    Repairs, SensorLag, Smoothed, Step, TableWriter,
 };
 use serde_json::json;
 
@@ -67,6 +67,12 @@ pub(crate) fn before_fit(
             (prepared, Some(report))
         }
     };
+    if report.is_none() {
+        // With the preparation they are refused.
+        for doubt in hysteron::doubts(&recording)? {
+            say(format_args!("{}", crate::remedy::text_of_doubt(&doubt)));
+        }
+    }
     let rate = hysteron::rate_dependence(&recording)?;
     if let Some(rate) = rate.as_ref().filter(|rate| rate.is_material()) {
         say(format_args!("{}", rate_line(rate)));
@@ -89,15 +95,37 @@ fn is_material(rate: &Option<RateDependence>) -> Option<bool> {
 
 fn options(steps: &args::Steps, lag: Option<Step>, defaults: PrepareOptions) -> PrepareOptions {
     PrepareOptions {
+        signs: steps
+            .signs
+            .map_or(defaults.signs, |signs| signs == args::OnOff::On),
         spikes: steps.spikes.unwrap_or(defaults.spikes),
         resample: steps.resample.unwrap_or(defaults.resample),
         low_pass: steps.low_pass.unwrap_or(defaults.low_pass),
         lag: lag.unwrap_or(defaults.lag),
         dead_band: steps.dead_band.unwrap_or(defaults.dead_band),
+        believe: steps.believe || defaults.believe,
     }
 }
 
-/// One line a step.
+/// What a step that was left to the data gained.
+fn judged_line(judged: &Judged, output: &Quantity) -> String {
+    let (step, samples) = (judged.step, judged.samples);
+    let verdict = if judged.kept { "taken" } else { "not taken" };
+    match (judged.before, judged.after) {
+        (Some(before), Some(after)) => format!(
+            "{step}: {verdict}. With its {samples} samples a model errs by {} on what it did not \
+             see, without by {}",
+            text::with_unit(after, output),
+            text::with_unit(before, output)
+        ),
+        _ => format!(
+            "{step}: {verdict}. The recording is too short to tell whether its {samples} samples \
+             help"
+        ),
+    }
+}
+
+/// One line a step, and one for what it gained.
 fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
     let (input, output) = (&recording.input_quantity, &recording.output_quantity);
     let mut lines = vec![format!(
@@ -111,9 +139,12 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
         let of = |repairs: &Repairs, name: &str| match repairs.first.is_empty() {
             true => format!("none in {name}"),
             false => format!(
-                "{} in {name} ({} given their sign back), samples {}{}",
+                "{} in {name}{}, samples {}{}",
                 repairs.spikes + repairs.signs,
-                repairs.signs,
+                match repairs.signs {
+                    0 => String::new(),
+                    signs => format!(" ({signs} given their sign back)"),
+                },
                 repairs
                     .first
                     .iter()
@@ -157,6 +188,12 @@ fn lines(report: &Preparation, recording: &Recording) -> Vec<String> {
             text::with_unit(band.largest_change, input)
         )
     }));
+    lines.extend(
+        report
+            .judged
+            .iter()
+            .map(|judged| judged_line(judged, output)),
+    );
     lines
 }
 

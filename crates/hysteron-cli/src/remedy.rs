@@ -1,6 +1,6 @@
 //! Errors of the library, with its options as they are on the command line.
 
-use hysteron::{Advice, Remedy, Setting, SettingValue};
+use hysteron::{Advice, Doubt, Remedy, Setting, SettingValue};
 use std::error::Error;
 
 /// What is wrong, where, and what to do.
@@ -13,6 +13,10 @@ pub(crate) fn text_of(error: &(dyn Error + 'static)) -> String {
 
 pub(crate) fn text_of_advice(advice: &Advice) -> String {
     format!("{advice}: {}", spelt(&advice.remedy()))
+}
+
+pub(crate) fn text_of_doubt(doubt: &Doubt) -> String {
+    format!("{doubt}: {}", spelt(&doubt.remedy()))
 }
 
 fn spelt(remedy: &Remedy) -> String {

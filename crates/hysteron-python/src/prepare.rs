@@ -11,9 +11,9 @@ use pyo3::types::{PyDict, PyString};
 
 /// Prepare a recording for `fit`.
 ///
-/// The steps: restore lost signs and remove spikes, resample, smooth, undo a sensor's lag, remove
-/// false reversals of the input. Each step is 'auto', 'off', or a number. A clean recording is
-/// returned unchanged.
+/// The steps: remove spikes, resample, smooth, undo a sensor's lag, remove false reversals of the
+/// input. Each step is 'auto', 'off', or a number. An 'auto' step is taken only if a model then
+/// errs less on parts of the recording that it did not see. A clean recording is returned unchanged.
 ///
 /// Parameters
 /// ----------
@@ -32,6 +32,12 @@ use pyo3::types::{PyDict, PyString};
 ///     depend on rate.
 /// dead_band : 'auto', 'off' or float
 ///     Reversals of the input up to this size are noise, in its unit. 'auto' measures the noise.
+/// signs : bool
+///     Restore the signs of readings just below zero that lost them. It turns good readings over
+///     where none was lost.
+/// believe : bool
+///     Prepare also a recording with a frozen channel, with rows that come twice, or with rows that
+///     disagree with the others.
 /// time, load : array_like, shape (n,), optional
 ///     For an input and an output given as arrays. `time` as in `Recording`.
 /// progress : callable, bool or None
@@ -58,8 +64,8 @@ use pyo3::types::{PyDict, PyString};
 /// >>> bool(abs(prepared.input[100] + 38.36) < 0.1)
 /// True
 #[pyfunction]
-#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, dead_band=None, time=None, load=None, progress=None, **unknown),
-    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', dead_band='auto', time=None, load=None, progress=None)")]
+#[pyo3(signature = (recording, output=None, *, spikes=None, resample=None, low_pass=None, lag=None, dead_band=None, signs=false, believe=false, time=None, load=None, progress=None, **unknown),
+    text_signature = "(recording, output=None, *, spikes='auto', resample='auto', low_pass='auto', lag='off', dead_band='auto', signs=False, believe=False, time=None, load=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn prepare<'py>(
     py: Python<'py>,
@@ -70,6 +76,8 @@ pub(crate) fn prepare<'py>(
     low_pass: Option<&Bound<'py, PyAny>>,
     lag: Option<&Bound<'py, PyAny>>,
     dead_band: Option<&Bound<'py, PyAny>>,
+    signs: bool,
+    believe: bool,
     time: Option<&Bound<'py, PyAny>>,
     load: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
@@ -78,6 +86,8 @@ pub(crate) fn prepare<'py>(
     none_left("prepare", unknown, &NAMES)?;
     let usual = PrepareOptions::default();
     let options = PrepareOptions {
+        signs,
+        believe,
         spikes: step("spikes", spikes, usual.spikes)?,
         resample: step("resample", resample, usual.resample)?,
         low_pass: step("low_pass", low_pass, usual.low_pass)?,
@@ -98,12 +108,14 @@ pub(crate) fn prepare<'py>(
     Ok((prepared.into(), result(py, "Preparation", found)?))
 }
 
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 10] = [
     "spikes",
     "resample",
     "low_pass",
     "lag",
     "dead_band",
+    "signs",
+    "believe",
     "time",
     "load",
     "progress",

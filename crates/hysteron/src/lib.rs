@@ -91,8 +91,8 @@ pub use model::{
     State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
-    DeadBand, LowPass, Preparation, PrepareOptions, RateDependence, Repairs, SensorLag, Smoothed,
-    Spikes, Step, prepare, rate_dependence,
+    DeadBand, Doubt, Judged, LowPass, Preparation, PrepareOptions, RateDependence, Repairs,
+    SensorLag, Smoothed, Spikes, Step, doubts, prepare, rate_dependence,
 };
 pub use progress::Progress;
 pub use recording::{HoldOut, Origin, Quantity, Recording, Source, Split};

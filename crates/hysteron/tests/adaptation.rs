@@ -380,11 +380,9 @@ fn one_cycle_ahead_a_refit_is_as_good_as_a_fit_to_the_last_cycle() {
     let columns = Columns::new("temperature_C", "extension_mm");
     let raw = Recording::read(&path, columns, Repair::Refuse).unwrap().0;
     let steps = PrepareOptions {
-        spikes: Step::Auto,
-        resample: Step::Off,
-        low_pass: Step::Off,
-        lag: Step::Off,
-        dead_band: Step::Off,
+        signs: true,
+        spikes: Step::Value(4.0),
+        ..PrepareOptions::all(Step::Off)
     };
     let (whole, _) = prepare(&raw, &steps, Progress::NONE).unwrap();
     let (low, high) = whole.ranges().0;

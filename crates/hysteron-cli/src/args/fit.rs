@@ -186,8 +186,11 @@ pub(crate) struct PrepareBeforeFit {
 #[derive(Args)]
 #[command(next_help_heading = "Preparation")]
 pub(crate) struct Steps {
-    /// Restore lost signs and replace spikes: `auto`, `off`, or how many median absolute deviations
-    /// make a spike
+    /// Restore the signs of readings just below zero that lost them: `on` or `off`. It turns good
+    /// readings over where none was lost [default: off]
+    #[arg(long, value_enum, value_name = "STEP")]
+    pub(crate) signs: Option<OnOff>,
+    /// Replace spikes: `auto`, `off`, or how many median absolute deviations make a spike
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) spikes: Option<Step>,
     /// Equal steps of time: `auto` (where time is irregular and a filter needs it), `off`, or the
@@ -202,4 +205,8 @@ pub(crate) struct Steps {
     /// `off`, or the dead band in the input's unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true, value_parser = parse_step)]
     pub(crate) dead_band: Option<Step>,
+    /// Prepare also a recording that cannot be believed: with a frozen channel, rows that come
+    /// twice, or rows that disagree with the others
+    #[arg(long)]
+    pub(crate) believe: bool,
 }

@@ -3,6 +3,13 @@
 use clap::ValueEnum;
 use hysteron::Step;
 
+/// What is done or not, without a value.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OnOff {
+    On,
+    Off,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Operator {
     /// Continuous, from 0 to 1

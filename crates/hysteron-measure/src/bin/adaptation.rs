@@ -147,11 +147,9 @@ fn run(model: &Model, state: &mut State, input: &[f64]) -> Result<Vec<f64>> {
 fn split(folder: &Path) -> Result<(Plane, Vec<Recording>)> {
     let raw = read(folder, "isobaric_cycles_1_to_4", "extension_mm")?;
     let steps = PrepareOptions {
-        spikes: Step::Auto,
-        resample: Step::Off,
-        low_pass: Step::Off,
-        lag: Step::Off,
-        dead_band: Step::Off,
+        signs: true,
+        spikes: Step::Value(4.0),
+        ..PrepareOptions::all(Step::Off)
     };
     let (whole, _) = prepare(&raw, &steps, Progress::NONE)?;
     let ((low, high), _) = whole.ranges();

@@ -6,11 +6,9 @@ use hysteron::{Direction, PrepareOptions, Progress, Recording, Step, Turning, pr
 /// Cycles from one highest input to the next. Lost signs and spikes are repaired before.
 pub fn cycles(raw: &Recording) -> Result<Vec<Recording>> {
     let steps = PrepareOptions {
-        spikes: Step::Auto,
-        resample: Step::Off,
-        low_pass: Step::Off,
-        lag: Step::Off,
-        dead_band: Step::Off,
+        signs: true,
+        spikes: Step::Value(4.0),
+        ..PrepareOptions::all(Step::Off)
     };
     let (whole, _) = prepare(raw, &steps, Progress::NONE)?;
     let ((low, high), _) = whole.ranges();

@@ -6,7 +6,7 @@ use crate::data::Note;
 use crate::error::{Error, Result};
 use crate::hold_out::fit_holding_out;
 use crate::identify::advice;
-use crate::prepare::{prepare, rate_dependence};
+use crate::prepare::{Doubt, doubts, prepare, rate_dependence};
 use crate::progress::Progress;
 use crate::recording::Recording;
 use sha2::{Digest, Sha256};
@@ -71,6 +71,8 @@ fn fit_one(
     }
     if let Some(steps) = options.steps() {
         recording = prepare(&recording, steps, progress)?.0;
+    } else {
+        warnings.extend(doubts(&recording)?.iter().map(Doubt::to_string));
     }
     if recording.time.is_some()
         && let Some(rate) = rate_dependence(&recording)?.filter(|rate| rate.is_material())

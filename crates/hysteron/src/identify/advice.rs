@@ -6,7 +6,9 @@ use crate::identify::monotone::{AGAINST_INPUT, way_against_input};
 use crate::model::{Model, Solver, Start};
 use crate::recording::Recording;
 use crate::remedy::{Remedy, Setting};
+use crate::series::jumps::remove_bursts;
 use crate::series::noise::noise;
+use crate::series::spikes::{DEVIATIONS, remove};
 use crate::series::{branch_spans, usual_tolerance};
 use std::fmt;
 
@@ -46,6 +48,13 @@ pub enum Advice {
         real: usize,
         /// Standard deviation of the input's noise, in its unit.
         noise: f64,
+    },
+    /// Readings of the input stand out: each moves operators that it did not move.
+    Spikes {
+        /// Number of these readings.
+        samples: usize,
+        /// The first of them, counted from 1.
+        first: usize,
     },
     /// There are hardly more samples than operators: most weights follow from the prior.
     FewData {
@@ -97,6 +106,11 @@ impl fmt::Display for Advice {
                 "the input reverses {all} times, but only {real} reversals are larger than its \
                  noise of {noise:.3}: the others bend the model"
             ),
+            Self::Spikes { samples, first } => write!(
+                f,
+                "{samples} readings of the input stand out from their neighbours, the first in row \
+                 {first}: such a spike bends the model"
+            ),
             Self::FewData {
                 samples,
                 operators,
@@ -141,6 +155,10 @@ impl Advice {
             Self::FalseReversals { .. } => {
                 Remedy::new("use {}, which removes them", [Setting::on("prepare")])
             }
+            Self::Spikes { .. } => Remedy::new(
+                "use {}, which replaces them if that helps",
+                [Setting::on("prepare")],
+            ),
             Self::RivalWins { .. } | Self::FewData { .. } => Remedy::new(
                 "record more branches, and test the model on another recording",
                 [],
@@ -182,6 +200,7 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         });
     }
     let noisy = recordings.iter().find_map(false_reversals);
+    advice.extend(recordings.iter().find_map(spikes));
     if let Some(fit) = &model.fit {
         if let Some(noisy) = noisy {
             advice.push(noisy);
@@ -215,6 +234,17 @@ pub fn advice(model: &Model, recordings: &[Recording]) -> Result<Vec<Advice>> {
         }
     }
     Ok(advice)
+}
+
+fn spikes(recording: &Recording) -> Option<Advice> {
+    let mut input = recording.input.clone();
+    let mut found = remove_bursts(&mut input);
+    found.extend(remove(&mut input, DEVIATIONS));
+    let first = found.iter().min()? + 1;
+    Some(Advice::Spikes {
+        samples: found.len(),
+        first,
+    })
 }
 
 /// So many times more reversals than real ones are noise, from this number of them on.

@@ -19,6 +19,7 @@ mod weights;
 mod words;
 
 pub use advice::{Advice, advice};
+pub(crate) use choose::left_out::predicted_without;
 pub use choose::left_out::{LeftOut, left_out};
 pub use choose::start::usual_start;
 pub use choose::validate::{Candidates, cross_validate};
@@ -28,6 +29,7 @@ pub(crate) use doubt::spectrum::determined;
 pub use fit::Fit;
 pub(crate) use history::find_start;
 pub use monotone::{AGAINST_INPUT, way_against_input};
+pub(crate) use options::SOME_SMOOTHNESS;
 pub use options::{Auto, Choice, FitOptions, LoadLaw, Spacing};
 pub use prior::WeightPrior;
 pub use weights::experiment::plane_of;

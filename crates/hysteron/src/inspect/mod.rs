@@ -7,6 +7,7 @@ pub use model::{ConfidenceSummary, LoadSummary, ModelSummary, Uncertain, inspect
 use crate::error::Result;
 use crate::identify::determined;
 use crate::model::Plane;
+use crate::prepare::{Doubt, doubts};
 use crate::recording::Recording;
 use crate::recording::gaps;
 use crate::series::NOISE;
@@ -58,6 +59,8 @@ pub struct RecordingSummary {
     /// Number of these combinations that the noise of the output leaves: their standard error is at
     /// most the weight that each operator has where all share the range of the output evenly.
     pub determined: Option<usize>,
+    /// What is not to be believed unasked.
+    pub doubts: Vec<Doubt>,
 }
 
 /// How a recording was sampled.
@@ -114,6 +117,7 @@ pub fn inspect_recording(recording: &Recording, plane: Plane) -> Result<Recordin
         excited: excited(&recording.input, plane),
         rank: determined.map(|(rank, _)| rank),
         determined: determined.map(|(_, against_noise)| against_noise),
+        doubts: doubts(recording)?,
     })
 }
 

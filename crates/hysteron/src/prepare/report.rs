@@ -1,12 +1,13 @@
 //! The report of a preparation: what each step did.
 
+use crate::prepare::judge::Judged;
 use serde::Serialize;
 
 /// Number of repaired samples that are listed.
 const NAMED: usize = 10;
 
 /// What [`crate::prepare()`] did, step by step. `None` for a step that was off, or for resampling
-/// that was not needed.
+/// that was not needed. A step that was judged and not taken has done nothing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preparation {
     /// Number of samples before.
@@ -28,14 +29,16 @@ pub struct Preparation {
     pub lag: Option<SensorLag>,
     /// The dead band.
     pub dead_band: Option<DeadBand>,
+    /// What each step that was left to the data gained, in their order.
+    pub judged: Vec<Judged>,
 }
 
 /// Repaired signs and removed spikes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spikes {
     /// A sample is a spike if it is more than this many median absolute deviations from its
-    /// neighbours.
-    pub deviations: f64,
+    /// neighbours; `None` if only signs were restored.
+    pub deviations: Option<f64>,
     /// Repairs of the input.
     pub input: Repairs,
     /// Repairs of the output.

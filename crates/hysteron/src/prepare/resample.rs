@@ -67,27 +67,31 @@ pub(super) fn resample(recording: &mut Recording, step: f64) -> Result<()> {
     // The last sample stays, although rounding may place it slightly before the end.
     let count = (steps * (1.0 + 1e-12) + 1e-9).floor() as usize + 1;
     let time: Vec<f64> = (0..count).map(|n| start + step * n as f64).collect();
-    let at_new_times = |values: &[f64]| -> Vec<f64> {
-        let mut n = 0;
-        let interpolate = |&now: &f64| {
-            while n + 1 < old.len() && old[n + 1] <= now {
-                n += 1;
-            }
-            match old.get(n + 1) {
-                Some(next) => {
-                    let part = ((now - old[n]) / (next - old[n])).clamp(0.0, 1.0);
-                    values[n] + (values[n + 1] - values[n]) * part
-                }
-                None => values[n],
-            }
-        };
-        time.iter().map(interpolate).collect()
-    };
+    let at_new_times = |values: &[f64]| at_times(&old, values, &time);
     recording.input = at_new_times(&recording.input);
     recording.output = at_new_times(&recording.output);
     recording.load = recording.load.as_deref().map(at_new_times);
     recording.time = Some(time);
     Ok(())
+}
+
+/// The values at other times, by lines between those of the `old` times; beyond their end, the last
+/// one.
+pub(super) fn at_times(old: &[f64], values: &[f64], new: &[f64]) -> Vec<f64> {
+    let mut n = 0;
+    let interpolate = |&now: &f64| {
+        while n + 1 < old.len() && old[n + 1] <= now {
+            n += 1;
+        }
+        match old.get(n + 1) {
+            Some(next) => {
+                let part = ((now - old[n]) / (next - old[n])).clamp(0.0, 1.0);
+                values[n] + (values[n + 1] - values[n]) * part
+            }
+            None => values[n],
+        }
+    };
+    new.iter().map(interpolate).collect()
 }
 
 #[cfg(test)]

@@ -2,15 +2,19 @@
 //!
 //! `turning` finds turning points and the direction of each sample. `filter` is the low-pass
 //! filter. `errors` compares two series. `noise` estimates white noise, and
-//! `spikes` finds isolated readings. `spread` gives range, mean and standard deviation. `runs` keeps
-//! values that change seldom.
+//! `spikes` finds isolated readings, `jumps` jumps and bursts of wrong readings, `frozen` a channel
+//! that stands still, and `repeated` rows that come twice. `spread` gives range, mean and standard
+//! deviation. `runs` keeps values that change seldom.
 
 mod errors;
 pub mod filter;
+pub(crate) mod frozen;
+pub(crate) mod jumps;
 pub(crate) mod noise;
+pub(crate) mod repeated;
 mod runs;
 pub(crate) mod spikes;
-mod spread;
+pub(crate) mod spread;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 pub(crate) mod test_series;

@@ -88,11 +88,8 @@ pub fn left_out(
             problem = Problem::new(recordings, &options)?;
         }
         chosen.push((options.levels, options.smooth));
-        let fitted = problem.solve(Some(&kept), Progress::NONE)?;
-        let h = problem.predict(&fitted.solution)?;
-        let offset = options.offset.unwrap_or(0.0);
-        for n in 0..measured.len() {
-            let y = offset + fitted.sign.factor() * h[n];
+        let outputs = without(&mut problem, &kept)?;
+        for (n, y) in outputs.into_iter().enumerate() {
             if fold[n] == f {
                 predicted[n] = y;
             } else {
@@ -116,4 +113,32 @@ pub fn left_out(
         predicted,
         chosen,
     })
+}
+
+/// The output at every sample, from a fit to the samples that are kept.
+fn without(problem: &mut Problem<'_>, kept: &[f64]) -> Result<Vec<f64>> {
+    let fitted = problem.solve(Some(kept), Progress::NONE)?;
+    let offset = problem.options.offset.unwrap_or(0.0);
+    let states = problem.predict(&fitted.solution)?.into_iter();
+    Ok(states.map(|h| offset + fitted.sign.factor() * h).collect())
+}
+
+/// The output at each sample of one recording, from the fit that left its fold out.
+///
+/// # Errors
+/// As [`crate::Fit::run`].
+pub(crate) fn predicted_without(
+    recording: &Recording,
+    options: &FitOptions,
+    fold: &[usize],
+) -> Result<Vec<f64>> {
+    let mut problem = Problem::new(std::slice::from_ref(recording), options)?;
+    let mut predicted = vec![0.0; recording.len()];
+    for f in 0..=fold.iter().copied().max().unwrap_or(0) {
+        let kept: Vec<f64> = fold.iter().map(|g| f64::from(*g != f)).collect();
+        let outputs = without(&mut problem, &kept)?;
+        let own = (0..predicted.len()).filter(|n| fold[*n] == f);
+        own.for_each(|n| predicted[n] = outputs[n]);
+    }
+    Ok(predicted)
 }

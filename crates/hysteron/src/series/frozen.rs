@@ -1,0 +1,61 @@
+//! Finds a channel that stands still while the other one moves.
+
+use crate::series::spread::{range, usual_span};
+use std::ops::Range;
+
+/// Fewer equal readings in a row are not told from a slow signal.
+const SHORTEST: usize = 20;
+/// The other series covers at least this share of its usual range meanwhile. No material with any
+/// response is still over such a way.
+const FAR: f64 = 0.8;
+/// A series that often stands still is one of steps: at most this share of its other samples is in
+/// long runs.
+const OFTEN: f64 = 0.5;
+
+/// The samples over which `values` keeps exactly one value while `other` moves far.
+///
+/// Frozen are readings of a sensor that lost its contact or of a logger that goes on with the last
+/// value. A series that moves in steps is not frozen between them.
+pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
+    let mut end = 0;
+    let runs = values.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        end - run.len()..end
+    });
+    let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
+    let far = FAR * usual_span(other);
+    let moves_far = |run: &Range<usize>| {
+        let (low, high) = range(&other[run.clone()]);
+        far > 0.0 && high - low >= far
+    };
+    let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(moves_far);
+    let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
+    let others = values.len() - count(&still);
+    match count(&rest) as f64 > OFTEN * others as f64 || others == 0 {
+        true => Vec::new(),
+        false => still,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frozen_channel_is_found_and_steps_are_not() {
+        let input: Vec<f64> = (0..2000).map(|n| (f64::from(n) * 0.02).sin()).collect();
+        let mut output = input.clone();
+        output[1200..1500].fill(output[1200]);
+        assert_eq!(frozen(&output, &input), vec![1200..1500]);
+        assert_eq!(frozen(&input, &output), vec![]);
+        // Shorter than the way over the range.
+        let mut short = input.clone();
+        short[1200..1260].fill(short[1200]);
+        assert_eq!(frozen(&short, &input), vec![]);
+        // A drive in steps, and an actuator that follows each.
+        let steps: Vec<f64> = (0..2000).map(|n| f64::from(n / 200 % 3)).collect();
+        let slow: Vec<f64> = (0..2000).map(|n| f64::from(n % 200)).collect();
+        assert_eq!(frozen(&steps, &slow), vec![]);
+        assert_eq!(frozen(&[], &[]), vec![]);
+    }
+}

@@ -1,0 +1,112 @@
+//! Finds jumps, and removes bursts: wrong readings that jump away and come back.
+
+use crate::series::spread::{quantile, usual_span};
+
+/// A jump is so many times larger than all but the largest steps,
+const TIMES: f64 = 8.0;
+/// of which there are this share.
+const LARGE: f64 = 0.02;
+/// It is also larger than this share of the usual range.
+const SMALLEST: f64 = 0.05;
+
+/// A burst has at most this share of the samples, and between these numbers of them.
+const LONGEST: usize = 50;
+const BURST: std::ops::RangeInclusive<usize> = 8..=100;
+
+/// The largest step that is no jump; `None` for a series that moves in seldom steps, where a jump is
+/// the usual way.
+fn largest_step(values: &[f64]) -> Option<(f64, f64)> {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let usual = quantile(steps, 1.0 - LARGE);
+    (usual > 0.0).then(|| (usual, (TIMES * usual).max(SMALLEST * usual_span(values))))
+}
+
+/// The samples before which the series jumps.
+pub(crate) fn jumps(values: &[f64]) -> Vec<usize> {
+    let Some((_, largest)) = largest_step(values) else {
+        return Vec::new();
+    };
+    let jump = |n: &usize| (values[*n] - values[n - 1]).abs() > largest;
+    (1..values.len()).filter(jump).collect()
+}
+
+/// Replaces bursts by linear interpolation between their neighbours, in place. Returns the indices
+/// of the samples replaced.
+pub(crate) fn remove_bursts(values: &mut [f64]) -> Vec<usize> {
+    let Some((usual, largest)) = largest_step(values) else {
+        return Vec::new();
+    };
+    let longest = (values.len() / LONGEST).clamp(*BURST.start(), *BURST.end());
+    let mut removed = Vec::new();
+    let mut n = 1;
+    while n < values.len() {
+        let (before, jump) = (values[n - 1], values[n] - values[n - 1]);
+        n += 1;
+        if jump.abs() <= largest {
+            continue;
+        }
+        // It comes back to where the series would have gone by then.
+        let start = n - 1;
+        let back = |end: &usize| {
+            let allowed = usual * (end - start + 1) as f64;
+            let after = values[*end] - before;
+            (values[*end] - values[end - 1]).abs() > largest
+                && after.abs() <= allowed.max(largest).min(0.5 * jump.abs())
+        };
+        let Some(end) = (n..values.len().min(start + longest + 1)).find(back) else {
+            continue;
+        };
+        let (after, length) = (values[end], (end - start + 1) as f64);
+        for (k, value) in (1_u32..).zip(&mut values[start..end]) {
+            *value = before + (after - before) * f64::from(k) / length;
+        }
+        removed.extend(start..end);
+        n = end + 1;
+    }
+    removed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn swings() -> Vec<f64> {
+        (0..2000)
+            .map(|n| 40.0 * (f64::from(n) * 0.02).sin())
+            .collect()
+    }
+
+    #[test]
+    fn bursts_of_either_sign_go_and_steps_stay() {
+        let clean = swings();
+        let mut read = clean.clone();
+        let (up, dropout, mixed) = (100..107, 500..530, 900..906);
+        up.clone().for_each(|n| read[n] += 60.0);
+        dropout.clone().for_each(|n| read[n] = -150.0);
+        mixed
+            .clone()
+            .for_each(|n| read[n] += if n % 2 == 0 { 70.0 } else { -70.0 });
+        let expected: Vec<usize> = up.chain(dropout).chain(mixed).collect();
+        assert_eq!(remove_bursts(&mut read), expected);
+        for (n, (found, truth)) in read.iter().zip(&clean).enumerate() {
+            // Over 30 samples, 0.6 rad, the sagitta of the sine is 40 (1 − cos 0.3).
+            assert!((found - truth).abs() < 2.0, "{n}: {found} for {truth}");
+        }
+        let square: Vec<f64> = (0..300).map(|n| f64::from(n / 10 % 2)).collect();
+        let mut cut = clean.clone();
+        cut[1000..].iter_mut().for_each(|x| *x += 100.0);
+        for series in [clean, square, cut, vec![1.0; 9], vec![]] {
+            let mut after = series.clone();
+            assert_eq!(remove_bursts(&mut after), [0; 0]);
+            assert_eq!(after, series);
+        }
+    }
+
+    #[test]
+    fn a_jump_is_where_the_series_goes_on_elsewhere() {
+        let mut cut = swings();
+        cut[1000..].iter_mut().for_each(|x| *x += 100.0);
+        assert_eq!(jumps(&cut), [1000]);
+        assert_eq!(jumps(&swings()), [0; 0]);
+    }
+}

@@ -1,0 +1,70 @@
+//! Finds rows that come twice, as when a logger writes a block again.
+
+use crate::series::spread::quantile;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Fewer equal rows in a row may be chance.
+const SHORTEST: usize = 8;
+/// Where a block begins again, the series go back by more than so many times their usual steps. A
+/// cycle that repeats exactly goes on smoothly.
+const SEAM: f64 = 3.0;
+
+/// A block of rows, and the rows before it that are the same.
+pub(crate) type Repeated = (Range<usize>, Range<usize>);
+
+/// The blocks of rows that repeat earlier ones, bit by bit.
+pub(crate) fn repeated(input: &[f64], output: &[f64]) -> Vec<Repeated> {
+    let len = input.len().min(output.len());
+    let row = |n: usize| (input[n].to_bits(), output[n].to_bits());
+    // A series that stands still repeats itself.
+    let changes = |start: usize| (start + 1..start + SHORTEST).all(|n| row(n) != row(n - 1));
+    let key = |start: usize| -> [(u64, u64); SHORTEST] { std::array::from_fn(|k| row(start + k)) };
+    let seams = [input, output].map(|values| {
+        let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        SEAM * quantile(steps, 0.98)
+    });
+    let is_seam = |n: usize| {
+        let step = |values: &[f64]| (values[n] - values[n - 1]).abs();
+        n > 0 && (step(input) > seams[0] || step(output) > seams[1])
+    };
+    let mut first: HashMap<[(u64, u64); SHORTEST], usize> = HashMap::new();
+    let mut found = Vec::new();
+    let mut n = 0;
+    while n + SHORTEST <= len {
+        if !changes(n) {
+            n += 1;
+            continue;
+        }
+        let earlier = *first.entry(key(n)).or_insert(n);
+        if earlier == n || !is_seam(n) {
+            n += 1;
+            continue;
+        }
+        let same = (0..len - n).take_while(|k| row(earlier + k) == row(n + k));
+        let count = same.count();
+        found.push((n..n + count, earlier..earlier + count));
+        n += count;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_written_twice_is_found_and_a_cycle_is_not() {
+        let input: Vec<f64> = (0..1000)
+            .map(|n| f64::from((n % 200 - 100_i32).abs()))
+            .collect();
+        let output: Vec<f64> = input.iter().map(|x| x * x).collect();
+        assert_eq!(repeated(&input, &output), vec![]);
+        let again = |values: &[f64]| [&values[..350], &values[310..]].concat();
+        let found = repeated(&again(&input), &again(&output));
+        // The triangle has been there before: the first rows of that kind are named.
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].0.start, 350);
+        assert!(found[0].0.len() >= 40);
+    }
+}
