@@ -20,7 +20,14 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     let is_model = |file: &&PathBuf| file.extension().is_some_and(|e| e == "json");
     let (files, data): (Vec<&PathBuf>, Vec<&PathBuf>) = args.files.iter().partition(is_model);
     if files.is_empty() || data.is_empty() {
-        return Err("compare needs models (*.json) and recordings".into());
+        let missing = match files.is_empty() {
+            true => "models, as model.json",
+            false => "recordings, as run.csv",
+        };
+        return Err(format!(
+            "models and recordings are compared, and there are no {missing}, among the files"
+        )
+        .into());
     }
     let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).collect();
     let folder = args.report.as_ref().map(|report| {

@@ -25,6 +25,7 @@ pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, S
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 use crate::series::NOISE;
 use crate::series::filter::low_pass;
 use crate::series::noise::noise;
@@ -225,9 +226,7 @@ fn remove_spikes(work: &mut Recording, step: Step) -> Option<Spikes> {
 fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64>> {
     let taken = match (step, &work.time) {
         (Step::Value(_), None) => {
-            return Err(Error::Preparation(
-                "resampling needs a time column: name it, or leave the step out".into(),
-            ));
+            return Err(needs_time("resampling needs the time of each sample"));
         }
         (Step::Value(step), Some(time)) => {
             let duration = time[time.len() - 1] - time[0];
@@ -285,6 +284,12 @@ fn smooth(
     }))
 }
 
+fn needs_time(what: &str) -> Error {
+    let words = "name its column ({}), or leave the step out";
+    let remedy = Remedy::new(words, [Setting::any("time")]);
+    Error::Preparation(what.into()).remedied(remedy)
+}
+
 fn undo_lag(
     work: &mut Recording,
     how: Step,
@@ -295,10 +300,7 @@ fn undo_lag(
         return Ok(None);
     }
     let Some(step) = step else {
-        return Err(Error::Preparation(
-            "a sensor lag needs a time column in which time passes: name it, or leave the lag out"
-                .into(),
-        ));
+        return Err(needs_time("a sensor's lag needs a time that passes"));
     };
     let mut report = SensorLag::default();
     match how {

@@ -23,6 +23,7 @@ mod text;
 mod time;
 mod wanted;
 
+pub(in crate::data) use format::begins_as_model;
 pub use options::ReadOptions;
 pub use remark::Remark;
 
