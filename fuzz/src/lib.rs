@@ -6,7 +6,9 @@ pub mod core_walk;
 pub mod given;
 pub mod inverse;
 pub mod model_file;
+pub mod prepare;
 pub mod scenario;
+pub mod stages;
 pub mod table;
 
 /// An error says something.

@@ -20,12 +20,13 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     let is_model = |file: &&PathBuf| file.extension().is_some_and(|e| e == "json");
     let (files, data): (Vec<&PathBuf>, Vec<&PathBuf>) = args.files.iter().partition(is_model);
     if files.is_empty() || data.is_empty() {
-        let missing = match files.is_empty() {
-            true => "models, as model.json",
-            false => "recordings, as run.csv",
+        let missing = if files.is_empty() {
+            "models"
+        } else {
+            "recordings"
         };
         return Err(format!(
-            "models and recordings are compared, and there are no {missing}, among the files"
+            "compare needs models (*.json) and recordings: there are no {missing} among the files"
         )
         .into());
     }

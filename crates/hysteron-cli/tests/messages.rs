@@ -55,7 +55,10 @@ fn wrong_words_are_told_what_was_meant() {
         ("export fmi model.json", "'fmu'"),
         ("fit run.csv", "hysteron inspect FILE"),
         ("invert model.json run.csv --input x", "--target"),
-        (&fit("--bootstrap -1"), "a whole number from 0 to 10000"),
+        (
+            "fit run.csv --input x --output y --bootstrap -1 -o n.json",
+            "a whole number from 0 to 10000",
+        ),
         (&fit("--hold-out 0.2"), "branches:20%"),
         (&fit("--hold-out 100-200"), "rows:100-200"),
         (&fit("--hold-out branch:20%"), "branches:20%"),

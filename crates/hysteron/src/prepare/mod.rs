@@ -226,7 +226,7 @@ fn remove_spikes(work: &mut Recording, step: Step) -> Option<Spikes> {
 fn resample(work: &mut Recording, step: Step, needed: bool) -> Result<Option<f64>> {
     let taken = match (step, &work.time) {
         (Step::Value(_), None) => {
-            return Err(needs_time("resampling needs the time of each sample"));
+            return Err(needs_time("resampling needs a time column"));
         }
         (Step::Value(step), Some(time)) => {
             let duration = time[time.len() - 1] - time[0];
@@ -300,7 +300,9 @@ fn undo_lag(
         return Ok(None);
     }
     let Some(step) = step else {
-        return Err(needs_time("a sensor's lag needs a time that passes"));
+        return Err(needs_time(
+            "a sensor lag needs a time column in which time passes",
+        ));
     };
     let mut report = SensorLag::default();
     match how {
