@@ -6,8 +6,10 @@ pub mod core_walk;
 pub mod given;
 pub mod inverse;
 pub mod model_file;
+pub mod prepare;
 pub mod scenario;
 pub mod session;
+pub mod stages;
 pub mod table;
 
 /// An error says something.

@@ -1,7 +1,7 @@
 //! `hysteron adapt`
 
 use crate::terminal::{Result, print};
-use crate::{args, recording, text};
+use crate::{args, model, recording, text};
 use hysteron::{
     Adapted, Columns, Compared, Errors, EstimatorOptions, Model, ShiftFound, TableWriter,
 };
@@ -17,7 +17,7 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
             );
         }
     }
-    let model = Model::read(&args.model)?;
+    let model = model::read(&args.model, &args.data)?;
     // The model is begun before the table and completed after it: if one of them cannot be written,
     // neither appears.
     let inputs = [args.model.as_path(), &args.data];

@@ -20,7 +20,15 @@ pub(crate) fn run(args: &args::Compare) -> Result<()> {
     let is_model = |file: &&PathBuf| file.extension().is_some_and(|e| e == "json");
     let (files, data): (Vec<&PathBuf>, Vec<&PathBuf>) = args.files.iter().partition(is_model);
     if files.is_empty() || data.is_empty() {
-        return Err("compare needs models (*.json) and recordings".into());
+        let missing = if files.is_empty() {
+            "models"
+        } else {
+            "recordings"
+        };
+        return Err(format!(
+            "compare needs models (*.json) and recordings: there are no {missing} among the files"
+        )
+        .into());
     }
     let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).collect();
     let folder = args.report.as_ref().map(|report| {

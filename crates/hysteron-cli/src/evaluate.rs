@@ -2,8 +2,8 @@
 
 use crate::made::Typed;
 use crate::terminal::{Result, print, say};
-use crate::{args, recording, text};
-use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Model, Quantity, Recording};
+use crate::{args, model, recording, text};
+use hysteron::{AtomicFolder, Columns, Errors, Evaluation, InverseRun, Quantity, Recording};
 use hysteron_report::Report;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -16,7 +16,7 @@ pub(crate) fn run(args: &args::Evaluate) -> Result<()> {
         Ok::<_, hysteron::Error>(folder)
     });
     let folder = folder.transpose()?;
-    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
+    let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
     let columns = Columns {
         input: &args.input,
         output: &args.output,

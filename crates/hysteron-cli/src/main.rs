@@ -12,6 +12,7 @@ mod fleet;
 mod hold_out;
 mod inspect;
 mod made;
+mod model;
 mod prepare;
 mod progress;
 mod recording;
@@ -24,14 +25,14 @@ mod table;
 mod terminal;
 mod text;
 mod track;
+mod usage;
 
-use args::{Cli, Command};
-use clap::Parser;
+use args::Command;
 use std::error::Error;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
-use terminal::say;
+use terminal::fail;
 
 fn main() -> ExitCode {
     // Ended by Ctrl-C or a signal, nothing half-written is left. Without the handler the rest works
@@ -44,7 +45,7 @@ fn main() -> ExitCode {
         hysteron::discard_unfinished();
         std::process::exit(130);
     });
-    let done = match parse().command {
+    let done = match usage::parse().command {
         Command::Fit(args) => fit::run(&args),
         Command::Fleet(args) => fleet::run(&args),
         Command::Prepare(args) => prepare::run(&args),
@@ -69,7 +70,7 @@ fn main() -> ExitCode {
         Err(error) if broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
         Err(error) => {
             let what = remedy::text_of(error.as_ref());
-            say(format_args!("{what}{}", advice(error.as_ref())));
+            fail(format_args!("{what}{}", advice(error.as_ref())));
             ExitCode::FAILURE
         }
     }
@@ -104,17 +105,4 @@ fn of_file<'a>(error: &'a (dyn Error + 'static)) -> Option<(&'a Path, ErrorKind)
 
 fn causes<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
     std::iter::successors(Some(error), |&error| error.source())
-}
-
-/// The arguments. A message about them may repeat them, so control characters are escaped as in
-/// other messages.
-fn parse() -> Cli {
-    Cli::try_parse().unwrap_or_else(|error| {
-        let text = error.to_string();
-        if error.use_stderr() && hysteron::printable(&text) != text {
-            eprint!("{}", hysteron::printable(&text));
-            std::process::exit(error.exit_code());
-        }
-        error.exit()
-    })
 }

@@ -1,13 +1,13 @@
 //! `hysteron simulate` and `hysteron invert`: tables in, tables out, row by row.
 
 use crate::terminal::{Result, print, say};
-use crate::{args, progress, recording};
-use hysteron::{Around, Counts, Invert, Model, Policy, TableReader, TableWriter};
+use crate::{args, model, progress, recording};
+use hysteron::{Around, Counts, Invert, Policy, TableReader, TableWriter};
 use serde_json::json;
 use std::path::Path;
 
 pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
-    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
+    let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
     let band = match args.band {
         false => None,
         true => Some(model.band()?.ok_or_else(|| {
@@ -41,7 +41,7 @@ pub(crate) fn simulate(args: &args::Simulate) -> Result<()> {
 }
 
 pub(crate) fn invert(args: &args::Invert) -> Result<()> {
-    let (model, load) = args.load.apply(Model::read(&args.model)?)?;
+    let (model, load) = args.load.apply(model::read(&args.model, &args.data)?)?;
     let (policy, tolerance) = match args.policy {
         args::Policy::Hold => (Policy::Hold, 0.0),
         args::Policy::Anticipate => (Policy::Anticipate, model.usual_tolerance()),
@@ -92,6 +92,15 @@ fn through(
         )?),
     };
     let mut table = TableReader::open_with(data, max_memory)?;
+    if let Some(name) = out.filter(|out| table.header().iter().any(|name| *out == Path::new(name)))
+    {
+        let (name, data) = (name.display(), data.display());
+        return Err(format!(
+            "`{name}` is a column of {data}, and -o, --output names the file that is written: \
+             ./{name} would be a file"
+        )
+        .into());
+    }
     let bar = progress::bytes_of(data);
     let counts = work(&mut table, writer, &|bytes| bar.set_position(bytes))?;
     bar.finish_and_clear();

@@ -88,7 +88,7 @@ impl Bench {
         let before = entries(self.folder.path());
         let done = self.run(line);
         assert_eq!(done.code, 1, "{line}: {}{}", done.out, done.err);
-        assert!(done.err.starts_with("hysteron: "), "{}", done.err);
+        assert!(done.err.starts_with("hysteron: error: "), "{}", done.err);
         assert_eq!(
             entries(self.folder.path()),
             before,
@@ -656,7 +656,10 @@ fn a_path_is_printed_as_it_is() {
         String::from_utf8(done.stderr).unwrap()
     };
     let none = said(&["inspect", "run --old/m.json"]);
-    assert!(none.starts_with("hysteron: run --old/m.json: "), "{none}");
+    assert!(
+        none.starts_with("hysteron: error: run --old/m.json: "),
+        "{none}"
+    );
     let path = "./--start unknown.csv";
     std::fs::write(here.join(path), "x,y\n1,2\n,3\n").unwrap();
     let broken = said(&["fit", path, "--input", "x", "--output", "y", "-o", "m.json"]);

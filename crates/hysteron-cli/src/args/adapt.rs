@@ -60,7 +60,7 @@ pub(crate) struct Tuning {
     window: Option<hysteron::Window>,
     /// refit: samples between two refits [default: at each turning point of the input, and where an
     /// eighth of the window is new]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = up_to::<u32>(u64::from(u32::MAX)))]
     every: Option<u32>,
     /// refit: how firmly weights stay where they are, relative to the window's matrix, above 0 and
     /// up to 1 [default: 0.1]
@@ -106,7 +106,7 @@ pub(crate) struct Tuning {
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true, value_parser = parse_finite)]
     movement: Option<f64>,
     /// Samples after which the weights are compared with the last good ones [default: 256]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = up_to::<u32>(u64::from(u32::MAX)))]
     trial: Option<u32>,
     /// Reject a reading whose error exceeds this many times the usual one, from 2; 0 rejects none
     /// [default: 12]
@@ -114,7 +114,7 @@ pub(crate) struct Tuning {
     gate: Option<f64>,
     /// Consecutive readings beyond the gate that agree, after which they are believed: the plant
     /// has jumped [default: 8]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = up_to::<u32>(u64::from(u32::MAX)))]
     burst: Option<u32>,
 }
 

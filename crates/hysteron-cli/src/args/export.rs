@@ -41,7 +41,7 @@ pub(crate) struct ExportC {
     /// The model
     pub(crate) model: PathBuf,
     /// Folder for the files: the algorithm (hysteron_mcu…) and the model's
-    #[arg(short, value_name = "DIR")]
+    #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
@@ -73,7 +73,7 @@ pub(crate) struct ExportFmu {
     /// The model
     pub(crate) model: PathBuf,
     /// The file, which ends with .fmu
-    #[arg(short, value_name = "FMU")]
+    #[arg(short, long = "output", value_name = "FMU")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,

@@ -95,7 +95,7 @@ pub(crate) struct FitHow {
     pub(crate) thermal: Option<Thermal>,
     /// Replicates for standard errors and the prediction band, 0 for none [default: 200, from 25
     /// levels on 60, from 45 on 0]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to(10_000))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = up_to::<usize>(10_000))]
     pub(crate) bootstrap: Option<usize>,
     /// A table of models of other actuators of the same kind (`fleet fit`): their mean and spread
     /// say what a short recording does not. Plane, levels, spacing, operator and sign are theirs
@@ -105,8 +105,9 @@ pub(crate) struct FitHow {
     ])]
     pub(crate) prior: Option<PathBuf>,
     /// What takes no part in the fit, and tests it beside a straight line and interpolation:
-    /// `branches:20%` (a share up to 33 %, spread over the recording), `rows:A-B,C-D` (counted
-    /// from 1, after the preparation), or another recording. A FILE may be given several times
+    /// `branches:20%` or just `20%` (a share up to 33 %, spread over the recording), `rows:A-B,C-D`
+    /// (counted from 1, after the preparation), or another recording. A FILE may be given several
+    /// times
     #[arg(long, value_name = "WHAT|FILE", value_parser = parse_hold_out)]
     pub(crate) hold_out: Vec<HoldOut>,
     /// Lowest and highest level [default: so that the active range is that of the input]

@@ -59,7 +59,7 @@ pub(crate) struct FleetExtract {
     /// The actuator
     pub(crate) id: String,
     /// Where the model goes
-    #[arg(short, value_name = "MODEL")]
+    #[arg(short, long = "output", value_name = "MODEL")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
@@ -71,7 +71,7 @@ pub(crate) struct FleetJoin {
     #[arg(required = true, value_name = "PART")]
     pub(crate) parts: Vec<PathBuf>,
     /// Where the table of all models goes: *.parquet
-    #[arg(short, value_name = "MODELS")]
+    #[arg(short, long = "output", value_name = "MODELS")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
@@ -93,7 +93,7 @@ pub(crate) struct FleetReport {
     /// The table of models
     pub(crate) models: PathBuf,
     /// Folder for the page and its figures (SVG, PNG)
-    #[arg(short, value_name = "DIR")]
+    #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,

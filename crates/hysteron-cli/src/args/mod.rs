@@ -239,7 +239,7 @@ pub(crate) struct Simulate {
     pub(crate) start: RunStart,
     /// Where the table goes: *.parquet or *.arrow with the types of a source of the same kind,
     /// otherwise CSV [default: standard output; with --json nowhere]
-    #[arg(short, value_name = "OUT")]
+    #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: Memory,
@@ -266,7 +266,7 @@ pub(crate) struct Invert {
     #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = parse_tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// With `anticipate`: rows to look ahead for the next reversal
-    #[arg(long, value_name = "N", default_value_t = 65_536)]
+    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = up_to::<usize>(u64::from(u32::MAX)))]
     pub(crate) look_ahead: usize,
     #[command(flatten)]
     pub(crate) load: Load,
@@ -291,7 +291,7 @@ pub(crate) struct Invert {
     pub(crate) preview: Option<f64>,
     /// Where the table goes: *.parquet or *.arrow with the types of a source of the same kind,
     /// otherwise CSV [default: standard output; with --json nowhere]
-    #[arg(short, value_name = "OUT")]
+    #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: Memory,
@@ -420,7 +420,7 @@ pub(crate) struct Design {
     #[arg(long, value_enum, default_value = "mkp")]
     pub(crate) operator: Operator,
     /// Where the profile goes, with the columns `time [s]` and `input`
-    #[arg(short, value_name = "PROFILE")]
+    #[arg(short, long = "output", value_name = "PROFILE")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,
@@ -448,7 +448,7 @@ pub(crate) struct Track {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) seeds: Option<u32>,
     /// Folder for report, scores, curves of the first run, and model
-    #[arg(short, value_name = "DIR")]
+    #[arg(short, long = "output", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) force: Force,
@@ -459,7 +459,12 @@ pub(crate) struct Track {
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder for the recordings, the model and the report
-    #[arg(short, value_name = "DIR", default_value = "hysteron-demo")]
+    #[arg(
+        short,
+        long = "output",
+        value_name = "DIR",
+        default_value = "hysteron-demo"
+    )]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,

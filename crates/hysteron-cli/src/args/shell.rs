@@ -14,7 +14,12 @@ pub(crate) struct Completions {
 #[derive(Args)]
 pub(crate) struct Man {
     /// Folder for the pages
-    #[arg(short, value_name = "DIR", default_value = "hysteron-man")]
+    #[arg(
+        short,
+        long = "output",
+        value_name = "DIR",
+        default_value = "hysteron-man"
+    )]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) force: Force,

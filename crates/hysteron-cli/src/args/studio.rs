@@ -1,8 +1,8 @@
 //! Options of `studio` and `start`.
 
-#[cfg(feature = "studio")]
-use super::Memory;
 use super::{Json, Repair};
+#[cfg(feature = "studio")]
+use super::{Memory, up_to};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ pub(crate) struct Studio {
     #[arg(value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
     /// Port on 127.0.0.1; 0 takes a free one
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = up_to::<u16>(65_535))]
     pub(crate) port: u16,
     /// Print the address, and open no browser
     #[arg(long)]

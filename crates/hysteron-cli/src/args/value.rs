@@ -137,12 +137,14 @@ pub(crate) enum HoldOut {
 }
 
 pub(super) fn parse_hold_out(text: &str) -> Result<HoldOut, String> {
-    match text.split_once(':') {
-        Some(("branches" | "rows", _)) => {
-            let part = text.parse::<hysteron::HoldOut>();
-            part.map(HoldOut::Part).map_err(|error| error.to_string())
-        }
-        _ => Ok(HoldOut::File(text.into())),
+    // A number, a span or a word with a colon is no file, unless there is one.
+    let is_part =
+        |text: &str| text.contains(':') || text.chars().all(|c| "0123456789.-".contains(c));
+    let is_file = text == "-" || std::path::Path::new(text).exists();
+    match text.parse() {
+        Ok(part) => Ok(HoldOut::Part(part)),
+        Err(hysteron::Error::Fit(problem)) if is_part(text) && !is_file => Err(problem),
+        Err(_) => Ok(HoldOut::File(text.into())),
     }
 }
 
@@ -283,9 +285,15 @@ pub(super) fn parse_finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Whole numbers from 0 on.
-pub(super) fn up_to(most: u64) -> clap::builder::RangedU64ValueParser<usize> {
-    clap::builder::RangedU64ValueParser::new().range(0..=most)
+/// Whole numbers from 0 to `most`.
+pub(super) fn up_to<N: TryFrom<u64>>(
+    most: u64,
+) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|number| *number <= most);
+        let number = number.and_then(|number: u64| N::try_from(number).ok());
+        number.ok_or_else(|| format!("a whole number from 0 to {most} is needed"))
+    }
 }
 
 pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
@@ -330,14 +338,9 @@ pub(super) fn parse_levels(text: &str) -> Result<usize, String> {
 }
 
 pub(super) fn parse_range(text: &str) -> Result<(f64, f64), String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(parse_finite)
-        .collect::<Result<_, _>>()?;
-    match numbers[..] {
-        [min, max] if min < max => Ok((min, max)),
-        [_, _] => Err("the first number must be below the second".into()),
-        _ => Err("two numbers with a comma between are needed, such as 20,80".into()),
+    match parse_limits(text)? {
+        (min, max) if min < max => Ok((min, max)),
+        _ => Err("the first number must be below the second".into()),
     }
 }
 
@@ -348,7 +351,7 @@ pub(super) fn parse_limits(text: &str) -> Result<(f64, f64), String> {
             (min, max) if min <= max => Ok((min, max)),
             _ => Err("the first number must not be above the second".into()),
         },
-        None => Err("two numbers with a comma between are needed, such as 0,1".into()),
+        None => Err("two numbers with a comma between are needed, such as 20,80".into()),
     }
 }
 

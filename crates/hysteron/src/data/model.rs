@@ -3,9 +3,15 @@
 use crate::data::output::AtomicFile;
 use crate::data::output::is_our_model;
 use crate::data::output::{Destination, Own};
+use crate::data::table::begins_as_model;
 use crate::error::{Error, Result};
-use crate::model::Model;
+use crate::model::{Model, no_model};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
+
+/// The bytes of a file that show what it is.
+const HEAD: u64 = 1 << 16;
 
 impl Model {
     /// Reads a model file.
@@ -14,11 +20,12 @@ impl Model {
     /// [`Error::File`]; [`Error::ModelFile`] for an unknown version and for a field that is
     /// missing, of the wrong type or out of range. The error names the field.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::File {
+        let bytes = std::fs::read(path).map_err(|source| Error::File {
             path: path.to_owned(),
             source,
         })?;
-        Self::from_json(&text).map_err(|error| match error {
+        let text = std::str::from_utf8(&bytes).map_err(|_| no_model());
+        text.and_then(Self::from_json).map_err(|error| match error {
             Error::ModelFile { field, problem, .. } => Error::ModelFile {
                 path: Some(path.to_owned()),
                 field,
@@ -26,6 +33,15 @@ impl Model {
             },
             other => other,
         })
+    }
+
+    /// Whether a file is there that begins as a model does.
+    #[must_use]
+    pub fn is_in(path: &Path) -> bool {
+        let mut head = Vec::new();
+        let file = path.is_file().then(|| File::open(path));
+        let read = file.map(|file| file?.take(HEAD).read_to_end(&mut head));
+        read.is_some_and(|read| read.is_ok()) && begins_as_model(&head)
     }
 
     /// Writes this model's file. It is complete before it replaces another one. A target that is

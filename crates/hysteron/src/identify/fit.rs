@@ -296,12 +296,16 @@ impl<'a> Fit<'a> {
     /// # Errors
     /// - [`crate::Error::Recording`] for an invalid recording or a constant input.
     /// - [`crate::Error::Core`] for an invalid plane.
-    /// - [`crate::Error::Fit`] for options that contradict each other.
-    /// - [`crate::Error::Thermal`] for a thermal body, creep or a lag without time.
+    /// - [`crate::Error::Fit`] for options that contradict each other, and for creep or a lag
+    ///   without time.
+    /// - [`crate::Error::Thermal`] for a thermal body without time.
     /// - The error that `progress` returns.
     pub fn run(&self, recordings: &(impl AsRef<[Recording]> + ?Sized)) -> Result<Model> {
         let recordings = recordings.as_ref();
         let mut options = self.options.clone();
+        if options.asks_after() {
+            stages::check_time(recordings)?;
+        }
         if let (true, Some(prior)) = (self.auto_start, &self.prior) {
             options.start = prior.start();
         } else if self.auto_start {

@@ -15,7 +15,7 @@ use crate::recording::{LARGEST, Quantity};
 use hysteron_core::Operator;
 use serde::{Deserialize, Serialize};
 
-const FORMAT: &str = "hysteron-model";
+pub(crate) const FORMAT: &str = "hysteron-model";
 /// The versions that can be read.
 const VERSIONS: std::ops::RangeInclusive<u64> = 1..=2;
 
@@ -174,6 +174,12 @@ impl Default for OutputEntry {
     }
 }
 
+/// The error for a file that holds something else.
+pub(crate) fn no_model() -> Error {
+    let problem = "this is no model: a model is JSON in braces, as a fit writes it";
+    fault(".", problem.into())
+}
+
 impl Model {
     /// Reads the text of a model file.
     ///
@@ -189,6 +195,9 @@ impl Model {
     /// As [`Model::read`].
     pub fn from_json(text: &str) -> Result<Self> {
         let text = text.trim_start_matches('\u{feff}');
+        if !text.trim_start().starts_with('{') {
+            return Err(no_model());
+        }
         let head: Head = parse(text)?;
         if head.format.as_deref() != Some(FORMAT) {
             let found = head

@@ -37,6 +37,8 @@ pub use body::FirstOrder;
 pub(crate) use body::needs_time;
 pub use confidence::{Confidence, INTERVAL};
 pub use excitation::Excitation;
+#[cfg(feature = "data")]
+pub(crate) use file::{FORMAT, no_model};
 pub use inverse::{Inverse, Wanted};
 pub use load::{LoadCurves, LoadDependence, LoadPart};
 pub(crate) use load::{bernstein, no_load};

@@ -33,6 +33,7 @@ pub use report::{DeadBand, LowPass, Preparation, Repairs, SensorLag, Smoothed, S
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 use crate::series::NOISE;
 use crate::series::filter::low_pass;
 use crate::series::noise::noise;
@@ -131,11 +132,10 @@ impl Clock {
             resampled: None,
         };
         if let Step::Value(step) = options.resample {
-            let time = work.time.as_deref().ok_or_else(|| {
-                Error::Preparation(
-                    "resampling needs a time column: name it, or leave the step out".into(),
-                )
-            })?;
+            let time = work
+                .time
+                .as_deref()
+                .ok_or_else(|| needs_time("resampling needs a time column"))?;
             let duration = time[time.len() - 1] - time[0];
             if step > duration {
                 return Err(Error::Preparation(format!(
@@ -230,6 +230,12 @@ fn filter(
     }))
 }
 
+fn needs_time(what: &str) -> Error {
+    let words = "name its column ({}), or leave the step out";
+    let remedy = Remedy::new(words, [Setting::any("time")]);
+    Error::Preparation(what.into()).remedied(remedy)
+}
+
 fn undo_lag(
     work: &mut Recording,
     how: Step,
@@ -241,9 +247,8 @@ fn undo_lag(
         return Ok(None);
     }
     let Some(step) = clock.step else {
-        return Err(Error::Preparation(
-            "a sensor lag needs a time column in which time passes: name it, or leave the lag out"
-                .into(),
+        return Err(needs_time(
+            "a sensor lag needs a time column in which time passes",
         ));
     };
     let mut candidate = clock.equal(work)?;

@@ -15,12 +15,13 @@ const SHORTEST: usize = 3;
 
 /// What takes no part in a fit, to test it.
 ///
-/// A text says it as on the command line: `branches:20%`, `rows:100-200`, or
+/// A text says it as on the command line: `branches:20%` or just `20%`, `rows:100-200`, or
 /// `rows:100-200,350-400`.
 ///
 /// ```
 /// use hysteron::HoldOut;
 /// assert_eq!("branches:20%".parse::<HoldOut>()?, HoldOut::Branches(0.2));
+/// assert_eq!("20%".parse::<HoldOut>()?, HoldOut::Branches(0.2));
 /// assert_eq!("rows:100-200".parse::<HoldOut>()?, HoldOut::Rows(vec![100..=200]));
 /// assert_eq!("rows:1-9,20-30".parse::<HoldOut>()?, HoldOut::Rows(vec![1..=9, 20..=30]));
 /// assert!("rows:100".parse::<HoldOut>().is_err());
@@ -42,7 +43,8 @@ impl FromStr for HoldOut {
 
     fn from_str(text: &str) -> Result<Self> {
         let needed = |what: &str| Error::Fit(format!("`{text}` cannot be held out: {what}"));
-        match text.split_once(':') {
+        let share = text.trim().ends_with('%').then_some(("branches", text));
+        match text.split_once(':').or(share) {
             Some(("branches", share)) => {
                 let number = share.trim().trim_end_matches('%').trim_end().parse::<f64>();
                 let percent = number
@@ -62,7 +64,9 @@ impl FromStr for HoldOut {
                     .ok_or_else(|| needed("two row numbers are needed, such as `rows:100-200`"))?;
                 Ok(Self::Rows(spans))
             }
-            _ => Err(needed("`branches:20%` or `rows:100-200` is needed")),
+            _ => Err(needed(
+                "`branches:20%`, `rows:100-200` or another recording is needed",
+            )),
         }
     }
 }

@@ -24,7 +24,7 @@
 //! `columnar` writes columns as Parquet (`parquet`) or Arrow (`arrow`), `spool` keeps rows until
 //! their types are known, and `splice` copies Parquet.
 //! `records` writes and reads tables of typed columns, `partial` keeps records while a long work
-//! makes them.
+//! makes them, in a file with a `lock`.
 
 mod added;
 mod arrow;
@@ -33,6 +33,7 @@ mod columnar;
 mod csv;
 mod destination;
 mod folder;
+mod lock;
 mod manifest;
 mod moves;
 mod parquet;

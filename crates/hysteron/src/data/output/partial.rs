@@ -5,11 +5,12 @@
 //! Then come the records: their length, a checksum, the record's key, its values. A record that was
 //! cut off ends the file.
 
+use super::lock::Locked;
 use super::{Kind, Value};
 use crate::error::{Error, Result};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::OpenOptions;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -34,7 +35,7 @@ type Sum = [u8; 8];
 /// An open file of records.
 pub(crate) struct Partial {
     path: PathBuf,
-    file: File,
+    file: Locked,
     end: u64,
     known: HashMap<Key, Entry>,
 }
@@ -55,18 +56,11 @@ impl Partial {
     fn open(path: &Path, key: &str) -> io::Result<Self> {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false);
-        let mut file = file.open(path)?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                return Err(io::Error::other("another process is writing this file"));
-            }
-            // File systems without locks have none to respect either.
-            Ok(()) | Err(TryLockError::Error(_)) => {}
-        }
+        let mut file = Locked::new(file.open(path)?)?;
         let head = format!("{MARK}{key}\n");
         let length = file.metadata()?.len();
         let mut found = Vec::new();
-        (&mut file)
+        (&mut *file)
             .take(head.len() as u64)
             .read_to_end(&mut found)?;
         let ours = found.starts_with(MARK.as_bytes()) || MARK.as_bytes().starts_with(&found);
@@ -95,7 +89,7 @@ impl Partial {
 
     /// Reads the keys of all whole records, and cuts off the rest.
     fn read_known(&mut self, length: u64) -> io::Result<()> {
-        let mut file = BufReader::with_capacity(1 << 20, &mut self.file);
+        let mut file = BufReader::with_capacity(1 << 20, &mut *self.file);
         let mut record = Vec::new();
         let mut head = [0; HEAD];
         while file.read_exact(&mut head).is_ok() {

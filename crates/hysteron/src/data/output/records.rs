@@ -14,7 +14,7 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -253,6 +253,13 @@ pub(crate) fn read_records(
         path: path.to_owned(),
         source,
     })?;
+    let mut mark = [0; 4];
+    let is_parquet = (&file).read_exact(&mut mark).is_ok() && mark == *b"PAR1";
+    if !is_parquet {
+        let problem =
+            "this is no table of models, which is a Parquet file: a fit of a fleet makes one";
+        return Err(damaged(problem.into()));
+    }
     let reader = caught(|| SerializedFileReader::new(file)).map_err(damaged)?;
     let about = reader.metadata().file_metadata().schema_descr_ptr();
     let place = |name: &str| {

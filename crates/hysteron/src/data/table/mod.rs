@@ -26,6 +26,7 @@ mod time;
 mod wanted;
 
 pub use budget::{Budget, Growing, Memory};
+pub(in crate::data) use format::begins_as_model;
 pub use options::ReadOptions;
 pub use remark::Remark;
 

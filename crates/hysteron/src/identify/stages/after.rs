@@ -4,9 +4,10 @@
 use crate::error::{Error, Result};
 use crate::identify::options::{Choice, FitOptions};
 use crate::identify::weights::problem::Problem;
-use crate::model::{After, CreepTerm, Model, Operators, Smooth, needs_time};
+use crate::model::{After, CreepTerm, Model, Operators, Smooth};
 use crate::progress::Progress;
 use crate::recording::Recording;
+use crate::remedy::{Remedy, Setting};
 use crate::series::range;
 use hysteron_core::MAX_CREEP;
 use serde::Serialize;
@@ -127,6 +128,21 @@ fn around(after: &After, recordings: &[Recording]) -> Result<Model> {
     Model::from(operators).with_after(&after.terms(), after.lag)
 }
 
+/// A recording without time, for options that ask for creep or a lag.
+fn no_time() -> Error {
+    let what = "creep and lag depend on time, and the recording has none";
+    let remedy = Remedy::new("name its column ({})", [Setting::any("time")]);
+    Error::Fit(what.into()).remedied(remedy)
+}
+
+/// Refuses recordings without time before anything is computed.
+pub(crate) fn check_time(recordings: &[Recording]) -> Result<()> {
+    match recordings.iter().all(|recording| recording.time.is_some()) {
+        true => Ok(()),
+        false => Err(no_time()),
+    }
+}
+
 struct Search<'a> {
     recordings: &'a [Recording],
     options: FitOptions,
@@ -144,7 +160,7 @@ impl<'a> Search<'a> {
     ) -> Result<Self> {
         let (mut step, mut longest) = (f64::INFINITY, 0.0_f64);
         for recording in recordings {
-            let (start, end) = range(recording.time.as_ref().ok_or_else(needs_time)?);
+            let (start, end) = range(recording.time.as_ref().ok_or_else(no_time)?);
             step = step.min((end - start) / recording.len().max(2).saturating_sub(1) as f64);
             longest = longest.max(end - start);
         }
@@ -270,7 +286,7 @@ impl<'a> Search<'a> {
         let mut output = Vec::with_capacity(sums.len());
         let mut from = 0;
         for recording in self.recordings {
-            let time = recording.time.as_ref().ok_or_else(needs_time)?;
+            let time = recording.time.as_ref().ok_or_else(no_time)?;
             let mut past = None;
             for n in 0..recording.len() {
                 let dt = time[n] - time[n.saturating_sub(1)];

@@ -10,6 +10,8 @@ mod load;
 mod nelder_mead;
 mod spacing;
 
+pub(crate) use after::check_time;
+
 use crate::error::Result;
 use crate::identify::choose::{Open, Seen};
 use crate::identify::history::find_start;
