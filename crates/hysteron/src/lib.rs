@@ -54,7 +54,7 @@ pub use batch::BatchModel;
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Column, ColumnSummary, Columns, Counts, Destination,
     Invert, Note, NoteKind, Others, Own, PICTURE, Places, ReadOptions, Remark, Repair, Roles, Row,
-    STANDARD_OUTPUT, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
+    STANDARD_OUTPUT, Segment, Simulate, TablePreview, TableReader, TableSummary, TableWriter,
     discard_unfinished, inspect_table, invert_table, preview_table, printable, refuse_one_file,
     shell_word, simulate_table,
 };

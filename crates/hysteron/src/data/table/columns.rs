@@ -1,7 +1,7 @@
 //! Finds the columns of a table by name, and handles their units.
 
-use super::names::{self, Found, Missing};
 use super::clock::Order;
+use super::names::{self, Found, Missing};
 use super::time::{Time, TimeUnit};
 use super::{Column, Remark, Source, TableReader};
 use crate::data::recording::Repair;
@@ -88,9 +88,9 @@ impl TableReader {
         if time.is_dated() && !was_dated {
             let first = match &self.source {
                 Source::Text(_) => self.text(column).unwrap_or_default().to_owned(),
-                Source::Numbers(numbers) => {
-                    numbers.value(at).map_or(String::new(), |value| value.to_string())
-                }
+                Source::Numbers(numbers) => numbers
+                    .value(at)
+                    .map_or(String::new(), |value| value.to_string()),
             };
             self.remarks.push(Remark::Dated {
                 column: self.name(column).to_owned(),

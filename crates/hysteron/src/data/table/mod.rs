@@ -30,7 +30,6 @@ pub use remark::Remark;
 pub(in crate::data) use arrow::{Batches, FILE as ARROW_FILE, caught as arrow_caught};
 pub(crate) use block::Block;
 pub(crate) use budget::Budget;
-pub(crate) use clock::Clock;
 pub(crate) use labels::Label;
 
 use crate::data::recording::Places;

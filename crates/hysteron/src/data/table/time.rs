@@ -26,8 +26,13 @@ impl Time {
         let Self::Unknown(unit) = self else { return };
         let unit = unit.take();
         let known = unit.is_some();
-        let units = unit.iter().cloned().chain((!known).then(TimeUnit::all).into_iter().flatten());
-        let epoch = units.into_iter().find(|unit| EPOCH.contains(&unit.in_seconds(number)));
+        let units = unit
+            .iter()
+            .cloned()
+            .chain((!known).then(TimeUnit::all).into_iter().flatten());
+        let epoch = units
+            .into_iter()
+            .find(|unit| EPOCH.contains(&unit.in_seconds(number)));
         *self = match epoch {
             Some(unit) => Self::Epoch(unit, number),
             None => Self::Numbers(unit),

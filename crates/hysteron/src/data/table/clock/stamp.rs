@@ -50,7 +50,9 @@ impl Stamp {
         let Some(colon) = text.find(':') else {
             return Self::of(Some(dates(&text)?), None);
         };
-        let hours = text[..colon].trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let hours = text[..colon]
+            .trim_end_matches(|c: char| c.is_ascii_digit())
+            .len();
         let (date, clock) = text.split_at(hours);
         let date = date.trim_end_matches(['t', ',', ' ', '_']).trim();
         match date {
@@ -120,15 +122,22 @@ fn date_of(year: i32, month: i32, day: i32) -> Option<Date> {
 
 /// The date with the day first, and with the month first; `None` if it is neither.
 fn dates(text: &str) -> Option<[Option<Date>; 2]> {
-    let separator = text.find(['-', '/', '.', ' ']).map(|at| text.as_bytes()[at]);
-    let mut parts = text.split(['-', '/', '.', ' ', ',']).filter(|part| !part.is_empty());
+    let separator = text
+        .find(['-', '/', '.', ' '])
+        .map(|at| text.as_bytes()[at]);
+    let mut parts = text
+        .split(['-', '/', '.', ' ', ','])
+        .filter(|part| !part.is_empty());
     let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
     if parts.next().is_some() {
         return None;
     }
     let month = |text: &str| {
         let known = |names: &&[&str]| names.iter().any(|name| text.starts_with(name));
-        MONTHS.iter().position(|names| known(&names)).map(|n| n as i32 + 1)
+        MONTHS
+            .iter()
+            .position(|names| known(&names))
+            .map(|n| n as i32 + 1)
     };
     let year = |text: &str| match (text.len(), number(text)?) {
         (4, year) => Some(year),
@@ -223,7 +232,10 @@ fn half_of_day(text: &str) -> (Option<bool>, &str) {
 /// What a zone is ahead of UTC; zero for none.
 fn ahead(zone: &str) -> Option<i128> {
     let zone = zone.trim_start_matches(['z']);
-    let zone = zone.strip_prefix("utc").or(zone.strip_prefix("gmt")).unwrap_or(zone);
+    let zone = zone
+        .strip_prefix("utc")
+        .or(zone.strip_prefix("gmt"))
+        .unwrap_or(zone);
     let (sign, digits) = match zone.strip_prefix('+') {
         Some(digits) => (1, digits),
         None => match zone.strip_prefix(['-', '\u{2212}']) {
