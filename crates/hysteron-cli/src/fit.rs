@@ -28,9 +28,11 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
     let file = Model::file(args.force.target(&args.out, &inputs))?;
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for data in &args.data {
-        let (recording, preparation, rate) = read(args, data, columns)?;
-        recordings.push(recording);
-        reports.push((preparation, rate));
+        for recording in recording::segments(data, columns, &args.how.repair)? {
+            let (recording, preparation, rate) = prepared(args, recording)?;
+            recordings.push(recording);
+            reports.push((preparation, rate));
+        }
     }
     let read = |file: &Path| Ok(read(args, file, columns)?.0);
     let repeats = args.repeat.iter().map(|file| read(file));
@@ -67,7 +69,10 @@ pub(crate) fn run(args: &args::Fit) -> Result<()> {
 
 /// A recording with the units asked for, and prepared.
 fn read(args: &args::Fit, data: &Path, columns: Columns<'_>) -> Result<Prepared> {
-    let mut recording = recording::read(data, columns, &args.how.repair)?;
+    prepared(args, recording::read(data, columns, &args.how.repair)?)
+}
+
+fn prepared(args: &args::Fit, mut recording: Recording) -> Result<Prepared> {
     let units = [
         (&args.how.input_unit, &mut recording.input_quantity),
         (&args.how.output_unit, &mut recording.output_quantity),

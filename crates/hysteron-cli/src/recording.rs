@@ -12,6 +12,28 @@ pub(crate) fn read(path: &Path, columns: Columns<'_>, repair: &args::Repair) -> 
     Ok(recording)
 }
 
+/// As [`read`], for a table that may hold several recordings of one experiment.
+pub(crate) fn segments(
+    path: &Path,
+    columns: Columns<'_>,
+    repair: &args::Repair,
+) -> Result<Vec<Recording>> {
+    let (segments, notes) = Recording::read_segments(path, columns, repair)?;
+    tell(path, &notes);
+    if segments.len() > 1 {
+        let rows = segments
+            .iter()
+            .map(|part| format!("{} to {}", part.first, part.last));
+        say(format_args!(
+            "{}: {} recordings of one experiment, {}",
+            path.display(),
+            segments.len(),
+            rows.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    Ok(segments.into_iter().map(|part| part.recording).collect())
+}
+
 /// As [`read`], with the other columns of the file.
 pub(crate) fn read_with_others(
     path: &Path,

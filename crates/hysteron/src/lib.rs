@@ -54,9 +54,9 @@ pub use batch::BatchModel;
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Budget, Column, ColumnSummary, Columns, Counts,
     Destination, Growing, Invert, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
-    ReadOptions, Remark, Repair, Roles, Row, STANDARD_OUTPUT, Simulate, TablePreview, TableReader,
-    TableSummary, TableWriter, discard_unfinished, inspect_table, invert_table, preview_table,
-    printable, python_literal, refuse_one_file, shell_word, simulate_table,
+    ReadOptions, Remark, Repair, Roles, Row, STANDARD_OUTPUT, Segment, Simulate, TablePreview,
+    TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table, invert_table,
+    preview_table, printable, python_literal, refuse_one_file, shell_word, simulate_table,
 };
 pub use design::{Design, DesignOptions, Leg, Rates, design, ramps};
 pub use error::{Error, Place, Result};

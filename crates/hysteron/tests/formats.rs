@@ -217,10 +217,11 @@ fn rows_are_mended() {
         ..timed("x", "y", "t")
     };
     let (recording, notes) = read(text, columns, Repair::Mend);
-    assert_eq!(recording.time.unwrap(), [0.0, 1.0, 2.0, 9.0, 10.0]);
-    assert_eq!(recording.input, [20.0, 30.0, 50.0, 70.0, 80.0]);
-    assert_eq!(recording.output, [0.0, 1.0, 4.0, 8.0, 9.0]);
-    assert_eq!(recording.load.unwrap(), [1.0, 1.0, 3.0, 1.0, 1.0]);
+    // The rows keep their order and their values: that whose time alone is wrong goes.
+    assert_eq!(recording.time.unwrap(), [0.0, 2.0, 2.0, 2.0, 9.0, 10.0]);
+    assert_eq!(recording.input, [20.0, 40.0, 50.0, 60.0, 70.0, 80.0]);
+    assert_eq!(recording.output, [0.0, 2.0, 4.0, 6.0, 8.0, 9.0]);
+    assert_eq!(recording.load.unwrap(), [1.0, 1.0, 3.0, 5.0, 1.0, 1.0]);
     let expected = [
         "lines 3 and 9 without a number: dropped",
         "line 6 going back in time: sorted",

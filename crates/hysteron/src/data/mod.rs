@@ -30,7 +30,7 @@ pub use output::{
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};
 pub use printable::{printable, python_literal, shell_word};
-pub use recording::{Columns, Note, NoteKind, Others, Places, Repair};
+pub use recording::{Columns, Note, NoteKind, Others, Places, Repair, Segment};
 pub(crate) use recording::{Group, Groups};
 pub use run::{Around, Counts, Invert, Simulate, invert_table, simulate_table};
 pub use table::{Budget, Column, Growing, Memory, ReadOptions, Remark, Row, TableReader};

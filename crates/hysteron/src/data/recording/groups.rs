@@ -154,8 +154,14 @@ impl Groups {
     }
 
     fn recording(&self, mut samples: Samples) -> Result<(Recording, Vec<Note>)> {
-        let notes = samples.mend(&self.table, self.time_at, self.repair)?;
-        let notes = notes.into_iter();
+        let mended = samples.mend(&self.table, self.time_at, self.repair)?;
+        if let Some(n) = mended.back.first() {
+            let problem = "time goes back: this is more than one recording, so that it needs more \
+                           than one label";
+            let place = Some(samples.places.at(*n));
+            return Err(self.table.fault_at(place, self.time_at, problem.into()));
+        }
+        let notes = mended.notes.into_iter();
         let notes = notes.map(|(kind, places)| Note::Rows { kind, places });
         let [input_quantity, output_quantity, load_quantity] = self.quantities.clone();
         let mut series = samples.series.into_iter();

@@ -5,7 +5,7 @@ use crate::data::recording::others::Others;
 use crate::data::recording::repair::{Note, NoteKind, Repair};
 use crate::data::recording::samples::{Samples, interpolate};
 use crate::data::table::{Column, Memory, ReadOptions, TableReader};
-use crate::error::Result;
+use crate::error::{Error, Place, Result};
 use crate::recording::{Origin, Quantity, Recording, Source};
 use crate::remedy::{Remedy, Setting};
 use bytes::Bytes;
@@ -29,7 +29,10 @@ impl Recording {
     /// Columns are found as by [`TableReader::column`]. A time in ms, min or another unit, given by
     /// its name or by the row of units, is converted to seconds.
     ///
-    /// The notes tell what was assumed and repaired, and where the time has gaps.
+    /// Timestamps and seconds since 1970 become seconds from the first row.
+    ///
+    /// The notes tell what was assumed and repaired, and where the time has gaps. A recording is
+    /// one history: [`Recording::read_segments`] reads a table of several.
     ///
     /// # Errors
     /// - [`crate::Error::File`].
@@ -62,6 +65,37 @@ impl Recording {
         let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
         let (recording, _, notes) = Self::read_as(table, columns, repair, false)?;
         Ok((recording, notes))
+    }
+
+    /// As [`Recording::read`], for a table that may hold several recordings of one experiment: its
+    /// segments, in the order of the file. Another one begins where the clock goes back, if rows
+    /// are to be repaired, and after a gap in which the input may have turned unseen. What the
+    /// actuator remembers at its beginning is unknown.
+    ///
+    /// ```
+    /// use hysteron::{Columns, Recording, Repair};
+    /// # let path = std::env::temp_dir().join(format!("hysteron-seg-{}.csv", std::process::id()));
+    /// std::fs::write(&path, "t,T,lift\n0,20,0\n1,50,2\n2,80,14\n0,20,0\n1,60,3\n")?;
+    /// let columns = Columns { time: Some("t"), ..Columns::new("T", "lift") };
+    /// let (segments, notes) = Recording::read_segments(&path, columns, Repair::Mend)?;
+    /// assert_eq!(segments[0].recording.input, [20.0, 50.0, 80.0]);
+    /// assert_eq!(segments[1].first.to_string(), "line 5");
+    /// assert!(notes[0].to_string().starts_with("line 5 going back in time"));
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn read_segments(
+        path: &Path,
+        columns: Columns<'_>,
+        options: impl Into<ReadOptions>,
+    ) -> Result<(Vec<Segment>, Vec<Note>)> {
+        let ReadOptions { repair, max_memory } = options.into();
+        let table = TableReader::open_recording(path, None, repair, &max_memory.into())?;
+        let (segments, _, notes) = read_parts(table, columns, repair, (false, true))?;
+        Ok((segments, notes))
     }
 
     /// As [`Recording::read`], from the bytes of a file. The ending of `name` counts as that of a
@@ -113,91 +147,150 @@ impl Recording {
     }
 
     fn read_as(
-        mut table: TableReader,
+        table: TableReader,
         columns: Columns<'_>,
         repair: Repair,
         with_others: bool,
     ) -> Result<(Self, Option<Others>, Vec<Note>)> {
         let path = table.path().to_owned();
-        refuse_one_name(&table, columns)?;
-        let pairs = [columns.input, columns.output].map(|name| table.pair(name));
-        let time = match (columns.time, &pairs) {
-            (Some(time), _) => Some(time.to_owned()),
-            (None, [Some(_), _]) => Some(format!("{}:1", columns.input)),
-            (None, [None, Some(_)]) => Some(format!("{}:1", columns.output)),
-            (None, [None, None]) => None,
-        };
-        let interpolated = match &pairs {
-            [Some([wanted, _]), Some([times, output])]
-                if columns.time.is_none() && !same(wanted, times) =>
-            {
-                if repair == Repair::Refuse {
-                    let problem = format!(
-                        "the times of `{}` are not those of `{}`",
-                        columns.output, columns.input
-                    );
-                    let words = "use {} to interpolate it onto them";
-                    let remedy = Remedy::new(words, [Setting::on("repair")]);
-                    return Err(table.fault(None, problem).remedied(remedy));
-                }
-                Some(interpolate(times, output, wanted))
+        let (segments, others, notes) = read_parts(table, columns, repair, (with_others, false))?;
+        match <[Segment; 1]>::try_from(segments) {
+            Ok([segment]) => Ok((segment.recording, others, notes)),
+            Err(segments) => Err(Error::Recording {
+                path: Some(path),
+                row: segments.get(1).map(|segment| segment.first),
+                column: None,
+                problem: format!(
+                    "time goes back: the table holds {} recordings, and one is needed here: write \
+                     each to a file of its own, or leave out the time",
+                    segments.len()
+                ),
+            }),
+        }
+    }
+}
+
+/// A part of a table that is one recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// Its samples.
+    pub recording: Recording,
+    /// Position of its first row in the file.
+    pub first: Place,
+    /// Position of its last row.
+    pub last: Place,
+}
+
+/// The segments of a table. `with_others` also keeps whole rows; without `parted`, a long gap
+/// begins no segment.
+fn read_parts(
+    mut table: TableReader,
+    columns: Columns<'_>,
+    repair: Repair,
+    (with_others, parted): (bool, bool),
+) -> Result<(Vec<Segment>, Option<Others>, Vec<Note>)> {
+    let path = table.path().to_owned();
+    refuse_one_name(&table, columns)?;
+    let pairs = [columns.input, columns.output].map(|name| table.pair(name));
+    let time = match (columns.time, &pairs) {
+        (Some(time), _) => Some(time.to_owned()),
+        (None, [Some(_), _]) => Some(format!("{}:1", columns.input)),
+        (None, [None, Some(_)]) => Some(format!("{}:1", columns.output)),
+        (None, [None, None]) => None,
+    };
+    let interpolated = match &pairs {
+        [Some([wanted, _]), Some([times, output])]
+            if columns.time.is_none() && !same(wanted, times) =>
+        {
+            if repair == Repair::Refuse {
+                let problem = format!(
+                    "the times of `{}` are not those of `{}`",
+                    columns.output, columns.input
+                );
+                let words = "use {} to interpolate it onto them";
+                let remedy = Remedy::new(words, [Setting::on("repair")]);
+                return Err(table.fault(None, problem).remedied(remedy));
             }
-            _ => None,
-        };
-        let input_at = table.column(columns.input)?;
-        let output_at = match interpolated {
-            // The output comes from elsewhere, so this column is not used. But there has to be one.
-            Some(_) => input_at,
-            None => table.column(columns.output)?,
-        };
-        let time_at = time.map(|name| table.time_column(&name)).transpose()?;
-        let load_at = columns.load.map(|name| table.column(name)).transpose()?;
-        let all = [Some(input_at), Some(output_at), time_at, load_at];
-        if interpolated.is_none() {
-            refuse_one_column(&table, columns, &all)?;
+            Some(interpolate(times, output, wanted))
         }
-        let asked: Vec<Column> = all.into_iter().flatten().collect();
-        let input_quantity = quantity(&table, columns.input, input_at);
-        let output_quantity = match interpolated {
-            Some(_) => Quantity::from_column(columns.output),
-            None => quantity(&table, columns.output, output_at),
-        };
-        let load_quantity = match (columns.load, load_at) {
-            (Some(name), Some(at)) => quantity(&table, name, at),
-            _ => Quantity::named("load"),
-        };
-        let others = with_others.then(|| Others::of(&table, all));
-        let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
-        let mut of_rows = samples.mend(&table, time_at, repair)?;
-        if interpolated.is_some() {
-            let places = samples.places.iter().collect();
-            of_rows.push((NoteKind::Interpolated, places));
+        _ => None,
+    };
+    let input_at = table.column(columns.input)?;
+    let output_at = match interpolated {
+        // The output comes from elsewhere, so this column is not used. But there has to be one.
+        Some(_) => input_at,
+        None => table.column(columns.output)?,
+    };
+    let time_at = time.map(|name| table.time_column(&name)).transpose()?;
+    let load_at = columns.load.map(|name| table.column(name)).transpose()?;
+    let all = [Some(input_at), Some(output_at), time_at, load_at];
+    if interpolated.is_none() {
+        refuse_one_column(&table, columns, &all)?;
+    }
+    let asked: Vec<Column> = all.into_iter().flatten().collect();
+    let input_quantity = quantity(&table, columns.input, input_at);
+    let output_quantity = match interpolated {
+        Some(_) => Quantity::from_column(columns.output),
+        None => quantity(&table, columns.output, output_at),
+    };
+    let load_quantity = match (columns.load, load_at) {
+        (Some(name), Some(at)) => quantity(&table, name, at),
+        _ => Quantity::named("load"),
+    };
+    let others = with_others.then(|| Others::of(&table, all));
+    let mut samples = Samples::gather(&mut table, &asked, interpolated.as_deref(), others)?;
+    let mut mended = samples.mend(&table, time_at, repair)?;
+    let starts = match parted {
+        true => samples.starts(&mut mended),
+        false => mended.back,
+    };
+    let mut of_rows = mended.notes;
+    if interpolated.is_some() {
+        let places = samples.places.iter().collect();
+        of_rows.push((NoteKind::Interpolated, places));
+    }
+    if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
+        table.check_time_unit(at, time);
+    }
+    let remarks = table.remarks().cloned().map(Note::File);
+    let of_rows = of_rows
+        .into_iter()
+        .map(|(kind, places)| Note::Rows { kind, places });
+    let notes = remarks.chain(of_rows).collect();
+    let others = samples.others.take();
+    let source = table.sha256()?.map(|sha256| Source { path, sha256 });
+    let ends = starts.iter().skip(1).copied().chain([samples.places.len()]);
+    let mut begin = 0;
+    let mut segments = Vec::new();
+    for end in starts.first().copied().into_iter().chain(ends) {
+        if end <= begin {
+            continue;
         }
-        if let (Some(at), Some(time)) = (time_at, samples.series.get(super::samples::TIME)) {
-            table.check_time_unit(at, time);
-        }
-        let remarks = table.remarks().cloned().map(Note::File);
-        let of_rows = of_rows
-            .into_iter()
-            .map(|(kind, places)| Note::Rows { kind, places });
-        let notes = remarks.chain(of_rows).collect();
-        let others = samples.others.take();
-        let mut series = samples.series.into_iter();
+        let mut series = samples
+            .series
+            .iter()
+            .map(|values| values[begin..end].to_vec());
         let mut next = || series.next().unwrap_or_default();
-        let recording = Self {
+        let recording = Recording {
             input: next(),
             output: next(),
             time: time_at.map(|_| next()),
             load: load_at.map(|_| next()),
-            input_quantity,
-            output_quantity,
-            load_quantity,
+            input_quantity: input_quantity.clone(),
+            output_quantity: output_quantity.clone(),
+            load_quantity: load_quantity.clone(),
             origin: Origin::Measured,
-            source: table.sha256()?.map(|sha256| Source { path, sha256 }),
+            source: source.clone(),
         };
         recording.check()?;
-        Ok((recording, others, notes))
+        segments.push(Segment {
+            recording,
+            first: samples.places.at(begin),
+            last: samples.places.at(end - 1),
+        });
+        begin = end;
     }
+    Ok((segments, others, notes))
 }
 
 /// Refuses one name for two series.

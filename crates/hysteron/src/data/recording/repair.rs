@@ -11,9 +11,9 @@ pub enum Repair {
     /// Refuse them, with an error that lists their positions.
     #[default]
     Refuse,
-    /// Repair them. Rows without a number, or with more or fewer cells than the header, are
-    /// dropped. Rows whose time goes back are sorted. Rows with equal time are merged to their
-    /// mean.
+    /// Drop rows without a number, with more or fewer cells than the header, that stand twice, or
+    /// whose time alone is wrong. Where the clock goes back, another segment begins
+    /// ([`Recording::read_segments`](crate::Recording::read_segments)). Rows keep their order.
     Mend,
 }
 
@@ -39,15 +39,21 @@ pub enum NoteKind {
     Ragged,
     /// No finite number in a column that was asked for: dropped.
     Dropped,
-    /// Time goes back: sorted.
-    Sorted,
-    /// Time equal to that of the row before: merged to the mean.
-    Merged,
+    /// The same time and values as a row before: dropped.
+    Copied,
+    /// A time that fits none of the rows around, which fit each other: dropped.
+    Alone,
+    /// Time equal to that of the row before, with other values: kept.
+    Repeated,
+    /// Time goes back: another segment begins.
+    Back,
     /// Input and output have times of their own: the output was interpolated at the times of the
     /// input.
     Interpolated,
     /// More than three times the median step since the row before: not changed.
     Gap,
+    /// A gap in which the input may have turned unseen: another segment begins.
+    LongGap,
 }
 
 impl NoteKind {
@@ -56,18 +62,21 @@ impl NoteKind {
         match self {
             Self::Ragged => "with more or fewer cells than the header",
             Self::Dropped => "without a number",
-            Self::Sorted => "going back in time",
-            Self::Merged => "at the time of the row before",
+            Self::Copied => "standing there before",
+            Self::Alone => "with a time that fits none around",
+            Self::Repeated => "at the time of the row before",
+            Self::Back => "going back in time",
             Self::Interpolated => "of an output with times of its own",
             Self::Gap => "after a gap of over three times the median time step",
+            Self::LongGap => "after a gap in which the input may have turned",
         }
     }
 
     fn mended(self) -> &'static str {
         match self {
-            Self::Ragged | Self::Dropped => ": dropped",
-            Self::Sorted => ": sorted",
-            Self::Merged => ": merged to their mean",
+            Self::Ragged | Self::Dropped | Self::Copied | Self::Alone => ": dropped",
+            Self::Repeated => ": kept",
+            Self::Back | Self::LongGap => ": a segment begins, with a history of its own",
             Self::Interpolated => ": interpolated onto the times of the input",
             Self::Gap => "",
         }

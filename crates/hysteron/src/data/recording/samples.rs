@@ -1,6 +1,7 @@
 //! Collects the samples of a recording from a table, then repairs or refuses bad rows.
 
 use crate::data::positions::{Positions, RUN};
+use crate::data::recording::history::{History, starts};
 use crate::data::recording::others::Others;
 use crate::data::recording::repair::{NoteKind, Places, Repair};
 use crate::data::table::{Column, TableReader};
@@ -105,18 +106,18 @@ impl Samples {
         }
     }
 
-    /// Takes memory for another row from the table's budget. Sorting by time needs a copy, the order,
-    /// and the position of each row.
+    /// Takes memory for another row from the table's budget. Dropping rows needs a copy, the rows
+    /// kept, and their positions.
     fn make_room(&mut self, table: &mut TableReader) -> Result<()> {
         let count = self.places.len();
         let capacity = self.series.first().map_or(0, Vec::capacity);
         if count == capacity {
             let more = capacity.max(FIRST);
-            let sorting = match self.series.len() > TIME {
+            let kept = match self.series.len() > TIME {
                 true => size_of::<usize>() + RUN,
                 false => 0,
             };
-            let row = 2 * size_of::<f64>() * self.series.len() + sorting;
+            let row = 2 * size_of::<f64>() * self.series.len() + kept;
             let taken = table.budget().take((row * more) as u128, "the recording");
             taken.map_err(|problem| table.fault(None, problem))?;
             for series in &mut self.series {
@@ -132,8 +133,8 @@ impl Samples {
         Ok(())
     }
 
-    /// Repairs rows that cannot be used, or refuses them, and notes what was found. Gaps in time
-    /// are only noted.
+    /// Drops rows that cannot be used, or refuses them. Notes what was found, and where segments
+    /// begin. The order of rows stays.
     ///
     /// # Errors
     /// [`Error::Recording`] for rows that need a repair if these are to be refused, or if no row is
@@ -143,7 +144,7 @@ impl Samples {
         table: &TableReader,
         time_at: Option<Column>,
         repair: Repair,
-    ) -> Result<Vec<(NoteKind, Places)>> {
+    ) -> Result<Mended> {
         let mut notes = Vec::new();
         let mut note = |kind, places: &Places| {
             if places.count > 0 {
@@ -152,18 +153,45 @@ impl Samples {
         };
         note(NoteKind::Ragged, &self.ragged);
         note(NoteKind::Dropped, &self.missing);
+        let mut back = Vec::new();
         if time_at.is_some() {
-            let (back, fault) = self.steps(table, time_at, |before, now| now < before);
-            note(NoteKind::Sorted, &back);
-            self.fault = self.fault.take().or(fault);
-            if back.count > 0 {
-                self.sort();
+            let History {
+                kept,
+                back: begins,
+                copies,
+                alone,
+                repeated,
+            } = History::of(&self.series);
+            let places = |rows: &[usize]| rows.iter().map(|&n| self.places.at(n)).collect();
+            note(NoteKind::Copied, &places(&copies));
+            note(NoteKind::Alone, &places(&alone));
+            note(NoteKind::Repeated, &places(&repeated));
+            note(NoteKind::Back, &places(&begins));
+            let bad = [&copies, &alone, &repeated, &begins];
+            if let Some(n) = bad.into_iter().flatten().min() {
+                let time = &self.series[TIME];
+                let problem = match n.checked_sub(1).map(|n| time[n]) {
+                    Some(before) if before == time[*n] => format!("the time is {before} again"),
+                    Some(before) if before > time[*n] => {
+                        format!("time goes back from {before} to {}", time[*n])
+                    }
+                    _ => format!("the time {} fits no row around", time[*n]),
+                };
+                let fault = table.fault_at(Some(self.places.at(*n)), time_at, problem);
+                self.fault.get_or_insert(fault);
             }
-            let (repeated, fault) = self.steps(table, time_at, |before, now| now == before);
-            note(NoteKind::Merged, &repeated);
-            self.fault = self.fault.take().or(fault);
-            if repeated.count > 0 {
-                self.merge();
+            back = begins
+                .iter()
+                .map(|n| kept.partition_point(|k| k < n))
+                .collect();
+            if kept.len() < self.places.len() {
+                for series in &mut self.series {
+                    *series = kept.iter().map(|&n| series[n]).collect();
+                }
+                self.places = kept.iter().map(|&n| self.places.at(n)).collect();
+                if let Some(others) = &mut self.others {
+                    others.keep(&kept);
+                }
             }
         }
         match self.fault.take() {
@@ -174,72 +202,49 @@ impl Samples {
             }
             _ => {}
         }
+        if back.len() > FEW && self.places.len() < SHORT * back.len() {
+            let problem = format!(
+                "time goes back {} times in {} rows: bring the rows into the order in which they \
+                 were measured, or read them without time if they are in it",
+                back.len(),
+                self.places.len()
+            );
+            let place = back.first().map(|n| self.places.at(*n));
+            return Err(table.fault_at(place, time_at, problem));
+        }
         if let (Some(_), Some((_, gaps))) = (time_at, self.series.get(TIME).and_then(|t| gaps(t)))
             && !gaps.is_empty()
         {
             let places = gaps.into_iter().map(|n| self.places.at(n)).collect();
             notes.push((NoteKind::Gap, places));
         }
-        Ok(notes)
+        Ok(Mended { notes, back })
     }
 
-    /// The rows whose time and that of the row before satisfy a condition, and the first of them as
-    /// an error.
-    fn steps(
-        &self,
-        table: &TableReader,
-        time_at: Option<Column>,
-        found: impl Fn(f64, f64) -> bool,
-    ) -> (Places, Option<Error>) {
-        let time = &self.series[TIME];
-        let rows = || (1..time.len()).filter(|&n| found(time[n - 1], time[n]));
-        let fault = rows().next().map(|n| {
-            let problem = match time[n] == time[n - 1] {
-                true => format!("the time is {} again", time[n]),
-                false => format!("time goes back from {} to {}", time[n - 1], time[n]),
-            };
-            table.fault_at(Some(self.places.at(n)), time_at, problem)
-        });
-        (rows().map(|n| self.places.at(n)).collect(), fault)
-    }
-
-    /// Sorts the rows by time. Rows with equal time stay in their order.
-    fn sort(&mut self) {
-        let time = &self.series[TIME];
-        let mut order: Vec<usize> = (0..time.len()).collect();
-        order.sort_by(|&a, &b| time[a].total_cmp(&time[b]));
-        for series in &mut self.series {
-            *series = order.iter().map(|&n| series[n]).collect();
+    /// Where segments begin, of rows some of which go `back`; with notes on long gaps.
+    pub(super) fn starts(&self, mended: &mut Mended) -> Vec<usize> {
+        if self.series.len() <= TIME {
+            return Vec::new();
         }
-        self.pick(&order);
-    }
-
-    /// Keeps the positions and other cells of these rows, in this order.
-    fn pick(&mut self, order: &[usize]) {
-        self.places = order.iter().map(|&n| self.places.at(n)).collect();
-        if let Some(others) = &mut self.others {
-            others.keep(order);
+        let mut long = Vec::new();
+        let starts = starts(&self.series, std::mem::take(&mut mended.back), &mut long);
+        if !long.is_empty() {
+            let places = long.iter().map(|&n| self.places.at(n)).collect();
+            mended.notes.push((NoteKind::LongGap, places));
         }
+        starts
     }
+}
 
-    /// Merges rows with equal time into one, with the mean of their values.
-    fn merge(&mut self) {
-        let time = &self.series[TIME];
-        let mut starts: Vec<usize> = (0..time.len())
-            .filter(|&n| n == 0 || time[n] != time[n - 1])
-            .collect();
-        starts.push(time.len());
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        for (n, series) in self.series.iter_mut().enumerate() {
-            let groups = starts.windows(2).map(|pair| &series[pair[0]..pair[1]]);
-            // The mean of equal times may differ from that time in the last bit.
-            *series = groups
-                .map(|group| if n == TIME { group[0] } else { mean(group) })
-                .collect();
-        }
-        starts.pop();
-        self.pick(&starts);
-    }
+/// More breaks than these, and so few rows between them, are no history.
+const FEW: usize = 3;
+const SHORT: usize = 4;
+
+/// What was found in the rows of a table.
+pub(super) struct Mended {
+    pub(super) notes: Vec<(NoteKind, Places)>,
+    /// The rows, among those kept, that go back in time.
+    pub(super) back: Vec<usize>,
 }
 
 /// The error, with a list of all bad rows.

@@ -1,5 +1,6 @@
 //! Rows of a table on their way into another one, many at a time.
 
+use super::time::Time;
 use super::{Column, Source, TableReader};
 use crate::data::cells;
 use crate::data::output::Needs;
@@ -174,9 +175,18 @@ impl TableReader {
                 break;
             };
             let number = |column: usize, value: f64| match time {
-                Some((time, unit)) if *time == column => unit.in_seconds(value),
+                Some((at, time)) if *at == column => {
+                    time.in_seconds(Some(value)).unwrap_or(f64::NAN)
+                }
                 _ => value,
             };
+            if matches!(time, Some((_, Time::Stamps(..)))) {
+                // Each timestamp follows from those before.
+                if block.is_full() || text.is_drained() {
+                    break;
+                }
+                continue;
+            }
             text.plain_rows(self.header.len(), &slots, number, block);
             if block.is_full() || text.is_drained() {
                 break;
@@ -205,11 +215,15 @@ impl TableReader {
         let filled = numbers.fill(block, &places, needs);
         filled.map_err(|problem| self.fault(None, problem))?;
         for (slot, column) in asked.iter().enumerate() {
-            if let Some((time, unit)) = &self.time
-                && *time == column.place()
+            if let Some((at, time)) = &mut self.time
+                && *at == column.place()
             {
-                for value in &mut block.numbers[slot] {
-                    *value = unit.in_seconds(*value);
+                let numbers = &mut block.numbers[slot];
+                if let Some(first) = numbers.iter().find(|number| number.is_finite()) {
+                    time.learn(*first);
+                }
+                for value in numbers {
+                    *value = time.in_seconds(Some(*value)).unwrap_or(f64::NAN);
                 }
             }
         }

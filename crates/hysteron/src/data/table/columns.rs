@@ -1,8 +1,10 @@
 //! Finds the columns of a table by name, and handles their units.
 
+use super::clock::Order;
 use super::names::{self, Found, Missing};
-use super::time::TimeUnit;
+use super::time::{Time, TimeUnit};
 use super::{Column, Remark, Source, TableReader};
+use crate::data::recording::Repair;
 use crate::error::Result;
 use crate::recording::Quantity;
 
@@ -35,21 +37,97 @@ impl TableReader {
         }
     }
 
-    /// As [`TableReader::column`], for a column of time. Its numbers are returned in seconds, also
-    /// if its name or unit says that they are stored in another unit.
+    /// As [`TableReader::column`], for a column of time. It is returned in seconds, also if its name
+    /// or unit says that it is stored in another unit. Timestamps and seconds since 1970 are counted
+    /// from the first row.
     ///
     /// # Errors
     /// As [`TableReader::column`].
     pub fn time_column(&mut self, name: &str) -> Result<Column> {
         let column = self.column(name)?;
-        if let Some(unit) = self.time_unit(column).filter(|unit| !unit.is_second()) {
+        let time = Time::Unknown(self.time_unit(column));
+        if let Some(unit) = time.other_unit() {
             self.remarks.push(Remark::Time {
                 column: self.name(column).to_owned(),
                 unit: unit.name.clone(),
             });
-            self.time = Some((column.0, unit));
         }
+        self.time = Some((column.0, time));
         Ok(column)
+    }
+
+    /// Reads the time of the current row.
+    pub(super) fn read_time(&mut self) -> Result<()> {
+        let Some((at, mut time)) = self.time.take() else {
+            return Ok(());
+        };
+        let column = Column(at);
+        let was_dated = time.is_dated();
+        let mut read = Ok(());
+        match &self.source {
+            Source::Numbers(numbers) => {
+                if let Some(number) = numbers.value(at).filter(|number| number.is_finite()) {
+                    time.learn(number);
+                }
+            }
+            Source::Text(_) => read = time.read(self.text(column).unwrap_or_default()),
+        }
+        if let (Err(_), Time::Stamps(clock, now)) = (read, &mut time) {
+            let cell = self.text(column).unwrap_or_default();
+            let Some(day_first) = self.day_first(column)? else {
+                let problem = format!(
+                    "`{}` may have the day first or the month, and no row tells which: write the \
+                     dates as year-month-day",
+                    super::shortened(cell),
+                );
+                return Err(self.fault(Some(column), problem));
+            };
+            clock.decided(day_first);
+            *now = clock.read(cell).ok();
+        }
+        if time.is_dated() && !was_dated {
+            let first = match &self.source {
+                Source::Text(_) => self.text(column).unwrap_or_default().to_owned(),
+                Source::Numbers(numbers) => numbers
+                    .value(at)
+                    .map_or(String::new(), |value| value.to_string()),
+            };
+            self.remarks.push(Remark::Dated {
+                column: self.name(column).to_owned(),
+                first: super::shortened(&first),
+                unit: match &time {
+                    Time::Epoch(unit, _) => Some(unit.name.clone()),
+                    _ => None,
+                },
+            });
+        }
+        self.time = Some((at, time));
+        Ok(())
+    }
+
+    /// Whether the day comes first in a column of timestamps, from all its rows; `None` if these do
+    /// not tell, or cannot be read again.
+    fn day_first(&self, column: Column) -> Result<Option<bool>> {
+        let again = match &self.held {
+            _ if self.path == std::path::Path::new("-") => return Ok(None),
+            Some(bytes) => {
+                let name = self.path.to_string_lossy();
+                Self::from_bytes(&name, bytes.clone(), self.budget.left())
+            }
+            None => Self::open_as(
+                &self.path,
+                None,
+                self.budget.left(),
+                Some(Repair::Mend),
+                None,
+                None,
+            ),
+        };
+        let (mut again, mut order) = (again?, Order::default());
+        while again.advance()? {
+            order.learn(again.text(column).unwrap_or_default());
+        }
+        Ok(order.day_first())
     }
 
     fn time_unit(&self, column: Column) -> Option<TimeUnit> {
@@ -69,7 +147,8 @@ impl TableReader {
         let duration = last - first;
         let short = step > 0.0 && step < SHORTEST_STEP;
         let odd = step > LONGEST_STEP || short || duration > LONGEST;
-        if odd && self.time_unit(column).is_none() {
+        let dated = self.time.as_ref().is_some_and(|(_, time)| time.is_dated());
+        if odd && !dated && self.time_unit(column).is_none() {
             let column = self.name(column).to_owned();
             self.remarks.push(Remark::DoubtfulTime {
                 column,
@@ -89,8 +168,12 @@ impl TableReader {
         let name = |n: usize| {
             let quantity = Quantity::from_column(&self.header[n]);
             match (&self.time, self.unit(Column(n))) {
-                (Some((time, unit)), _) if *time == n => {
-                    Quantity::with_unit(unit.removed_from(&quantity.name), "s").to_column()
+                (Some((at, time)), _) if *at == n && time.is_converted() => {
+                    let name = match time.other_unit() {
+                        Some(unit) => unit.removed_from(&quantity.name),
+                        None => &quantity.name,
+                    };
+                    Quantity::with_unit(name, "s").to_column()
                 }
                 (_, Some(unit)) if quantity.unit.is_none() => {
                     Quantity::with_unit(&quantity.name, unit).to_column()

@@ -1,7 +1,7 @@
 //! Reads tables row by row through one reader: CSV in its dialects, Parquet, Arrow and MATLAB files.
 //!
 //! `format` detects the format; `text`, `parquet`, `arrow` and `mat` read it. `columns` and `names`
-//! find columns, `time` converts units of time. `numbers` holds stored columns in memory, within the
+//! find columns, `time` converts times to seconds, and `clock` reads timestamps. `numbers` holds stored columns in memory, within the
 //! limit of `budget`. `block` reads many rows at once. `remark` reports assumptions, `options` are
 //! the settings, `hashing` computes the file's digest. `quiet` turns panics of libraries into
 //! errors. `labels` is the column whose text tells which recording a row belongs to.
@@ -9,6 +9,7 @@
 mod arrow;
 mod block;
 mod budget;
+mod clock;
 mod columns;
 mod format;
 mod hashing;
@@ -45,7 +46,7 @@ pub(crate) use parquet::caught;
 use std::path::{Path, PathBuf};
 pub(in crate::data) use text::Splitter;
 use text::Text;
-use time::TimeUnit;
+use time::Time;
 use wanted::Wanted;
 
 /// Reads a table with named columns, one row at a time.
@@ -63,8 +64,8 @@ pub struct TableReader {
     budget: Budget,
     /// What was assumed about the columns asked for.
     remarks: Vec<Remark>,
-    /// The column of time, if it is not in seconds.
-    time: Option<(usize, TimeUnit)>,
+    /// The column of time.
+    time: Option<(usize, Time)>,
     /// The texts of a column of labels that is stored as numbers.
     labels: Option<labels::Labels>,
     /// The columns of numbers that are read.
@@ -262,24 +263,28 @@ impl TableReader {
     /// [`Error::File`]; [`Error::Recording`] for a row with more or fewer cells than the header, or
     /// a part of the file that cannot be read.
     pub fn advance(&mut self) -> Result<bool> {
-        match &mut self.source {
-            Source::Text(text) => text.advance(&self.header),
+        let more = match &mut self.source {
+            Source::Text(text) => text.advance(&self.header)?,
             Source::Numbers(numbers) => {
                 let read = numbers.advance();
-                read.map_err(|problem| self.fault(None, problem))
+                read.map_err(|problem| self.fault(None, problem))?
             }
+        };
+        if more && self.time.is_some() {
+            self.read_time()?;
         }
+        Ok(more)
     }
 
     /// The current row's number in a column; `None` if there is no finite number.
     #[must_use]
     pub fn value(&self, column: Column) -> Option<f64> {
         let value = match &self.source {
-            Source::Text(text) => std::str::from_utf8(text.cell(column.0)).ok()?.parse().ok(),
+            Source::Text(_) => self.text(column).and_then(|cell| cell.parse().ok()),
             Source::Numbers(numbers) => numbers.value(column.0),
         };
         let value = match &self.time {
-            Some((time, unit)) if *time == column.0 => value.map(|value| unit.in_seconds(value)),
+            Some((at, time)) if *at == column.0 => time.in_seconds(value),
             _ => value,
         };
         value.filter(|value: &f64| value.is_finite())
@@ -296,12 +301,18 @@ impl TableReader {
         })
     }
 
+    /// The current row's cell in a column of a text.
+    pub(crate) fn text(&self, column: Column) -> Option<&str> {
+        match &self.source {
+            Source::Text(text) => std::str::from_utf8(text.cell(column.0)).ok(),
+            Source::Numbers(_) => None,
+        }
+    }
+
     /// Describes the cell of the current row where a number is needed.
     pub(crate) fn no_number(&self, column: Column) -> String {
         let found = match &self.source {
-            Source::Text(text) => {
-                shortened(std::str::from_utf8(text.cell(column.0)).unwrap_or("\u{fffd}"))
-            }
+            Source::Text(_) => shortened(self.text(column).unwrap_or("\u{fffd}")),
             Source::Numbers(numbers) => numbers
                 .value(column.0)
                 .map_or(String::new(), |v| v.to_string()),
@@ -310,7 +321,11 @@ impl TableReader {
             true => "an empty cell".to_owned(),
             false => format!("`{found}`"),
         };
-        format!("{found} where a finite number is needed")
+        let needed = match &self.time {
+            Some((at, Time::Stamps(..))) if *at == column.0 => "a timestamp as in the rows before",
+            _ => "a finite number",
+        };
+        format!("{found} where {needed} is needed")
     }
 
     /// Number of bytes read so far. For formats other than CSV, the file size times the share of

@@ -46,6 +46,15 @@ pub enum Remark {
         /// Its unit in the file.
         unit: String,
     },
+    /// The time is a date or a time of day, and was converted to seconds from the first row.
+    Dated {
+        /// Its column.
+        column: String,
+        /// The first one as it is in the file, shortened.
+        first: String,
+        /// For numbers since 1970, their unit.
+        unit: Option<String>,
+    },
     /// The time has no unit and would be unusual in seconds.
     DoubtfulTime {
         /// Its column.
@@ -91,6 +100,22 @@ impl fmt::Display for Remark {
                     "the time in column `{column}` is in {unit}: turned into seconds"
                 )
             }
+            Self::Dated {
+                column,
+                first,
+                unit,
+            } => match unit {
+                None => write!(
+                    f,
+                    "the times in column `{column}` are timestamps: read as seconds from the \
+                     first one, {first}"
+                ),
+                Some(unit) => write!(
+                    f,
+                    "the times in column `{column}` are in {unit} since 1970: read as seconds \
+                     from the first one, {first}"
+                ),
+            },
             Self::DoubtfulTime {
                 column,
                 step,

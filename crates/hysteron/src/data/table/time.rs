@@ -1,6 +1,100 @@
-//! The unit of a column of time, and its conversion to seconds.
+//! A column of time, and its conversion to seconds: numbers in a unit, seconds since 1970, or
+//! timestamps.
 
+use super::clock::{Clock, Unread};
 use crate::recording::Quantity;
+
+/// A column of time, as far as it has been read.
+#[derive(Debug, Clone)]
+pub(super) enum Time {
+    /// No number and no timestamp has come yet; the unit, if it is known.
+    Unknown(Option<TimeUnit>),
+    /// Numbers in this unit.
+    Numbers(Option<TimeUnit>),
+    /// Numbers in this unit since 1970, and the first of them.
+    Epoch(TimeUnit, f64),
+    /// Timestamps, and that of the current row in seconds.
+    Stamps(Clock, Option<f64>),
+}
+
+/// From 2001 to 2103, in seconds since 1970. Nobody records for so long.
+const EPOCH: std::ops::Range<f64> = 1e9..4.2e9;
+
+impl Time {
+    /// What the first number of the column tells of all.
+    pub(super) fn learn(&mut self, number: f64) {
+        let Self::Unknown(unit) = self else { return };
+        let unit = unit.take();
+        let known = unit.is_some();
+        let units = unit
+            .iter()
+            .cloned()
+            .chain((!known).then(TimeUnit::all).into_iter().flatten());
+        let epoch = units
+            .into_iter()
+            .find(|unit| EPOCH.contains(&unit.in_seconds(number)));
+        *self = match epoch {
+            Some(unit) => Self::Epoch(unit, number),
+            None => Self::Numbers(unit),
+        };
+    }
+
+    /// Reads the cell of a row. A column whose first cell is a timestamp is one of timestamps.
+    pub(super) fn read(&mut self, cell: &str) -> Result<(), Unread> {
+        if let Self::Unknown(_) = self {
+            match cell.parse::<f64>() {
+                Ok(number) if number.is_finite() => self.learn(number),
+                _ => {
+                    let mut clock = Clock::default();
+                    if let Ok(now) = clock.read(cell) {
+                        *self = Self::Stamps(clock, Some(now));
+                    }
+                    return Ok(());
+                }
+            }
+        }
+        if let Self::Stamps(clock, now) = self {
+            let read = clock.read(cell);
+            *now = read.ok();
+            if read == Err(Unread::Ambiguous) {
+                return Err(Unread::Ambiguous);
+            }
+        }
+        Ok(())
+    }
+
+    /// A number of the column in seconds; for timestamps, those of the current row.
+    pub(super) fn in_seconds(&self, number: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Stamps(_, now) => *now,
+            Self::Epoch(unit, first) => number.map(|number| unit.in_seconds(number - first)),
+            Self::Unknown(unit) | Self::Numbers(unit) => number.map(|number| match unit {
+                Some(unit) => unit.in_seconds(number),
+                None => number,
+            }),
+        }
+    }
+
+    /// The unit, if it is not the second.
+    pub(super) fn other_unit(&self) -> Option<&TimeUnit> {
+        match self {
+            Self::Stamps(..) => None,
+            Self::Epoch(unit, _) => Some(unit),
+            Self::Unknown(unit) | Self::Numbers(unit) => unit.as_ref(),
+        }
+        .filter(|unit| !unit.is_second())
+    }
+
+    /// Whether its numbers are others than those of the file.
+    pub(super) fn is_converted(&self) -> bool {
+        self.is_dated() || self.other_unit().is_some()
+    }
+
+    /// Whether seconds are counted from the first sample.
+    pub(super) fn is_dated(&self) -> bool {
+        matches!(self, Self::Epoch(..) | Self::Stamps(..))
+    }
+}
 
 /// The known units: how they are written, and their length in seconds.
 const UNITS: [(&[&str], f64); 6] = [
@@ -45,6 +139,11 @@ impl TimeUnit {
                     .and_then(Self::named)
             }
         }
+    }
+
+    /// Units in which seconds since 1970 may be counted.
+    fn all() -> impl Iterator<Item = Self> {
+        ["s", "ms", "us", "ns"].into_iter().filter_map(Self::named)
     }
 
     fn named(name: &str) -> Option<Self> {

@@ -1,0 +1,118 @@
+//! The order of rows is history: it is never changed. Where the clock says that rows are no
+//! continuation of those before them, another segment begins.
+
+use super::samples::TIME;
+use crate::recording::long_gaps;
+
+/// What the clock tells of rows, by their index.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct History {
+    /// Rows to keep, in the order of the file.
+    pub(super) kept: Vec<usize>,
+    /// Rows that go back in time, with which a segment begins.
+    pub(super) back: Vec<usize>,
+    /// Rows that stand before in the same segment, with the same time and values.
+    pub(super) copies: Vec<usize>,
+    /// Rows whose time fits neither the row before nor the one after, which fit each other.
+    pub(super) alone: Vec<usize>,
+    /// Rows that are kept, at the time of the row before.
+    pub(super) repeated: Vec<usize>,
+}
+
+impl History {
+    pub(super) fn of(series: &[Vec<f64>]) -> Self {
+        let time = &series[TIME];
+        let mut history = Self::default();
+        let Self {
+            kept,
+            back,
+            copies,
+            alone,
+            repeated,
+        } = &mut history;
+        let same = |a: usize, b: usize| series.iter().all(|values| values[a] == values[b]);
+        let (mut begin, mut n) = (0, 0);
+        while n < time.len() {
+            let before = &kept[begin..];
+            let last = before.last().copied();
+            let Some(last) = last.filter(|&last| time[n] <= time[last]) else {
+                kept.push(n);
+                n += 1;
+                continue;
+            };
+            // The rows up to the last one once more.
+            let from = before.partition_point(|&row| time[row] < time[n]);
+            let count = before.len() - from;
+            let copied = (1..=time.len() - n).contains(&count)
+                && before[from..].iter().zip(n..).all(|(&row, n)| same(row, n));
+            if copied {
+                copies.extend(n..n + count);
+                n += count;
+            } else if time[n] == time[last] {
+                repeated.push(n);
+                kept.push(n);
+                n += 1;
+            } else if before.len() > 1 && time[n] >= time[before[before.len() - 2]] {
+                alone.extend(kept.pop());
+            } else if time.get(n + 1).is_some_and(|next| *next >= time[last]) {
+                alone.push(n);
+                n += 1;
+            } else {
+                begin = kept.len();
+                back.push(n);
+                kept.push(n);
+                n += 1;
+            }
+        }
+        history
+    }
+}
+
+/// The indices at which segments begin, in rows that were kept: those that go `back`, and those
+/// after a long gap, which are added to `gaps`.
+pub(super) fn starts(series: &[Vec<f64>], back: Vec<usize>, gaps: &mut Vec<usize>) -> Vec<usize> {
+    let time = &series[TIME];
+    let ends = back.iter().copied().chain([time.len()]);
+    let mut begin = 0;
+    for end in ends {
+        let found = long_gaps(&time[begin..end], &series[0][begin..end]);
+        gaps.extend(found.into_iter().map(|n| begin + n));
+        begin = end;
+    }
+    let mut starts = back;
+    starts.extend(gaps.iter());
+    starts.sort_unstable();
+    starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(time: &[f64], value: &[f64]) -> History {
+        let series = [value, value, time].map(<[f64]>::to_vec);
+        History::of(&series)
+    }
+
+    #[test]
+    fn a_clock_that_goes_back_begins_a_segment() {
+        let found = of(
+            &[0.0, 1.0, 2.0, 3.0, 1.5, 2.5],
+            &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        );
+        assert_eq!((&found.back[..], found.kept.len()), (&[4][..], 6));
+        // Rows written twice are no other segment; nor is one whose own time is wrong.
+        let time = [0.0, 1.0, 2.0, 3.0, 2.0, 3.0, 4.0];
+        let found = of(&time, &[1.0, 2.0, 3.0, 4.0, 3.0, 4.0, 5.0]);
+        assert_eq!(
+            (found.copies, found.kept),
+            (vec![4, 5], vec![0, 1, 2, 3, 6])
+        );
+        for wrong in [-50.0, 50.0] {
+            let found = of(&[0.0, 1.0, wrong, 3.0, 4.0], &[1.0, 2.0, 3.0, 4.0, 5.0]);
+            assert_eq!((found.alone, found.back.len()), (vec![2], 0), "{wrong}");
+        }
+        let found = of(&[0.0, 1.0, 1.0, 1.0], &[1.0, 2.0, 3.0, 3.0]);
+        assert_eq!((found.repeated, found.copies), (vec![2], vec![]));
+    }
+}
