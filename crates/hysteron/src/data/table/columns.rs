@@ -112,12 +112,12 @@ impl TableReader {
             _ if self.path == std::path::Path::new("-") => return Ok(None),
             Some(bytes) => {
                 let name = self.path.to_string_lossy();
-                Self::from_bytes(&name, bytes.clone(), self.budget.left())
+                Self::from_bytes(&name, bytes.clone(), self.budget.memory().clone())
             }
             None => Self::open_as(
                 &self.path,
                 None,
-                self.budget.left(),
+                self.budget.memory(),
                 Some(Repair::Mend),
                 None,
                 None,

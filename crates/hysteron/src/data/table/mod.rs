@@ -227,7 +227,7 @@ impl TableReader {
         &self,
         file: &std::fs::File,
     ) -> std::result::Result<Pages, String> {
-        Pages::open(file, self.budget)
+        Pages::open(file, self.budget.another())
     }
 
     pub(crate) fn budget(&mut self) -> &mut Budget {
