@@ -10,6 +10,7 @@ mod choose;
 mod doubt;
 mod fit;
 mod history;
+pub(crate) mod kept;
 mod monotone;
 mod options;
 mod outliers;
