@@ -12,6 +12,7 @@ mod fit;
 mod history;
 pub(crate) mod kept;
 mod monotone;
+mod neighbours;
 mod options;
 mod outliers;
 mod prior;

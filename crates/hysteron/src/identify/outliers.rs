@@ -2,6 +2,7 @@
 //! model.
 
 use crate::error::Result;
+use crate::identify::neighbours::Neighbours;
 use crate::identify::options::{FitOptions, LoadLaw, SOME_SMOOTHNESS};
 use crate::identify::weights::problem::Problem;
 use crate::model::Outlier;
@@ -30,8 +31,9 @@ const SETTLED: f64 = 1e-3;
 ///
 /// What a smooth model leaves of the output is compared from sample to sample. The misfit of a
 /// model changes slowly along a recording, so a reading that stands out from those on both sides is
-/// not the model's fault (Hampel 1974). It loses its influence altogether, unlike with weights that
-/// only fall with the distance (Huber 1964).
+/// suspect (Hampel 1974). On a steep branch the misfit changes fast. So a reading that agrees with
+/// its neighbours is none ([`Neighbours`]). An outlier loses its influence altogether, unlike with
+/// weights that only fall with the distance (Huber 1964).
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -105,8 +107,10 @@ fn judged(
             .iter_mut()
             .zip(moved)
             .for_each(|(r, moved)| *r += moved);
-        let own = isolated(residual, DEVIATIONS, smallest[recording]);
-        found.extend(own.into_iter().map(|(sample, by)| Outlier {
+        let far = isolated(residual, DEVIATIONS, smallest[recording]);
+        let with = Neighbours::of(own, &far, smallest[recording]);
+        let alone = far.iter().filter(|(sample, _)| !with.agree(*sample));
+        found.extend(alone.map(|&(sample, by)| Outlier {
             recording,
             sample,
             by,
