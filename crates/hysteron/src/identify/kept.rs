@@ -6,6 +6,7 @@ use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
 use serde_json::json;
+use std::collections::HashSet;
 
 /// The model with the start that was chosen, or found before its recordings. It stands in the model
 /// file, so whoever reads the file starts where the fit did.
@@ -70,24 +71,20 @@ pub(crate) fn tell_errors(
     recordings: &[Recording],
     fitted: impl Fn(usize) -> bool,
 ) -> Result<()> {
-    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
-    let mut begins = Vec::new();
-    for recording in recordings {
-        begins.push(measured.len());
-        measured.extend_from_slice(&recording.output);
-        modelled.extend(model.run_over(&mut model.start(), recording)?.0);
+    let outliers = model.fit.iter().flat_map(|fit| &fit.outliers);
+    let left_out: HashSet<(usize, usize)> = outliers.map(|o| (o.recording, o.sample)).collect();
+    let (mut measured, mut modelled, mut before) = (Vec::new(), Vec::new(), 0);
+    for (n, recording) in recordings.iter().enumerate() {
+        let (output, _) = model.run_over(&mut model.start(), recording)?;
+        let counts = |sample| fitted(before + sample) && !left_out.contains(&(n, sample));
+        for (sample, h) in output.into_iter().enumerate().filter(|(n, _)| counts(*n)) {
+            measured.push(recording.output[sample]);
+            modelled.push(h);
+        }
+        before += recording.len();
     }
-    let Some(fit) = &mut model.fit else {
-        return Ok(());
-    };
-    let mut counts: Vec<bool> = (0..measured.len()).map(fitted).collect();
-    for outlier in &fit.outliers {
-        let place = begins[outlier.recording] + outlier.sample;
-        counts[place] = false;
-        // The range is that of the other readings.
-        measured[place] -= outlier.by;
-    }
-    if let Some(errors) = Errors::between(&measured, &modelled, |n| counts[n]) {
+    let errors = Errors::between(&measured, &modelled, |_| true);
+    if let (Some(fit), Some(errors)) = (&mut model.fit, errors) {
         fit.rmse = errors.rmse;
         fit.max_abs = errors.max_abs;
         fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
