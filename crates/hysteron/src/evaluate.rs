@@ -119,14 +119,7 @@ fn keeping(
     recording.check()?;
     check_units(model, recording)?;
     let (begin, estimated_from) = begin(model, recording, start)?;
-    let around = Surroundings::of(model, recording);
-    let mut output_model = vec![0.0; recording.len()];
-    let clipped = model.run_in(
-        &mut begin.clone(),
-        &recording.input,
-        around,
-        &mut output_model,
-    )?;
+    let (output_model, clipped) = model.run_over(&mut begin.clone(), recording)?;
     let forward = compare(&recording.output, &output_model);
     let mut band = BandEvaluation::of(model, &begin, recording, &output_model)?;
     if let Some(band) = &mut band {

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::evaluate::{begin, compare};
-use crate::model::{Model, Start, Surroundings};
+use crate::model::{Model, Start};
 use crate::recording::Recording;
 use crate::series::Errors;
 
@@ -40,9 +40,7 @@ pub struct Forward {
 pub fn forward(model: &Model, recording: &Recording, start: Start) -> Result<Forward> {
     recording.check()?;
     let (mut state, _) = begin(model, recording, start)?;
-    let mut output_model = vec![0.0; recording.len()];
-    let around = Surroundings::of(model, recording);
-    model.run_in(&mut state, &recording.input, around, &mut output_model)?;
+    let (output_model, _) = model.run_over(&mut state, recording)?;
     let fit = model.fit.as_ref();
     Ok(Forward {
         errors: compare(&recording.output, &output_model),

@@ -1,8 +1,9 @@
 //! Fits a model while part of the data is held out, and tests it there beside simple rivals.
 
 use crate::error::{Error, Result};
-use crate::identify::{Advice, Fit, find_start};
-use crate::model::{Model, Start, State, Surroundings};
+use crate::identify::kept::tell_errors;
+use crate::identify::{Advice, Fit};
+use crate::model::{Model, Start};
 use crate::recording::{HoldOut, Recording, Split};
 use crate::rivals::{Rival, RivalKind};
 use crate::series::Errors;
@@ -138,16 +139,22 @@ pub fn fit_holding_out(
                 .into(),
         ));
     }
-    let (mut measured, mut modelled, mut held) = (Vec::new(), Vec::new(), Vec::new());
-    for (recording, split) in recordings.iter().zip(splits) {
-        let mut state = begin(&model, &split)?;
-        let mut output = vec![0.0; recording.len()];
-        let around = Surroundings::of(&model, recording);
-        model.run_in(&mut state, &recording.input, around, &mut output)?;
-        measured.extend_from_slice(&recording.output);
-        modelled.extend(output);
-        held.extend(split.held_out);
+    // The state was found after rows that were held out. Before them it is not known.
+    if splits[0].held_out[0]
+        && model
+            .fit
+            .as_ref()
+            .is_some_and(|fit| fit.start == Start::Unknown)
+    {
+        model = model.with_start(None)?;
     }
+    count_in_file(&mut model, &splits);
+    let held: Vec<bool> = splits
+        .into_iter()
+        .flat_map(|split| split.held_out)
+        .collect();
+    tell_errors(&mut model, recordings, |n| !held[n])?;
+    let (measured, modelled) = simulated(&model, recordings)?;
     let report = compare(&training, recordings, &measured, &modelled, |n| held[n])?;
     report.record_in(&mut model);
     Ok((model, report))
@@ -164,39 +171,35 @@ pub fn held_out(
     held_out: &(impl AsRef<[Recording]> + ?Sized),
 ) -> Result<HeldOut> {
     let recordings = held_out.as_ref();
-    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
-    for recording in recordings {
-        recording.check()?;
-        let mut output = vec![0.0; recording.len()];
-        let around = Surroundings::of(model, recording);
-        model.run_in(&mut as_fitted(model), &recording.input, around, &mut output)?;
-        measured.extend_from_slice(&recording.output);
-        modelled.extend(output);
-    }
+    recordings.iter().try_for_each(Recording::check)?;
+    let (measured, modelled) = simulated(model, recordings)?;
     compare(fitted.as_ref(), recordings, &measured, &modelled, |_| true)
 }
 
-/// Where the model starts on the whole recording. An unknown start is found from the outputs at the
-/// beginning that were fitted.
-fn begin(model: &Model, split: &Split) -> Result<State> {
-    let unknown = model
-        .fit
-        .as_ref()
-        .is_some_and(|fit| fit.start == Start::Unknown);
-    match split.training.first() {
-        _ if !unknown => Ok(as_fitted(model)),
-        Some(head) if !split.held_out[0] => {
-            let (found, _) = find_start(model, head)?;
-            model.restore(&found.turning_points, found.input)
-        }
-        _ => Ok(model.off()),
+/// The measured outputs of all recordings, and those of the model from where it starts.
+fn simulated(model: &Model, recordings: &[Recording]) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
+    for recording in recordings {
+        measured.extend_from_slice(&recording.output);
+        modelled.extend(model.run_over(&mut model.start(), recording)?.0);
     }
+    Ok((measured, modelled))
 }
 
-fn as_fitted(model: &Model) -> State {
-    match model.fit.as_ref().map(|fit| fit.start) {
-        Some(Start::On) => model.saturated(),
-        _ => model.start(),
+/// Counts the outliers of a fit to the training parts as in the whole recordings.
+fn count_in_file(model: &mut Model, splits: &[Split]) {
+    let mut places = Vec::new();
+    for (recording, split) in splits.iter().enumerate() {
+        let left = split.held_out.iter().enumerate();
+        let mut left = left.filter(|(_, held)| !**held).map(|(sample, _)| sample);
+        for part in &split.training {
+            let samples: Vec<usize> = left.by_ref().take(part.len()).collect();
+            places.push((recording, samples));
+        }
+    }
+    for outlier in model.fit.iter_mut().flat_map(|fit| &mut fit.outliers) {
+        let (recording, samples) = &places[outlier.recording];
+        (outlier.recording, outlier.sample) = (*recording, samples[outlier.sample]);
     }
 }
 

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::identify::choose::Open;
 use crate::identify::choose::start::usual_start;
 use crate::identify::doubt::sessions::widen;
+use crate::identify::kept;
 use crate::identify::options::{Choice, FitOptions, LoadLaw, Spacing};
 use crate::identify::outliers;
 use crate::identify::prior::WeightPrior;
@@ -339,6 +340,8 @@ impl<'a> Fit<'a> {
         if let Some(fit) = &mut model.fit {
             fit.outliers = outliers;
         }
+        let mut model = kept::with_start(model, &seen, options.start)?;
+        kept::tell_errors(&mut model, recordings, |_| true)?;
         widen(&mut model, &self.repeats)?;
         Ok(model)
     }

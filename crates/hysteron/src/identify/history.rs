@@ -105,10 +105,7 @@ impl Search<'_> {
                 error: f64::INFINITY,
             });
         };
-        let mut output = vec![0.0; self.recording.len()];
-        let around = Surroundings::of(self.model, self.recording);
-        self.model
-            .run_in(&mut state, &self.recording.input, around, &mut output)?;
+        let (output, _) = self.model.run_over(&mut state, self.recording)?;
         let pairs = self.recording.output.iter().zip(&output);
         let error = pairs.map(|(y, h)| (y - h) * (y - h)).sum();
         Ok(History { points, error })

@@ -2,6 +2,7 @@
 //! model.
 
 use crate::error::Result;
+use crate::identify::neighbours::Neighbours;
 use crate::identify::options::{FitOptions, LoadLaw, SOME_SMOOTHNESS};
 use crate::identify::weights::problem::Problem;
 use crate::model::Outlier;
@@ -30,8 +31,9 @@ const SETTLED: f64 = 1e-3;
 ///
 /// What a smooth model leaves of the output is compared from sample to sample. The misfit of a
 /// model changes slowly along a recording, so a reading that stands out from those on both sides is
-/// not the model's fault (Hampel 1974). It loses its influence altogether, unlike with weights that
-/// only fall with the distance (Huber 1964).
+/// suspect (Hampel 1974). On a steep branch the misfit changes fast. So a reading that agrees with
+/// its neighbours is none ([`Neighbours`]). An outlier loses its influence altogether, unlike with
+/// weights that only fall with the distance (Huber 1964).
 ///
 /// # Errors
 /// As [`crate::Fit::run`].
@@ -75,6 +77,9 @@ pub(super) fn mended<'a>(
     Ok((mended, outliers))
 }
 
+/// A sample that is far from its neighbours, and how far.
+type Far = (usize, f64);
+
 /// The outliers of the recordings, judged by a model of the mended ones. `smallest` has the least
 /// distance that counts in each.
 fn judged(
@@ -105,14 +110,37 @@ fn judged(
             .iter_mut()
             .zip(moved)
             .for_each(|(r, moved)| *r += moved);
-        let own = isolated(residual, DEVIATIONS, smallest[recording]);
-        found.extend(own.into_iter().map(|(sample, by)| Outlier {
+        let (far, residual) = isolated(residual, DEVIATIONS, smallest[recording]);
+        let with = Neighbours::of(own, &far, smallest[recording]);
+        let (agree, alone): (_, Vec<Far>) = far.into_iter().partition(|far| with.agree(far.0));
+        let heights = heights(residual, agree, &alone);
+        found.extend(alone.iter().zip(heights).map(|((sample, _), by)| Outlier {
             recording,
-            sample,
+            sample: *sample,
             by,
         }));
     }
     Ok(found)
+}
+
+/// The heights of the readings that are `alone` above the line through the nearest others, among
+/// which are those that `agree`. The `residual` is without the heights of both.
+fn heights(mut residual: Vec<f64>, agree: Vec<Far>, alone: &[Far]) -> Vec<f64> {
+    for (sample, height) in agree {
+        residual[sample] += height;
+    }
+    let mut heights = Vec::with_capacity(alone.len());
+    for run in alone.chunk_by(|a, b| a.0 + 1 == b.0) {
+        let (first, end) = (run[0].0, run[0].0 + run.len());
+        let after = residual.get(end).copied();
+        let before = first.checked_sub(1).map(|n| residual[n]).or(after);
+        let before = before.unwrap_or_default();
+        let step = (after.unwrap_or(before) - before) / (run.len() + 1) as f64;
+        let line = (1_u32..).map(|n| before + step * f64::from(n));
+        let read = run.iter().map(|(n, height)| residual[*n] + height);
+        heights.extend(read.zip(line).map(|(read, line)| read - line));
+    }
+    heights
 }
 
 /// The size of the range of the values without the hundredth that is largest and the hundredth that

@@ -4,7 +4,6 @@
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::pivoting;
-use crate::identify::stages::with_found_start;
 use crate::identify::weights::corner_system::eliminate;
 use crate::identify::weights::fit::described;
 use crate::identify::weights::gram::dot;
@@ -17,7 +16,6 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use hysteron_core::Operator;
 use serde_json::json;
-use std::collections::BTreeMap;
 
 /// Fewer models than this do not show how actuators differ.
 const ENOUGH: usize = 10;
@@ -186,14 +184,9 @@ impl WeightPrior {
         let sign = self.model.sign();
         let model = described(&problem, &Fitted { solution, sign }, recordings)?;
         let mut model = model.with_spacing(self.model.spacing().to_vec())?;
-        let mut notes = BTreeMap::new();
         let record = json!({ "models": self.count, "noise": self.noise.sqrt() });
-        notes.insert("prior".to_owned(), record);
-        if let ([recording], Start::Unknown) = (recordings, options.start) {
-            model = with_found_start(model, recording, &mut notes)?;
-        }
         if let Some(fit) = &mut model.fit {
-            fit.other.extend(notes);
+            fit.other.insert("prior".to_owned(), record);
         }
         Ok(model)
     }

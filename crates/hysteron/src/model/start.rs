@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::model::{Model, State};
 use serde::{Deserialize, Serialize};
 
-/// The state of the operators that was found before the first sample of the recording fitted.
+/// The state of the operators before the first sample of the recording fitted: chosen or found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object in braces")]
 pub struct FittedStart {
@@ -15,14 +15,14 @@ pub struct FittedStart {
 }
 
 impl Model {
-    /// The state that the model starts from: the one found by its fit, or else every operator off.
+    /// The state that the model starts from: the one that its fit kept, or else every operator off.
     /// Body, creep and lag are at rest with the first input.
     #[must_use]
     pub fn start(&self) -> State {
         self.fitted().unwrap_or_else(|| self.off())
     }
 
-    /// The state that the fit found before the first sample; `None` if there is none.
+    /// The state that the fit kept for before the first sample; `None` for every operator off.
     #[must_use]
     pub fn fitted(&self) -> Option<State> {
         let start = self.start.as_ref()?;
@@ -40,6 +40,15 @@ impl Model {
     #[must_use]
     pub fn saturated(&self) -> State {
         State::new(self, self.operators().saturated())
+    }
+
+    /// The same model, which starts from the turning points of `state`.
+    pub(crate) fn starting_from(self, state: &State) -> Result<Self> {
+        let start = FittedStart {
+            turning_points: state.turning_points().collect(),
+            input: state.input(),
+        };
+        self.with_start(Some(start))
     }
 
     /// The same model, which starts where `start` says.

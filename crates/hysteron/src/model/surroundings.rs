@@ -44,6 +44,20 @@ impl Model {
         Ok(output)
     }
 
+    /// The outputs over a recording from `state`, and how many inputs were clipped. Whatever is said
+    /// of a model on a recording comes from here: the error of its fit, of `evaluate`, of what was
+    /// held out.
+    pub(crate) fn run_over(
+        &self,
+        state: &mut State,
+        recording: &Recording,
+    ) -> Result<(Vec<f64>, ClippedCount)> {
+        let mut output = vec![0.0; recording.len()];
+        let around = Surroundings::of(self, recording);
+        let clipped = self.run_in(state, &recording.input, around, &mut output)?;
+        Ok((output, clipped))
+    }
+
     /// Moves `state` through `input` and writes the outputs to `output`, which is at least as long.
     /// Returns how many inputs of the operators were clipped. The time step of the first sample is
     /// zero, if `surroundings` does not tell the time before it.

@@ -30,11 +30,16 @@ pub(crate) fn remove(values: &mut [f64], deviations: f64) -> Vec<usize> {
 }
 
 /// The values that stand out from those on both sides by more than `deviations` and `floor`, as
-/// pairs of index and height. Unlike in [`remove`], the first and last ones count too.
-pub(crate) fn isolated(mut values: Vec<f64>, deviations: f64, floor: f64) -> Vec<(usize, f64)> {
+/// pairs of index and height, and the values without these heights. Unlike in [`remove`], the first
+/// and last ones count too.
+pub(crate) fn isolated(
+    mut values: Vec<f64>,
+    deviations: f64,
+    floor: f64,
+) -> (Vec<(usize, f64)>, Vec<f64>) {
     let len = values.len();
     if len <= REACH {
-        return Vec::new();
+        return (Vec::new(), values);
     }
     // Mirrored at both ends.
     values.reserve_exact(2 * REACH);
@@ -44,7 +49,10 @@ pub(crate) fn isolated(mut values: Vec<f64>, deviations: f64, floor: f64) -> Vec
     values.splice(0..0, before);
     let removed = remove_above(&mut values, deviations, floor).into_iter();
     let own = removed.filter(|(n, _)| (REACH..REACH + len).contains(n));
-    own.map(|(n, read)| (n - REACH, read - values[n])).collect()
+    let far = own.map(|(n, read)| (n - REACH, read - values[n])).collect();
+    values.truncate(REACH + len);
+    values.drain(..REACH);
+    (far, values)
 }
 
 /// Replaces what stands out by more than `deviations` and `floor`. Returns the indices of what was

@@ -23,8 +23,7 @@ pub(crate) fn widen(model: &mut Model, repeats: &[Recording]) -> Result<()> {
         let (start, _) = find_start(model, repeat)?;
         let begin = model.restore(&start.turning_points, start.input)?;
         let around = Surroundings::of(model, repeat);
-        let mut output = vec![0.0; repeat.len()];
-        model.run_in(&mut begin.clone(), &repeat.input, around, &mut output)?;
+        let (output, _) = model.run_over(&mut begin.clone(), repeat)?;
         let half = band.run(&begin, &model.seen(&repeat.input, around)?)?;
         let errors = repeat.output.iter().zip(&output).map(|(y, h)| y - h);
         values.extend(errors.zip(half).map(|(error, half)| {

@@ -14,13 +14,12 @@ pub(crate) use after::check_time;
 
 use crate::error::Result;
 use crate::identify::choose::{Open, Seen};
-use crate::identify::history::find_start;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
 use crate::identify::weights::fit::fit_weights_without;
-use crate::model::{Found, Model, Outlier, Plane, Start, Surroundings};
+use crate::model::{Found, Model, Outlier, Plane};
 use crate::progress::Progress;
 use crate::recording::Recording;
-use crate::series::{Errors, range};
+use crate::series::range;
 use hysteron_core::Axis;
 use serde_json::json;
 use std::borrow::Cow;
@@ -91,67 +90,13 @@ pub(crate) fn fit(
         seen = Cow::Owned(after::before(&after, &seen)?);
         found.after = after;
     }
-    let changed = !found.after.is_none();
     let model = fit_weights_without(&seen, &options, asked.outliers, progress)?;
     let mut model = model.with_stages(found)?;
-    if options.start == Start::Unknown && recordings.len() == 1 && model.load.is_none() {
-        model = with_found_start(model, &recordings[0], &mut notes)?;
-    }
-    if changed && options.start != Start::Unknown {
-        refresh_errors(&mut model, recordings, options.start)?;
-    }
     if let Some(fit) = &mut model.fit {
         fit.validation = validation;
         fit.other.extend(notes);
     }
     Ok(model)
-}
-
-/// Keeps the state that explains the beginning of the recording, and says how well the model then
-/// simulates the recording.
-pub(super) fn with_found_start(
-    model: Model,
-    recording: &Recording,
-    notes: &mut std::collections::BTreeMap<String, serde_json::Value>,
-) -> Result<Model> {
-    let (start, samples) = find_start(&model, recording)?;
-    let model = model.with_start(Some(start))?;
-    let around = Surroundings::of(&model, recording);
-    let simulated = model.simulate_in(&recording.input, around)?;
-    if let Some(errors) = Errors::between(&recording.output, &simulated, |_| true) {
-        let said = json!({
-            "samples": samples,
-            "rmse": errors.rmse,
-            "nrmse_percent": errors.nrmse_percent,
-        });
-        notes.insert("start_found".into(), said);
-    }
-    Ok(model)
-}
-
-/// Creep and lag act after the fit of the weights: the errors are those of the whole model.
-fn refresh_errors(model: &mut Model, recordings: &[Recording], start: Start) -> Result<()> {
-    let (mut measured, mut modelled) = (Vec::new(), Vec::new());
-    for recording in recordings {
-        let mut state = match start {
-            Start::On => model.saturated(),
-            _ => model.off(),
-        };
-        let mut output = vec![0.0; recording.len()];
-        let around = Surroundings::of(model, recording);
-        model.run_in(&mut state, &recording.input, around, &mut output)?;
-        modelled.extend(output);
-        measured.extend_from_slice(&recording.output);
-    }
-    if let (Some(fit), Some(errors)) = (
-        &mut model.fit,
-        Errors::between(&measured, &modelled, |_| true),
-    ) {
-        fit.rmse = errors.rmse;
-        fit.max_abs = errors.max_abs;
-        fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
-    }
-    Ok(())
 }
 
 /// The recordings with another input.

@@ -1,0 +1,93 @@
+//! The start that a model keeps, and the errors of a fit from that start.
+
+use crate::error::Result;
+use crate::identify::history::find_start;
+use crate::model::{Model, Start};
+use crate::recording::Recording;
+use crate::series::Errors;
+use serde_json::json;
+use std::collections::HashSet;
+
+/// The model with the start that was chosen, or found before its recordings. It stands in the model
+/// file, so whoever reads the file starts where the fit did.
+///
+/// An unknown start is found from the beginning of the first recording. A model keeps one start. If
+/// off or on explain all recordings better, it keeps that.
+///
+/// # Errors
+/// As [`Model::run_in`].
+pub(super) fn with_start(model: Model, recordings: &[Recording], start: Start) -> Result<Model> {
+    match start {
+        Start::Off | Start::Fitted => return model.with_start(None),
+        Start::On => {
+            let on = model.saturated();
+            return model.starting_from(&on);
+        }
+        Start::Unknown => {}
+    }
+    let (found, samples) = find_start(&model, &recordings[0])?;
+    let mut best = model.with_start(Some(found))?;
+    // With one recording, the search has had both as candidates.
+    if recordings.len() > 1 {
+        let on = best.saturated();
+        let others = [
+            best.clone().with_start(None)?,
+            best.clone().starting_from(&on)?,
+        ];
+        let mut least = squares(&best, recordings)?;
+        for other in others {
+            let error = squares(&other, recordings)?;
+            if error < least {
+                (best, least) = (other, error);
+            }
+        }
+    }
+    if let Some(fit) = &mut best.fit {
+        let (rmse, percent) = (fit.rmse, fit.nrmse_percent);
+        let said = json!({"samples": samples, "free_rmse": rmse, "free_nrmse_percent": percent});
+        fit.other.insert("start_found".into(), said);
+    }
+    Ok(best)
+}
+
+/// The sum of the squared errors from the start that the model keeps.
+fn squares(model: &Model, recordings: &[Recording]) -> Result<f64> {
+    let mut sum = 0.0;
+    for recording in recordings {
+        let (output, _) = model.run_over(&mut model.start(), recording)?;
+        let pairs = recording.output.iter().zip(&output);
+        sum += pairs.map(|(y, h)| (y - h).powi(2)).sum::<f64>();
+    }
+    Ok(sum)
+}
+
+/// Writes the errors from the start that the model keeps into the record of its fit, over those of
+/// all samples that are `fitted`. Outliers do not count.
+///
+/// # Errors
+/// As [`Model::run_in`].
+pub(crate) fn tell_errors(
+    model: &mut Model,
+    recordings: &[Recording],
+    fitted: impl Fn(usize) -> bool,
+) -> Result<()> {
+    let outliers = model.fit.iter().flat_map(|fit| &fit.outliers);
+    let left_out: HashSet<(usize, usize)> = outliers.map(|o| (o.recording, o.sample)).collect();
+    let (mut measured, mut modelled, mut before) = (Vec::new(), Vec::new(), 0);
+    for (n, recording) in recordings.iter().enumerate() {
+        let (output, _) = model.run_over(&mut model.start(), recording)?;
+        let counts = |sample| fitted(before + sample) && !left_out.contains(&(n, sample));
+        for (sample, h) in output.into_iter().enumerate().filter(|(n, _)| counts(*n)) {
+            measured.push(recording.output[sample]);
+            modelled.push(h);
+        }
+        before += recording.len();
+    }
+    let errors = Errors::between(&measured, &modelled, |_| true);
+    if let (Some(fit), Some(errors)) = (&mut model.fit, errors) {
+        fit.rmse = errors.rmse;
+        fit.max_abs = errors.max_abs;
+        fit.nrmse_percent = errors.nrmse_percent.unwrap_or_default();
+    }
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! Whether a reading agrees with its neighbours in input and branch, whatever a model says.
+
+use crate::recording::Recording;
+use crate::series::{branch_spans, range, usual_tolerance};
+use std::ops::Range;
+
+/// Inputs that differ by less than this share of their range are the same.
+const SAME: f64 = 1e-4;
+
+/// Beyond the end of a branch, the output may go on this many times as steeply.
+const STEEPER: f64 = 2.0;
+
+/// The readings of a recording, of which some are suspect.
+pub(super) struct Neighbours<'a> {
+    recording: &'a Recording,
+    /// The samples of each branch.
+    branches: Vec<Range<usize>>,
+    /// Samples that are suspect, ascending.
+    suspect: Vec<usize>,
+    /// Those of them that agree with a majority of the readings at the same input and direction.
+    repeated: Vec<usize>,
+    /// Outputs that differ by less are the same.
+    same: f64,
+}
+
+impl<'a> Neighbours<'a> {
+    /// `same` is the largest distance between outputs that agree.
+    pub(super) fn of(recording: &'a Recording, suspect: &[(usize, f64)], same: f64) -> Self {
+        let branches = match suspect.is_empty() {
+            true => Vec::new(),
+            false => branch_spans(&recording.input, usual_tolerance(&recording.input)).collect(),
+        };
+        let mut neighbours = Self {
+            recording,
+            branches,
+            suspect: suspect.iter().map(|(sample, _)| *sample).collect(),
+            repeated: Vec::new(),
+            same,
+        };
+        neighbours.repeated = neighbours.find_repeated();
+        neighbours
+    }
+
+    /// Whether a suspect reading is data: it was measured again, or lies between the readings
+    /// before and after it on its branch. At a turning point, it may also be where the branch on
+    /// one side leads to.
+    pub(super) fn agree(&self, sample: usize) -> bool {
+        if self.repeated.binary_search(&sample).is_ok() {
+            return true;
+        }
+        let Some(branch) = self.branch_of(sample) else {
+            return false;
+        };
+        // The turning point where a branch begins is the last sample of the branch before it.
+        let own = &self.branches[branch];
+        let first = own.start.saturating_sub(1);
+        let before = self.trusted((first..sample).rev());
+        let after = self.trusted(sample + 1..own.end);
+        if let ([a, ..], [b, ..]) = (before.as_slice(), after.as_slice()) {
+            return self.within(sample, self.output(*a), self.output(*b));
+        }
+        let beyond = match self.branches.get(branch + 1) {
+            Some(next) if after.is_empty() => self.trusted(sample + 1..next.end),
+            _ => after,
+        };
+        [before, beyond].iter().any(|side| match side[..] {
+            [a, b] => self.within(sample, self.output(a), self.led_to(sample, a, b)),
+            _ => false,
+        })
+    }
+
+    /// The first two of the samples that are not suspect.
+    fn trusted(&self, samples: impl Iterator<Item = usize>) -> Vec<usize> {
+        let trusted = samples.filter(|n| self.suspect.binary_search(n).is_err());
+        trusted.take(2).collect()
+    }
+
+    fn output(&self, sample: usize) -> f64 {
+        self.recording.output[sample]
+    }
+
+    fn within(&self, sample: usize, a: f64, b: f64) -> bool {
+        let (low, high) = (a.min(b) - self.same, a.max(b) + self.same);
+        (low..=high).contains(&self.output(sample))
+    }
+
+    /// The output that the line through two readings leads to at the input of a sample, or the
+    /// furthest that it may lead to.
+    fn led_to(&self, sample: usize, near: usize, far: usize) -> f64 {
+        let input = &self.recording.input;
+        let run = input[near] - input[far];
+        let slope = match run {
+            0.0 => 0.0,
+            run => (self.output(near) - self.output(far)) / run,
+        };
+        self.output(near) + STEEPER * slope * (input[sample] - input[near])
+    }
+
+    fn branch_of(&self, sample: usize) -> Option<usize> {
+        let place = self.branches.partition_point(|own| own.end <= sample);
+        (place < self.branches.len()).then_some(place)
+    }
+
+    /// Whether the input rises on a branch.
+    fn rises(&self, branch: usize) -> bool {
+        let own = &self.branches[branch];
+        let first = own.start.saturating_sub(1);
+        self.recording.input[own.end - 1] > self.recording.input[first]
+    }
+
+    /// The suspect readings that most of the readings at the same input and direction agree with.
+    fn find_repeated(&self) -> Vec<usize> {
+        let Recording { input, output, .. } = self.recording;
+        let (low, high) = range(input);
+        let near = SAME * (high - low);
+        let direction = |sample| self.branch_of(sample).map(|branch| self.rises(branch));
+        // How many others there are at the same input and direction, and how many agree.
+        let mut sorted: Vec<(usize, Option<bool>, u32, u32)> = self
+            .suspect
+            .iter()
+            .map(|sample| (*sample, direction(*sample), 0, 0))
+            .collect();
+        sorted.sort_by(|a, b| input[a.0].total_cmp(&input[b.0]));
+        for (branch, samples) in self.branches.iter().enumerate() {
+            let rises = Some(self.rises(branch));
+            for n in samples.clone() {
+                let from = sorted.partition_point(|own| input[own.0] < input[n] - near);
+                let close = sorted[from..].iter_mut();
+                let close = close.take_while(|own| input[own.0] <= input[n] + near);
+                for (sample, direction, others, agree) in close {
+                    if *sample != n && *direction == rises {
+                        *others += 1;
+                        *agree += u32::from((output[n] - output[*sample]).abs() <= self.same);
+                    }
+                }
+            }
+        }
+        let most = |(_, _, others, agree): &&(usize, Option<bool>, u32, u32)| {
+            *agree > 0 && 2 * agree >= *others
+        };
+        let mut repeated: Vec<usize> = sorted.iter().filter(most).map(|own| own.0).collect();
+        repeated.sort_unstable();
+        repeated
+    }
+}
