@@ -45,12 +45,13 @@ mod tests {
     fn a_frozen_channel_is_found_and_steps_are_not() {
         let input: Vec<f64> = (0..2000).map(|n| (f64::from(n) * 0.02).sin()).collect();
         let mut output = input.clone();
-        output[1200..1500].fill(output[1200]);
+        let held = output[1200];
+        output[1200..1500].fill(held);
         assert_eq!(frozen(&output, &input), vec![1200..1500]);
         assert_eq!(frozen(&input, &output), vec![]);
         // Shorter than the way over the range.
         let mut short = input.clone();
-        short[1200..1260].fill(short[1200]);
+        short[1200..1260].fill(held);
         assert_eq!(frozen(&short, &input), vec![]);
         // A drive in steps, and an actuator that follows each.
         let steps: Vec<f64> = (0..2000).map(|n| f64::from(n / 200 % 3)).collect();
