@@ -21,14 +21,14 @@ use std::path::PathBuf;
 ///     file the variables, ``'M:2'`` being the second column of the matrix ``M`` and ``'s.x'`` the
 ///     field ``x`` of the structure ``s``.
 /// time : str, optional
-///     The column of time: in seconds, or with another unit in its name.
+///     The column of time: in seconds, or with another unit in its name, or timestamps.
 /// load : str, optional
 ///     The column of the load or stress.
 /// input_name, output_name, load_name : str, optional
 ///     Names, with the unit in brackets. By default those of the file.
 /// repair : bool
-///     Drop rows without a number or cut short, sort times that go back, merge repeated ones. By
-///     default they are refused.
+///     Drop rows that lack a number, are cut short or come twice. By default they are refused. Where
+///     the clock goes back another recording begins: that is refused here.
 /// max_memory : int, optional
 ///     Most memory in bytes that the contents of the file may take; more is refused. By default half
 ///     of what is free.

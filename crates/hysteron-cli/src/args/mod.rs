@@ -151,8 +151,8 @@ impl Force {
 
 #[derive(Args)]
 pub(crate) struct Repair {
-    /// Repair the table and report it: drop rows that are cut short or lack a number, sort times
-    /// that go back, merge repeated ones
+    /// Repair the table and report it: drop rows that are cut short, lack a number or come twice;
+    /// begin another segment where the clock goes back
     #[arg(long)]
     repair: bool,
     #[command(flatten)]
