@@ -22,6 +22,9 @@ fn telling() -> String {
         let weights: Vec<f64> = [1.0, 0.5, 1.0, 0.25, 0.5, 1.0].map(|mu| factor * mu).into();
         serde_json::json!({"offset": offset, "weights": weights})
     };
+    let middle = part(2.3125, 1.25);
+    file["weights"] = middle["weights"].clone();
+    file["output"]["offset"] = middle["offset"].clone();
     file["load"]["parts"] = [part(2.0, 1.0), part(2.5, 1.25), part(2.25, 1.5)].into();
     file.to_string()
 }

@@ -391,7 +391,7 @@ fn recordings_are_mended_where_that_is_asked_for() {
             notes,
             [
                 "hysteron: raw.csv: line 9 without a number: dropped",
-                "hysteron: raw.csv: line 403 at the time of the row before: merged to their mean",
+                "hysteron: raw.csv: line 403 at the time of the row before: kept",
                 "hysteron: raw.csv: line 402 after a gap of over three times the median time step",
             ]
         );

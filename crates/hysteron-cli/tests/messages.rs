@@ -63,7 +63,7 @@ fn wrong_words_are_told_what_was_meant() {
         (&fit("--hold-out 100-200"), "rows:100-200"),
         (&fit("--hold-out branch:20%"), "branches:20%"),
         (&format!("{design} 20:80"), "such as 20,80"),
-        (&format!("{design} 80,20"), "must be below the second"),
+        (&format!("{design} 80,20"), "must not be above the second"),
         ("studio --port many", "a whole number from 0 to 65535"),
     ] {
         let said = said(bench.path(), line, 2);

@@ -109,21 +109,30 @@ fn a_killed_studio_goes_on_from_its_session() {
             "{{\"request\":\"use\",\"file\":1,\"purpose\":\"{what}\"}}"
         ));
     };
-    let mut studio = Studio::start(folder.path(), &["--session", "kept.json", "run.csv"]);
+    let mut studio = Studio::start(
+        folder.path(),
+        &["--session", "kept.json", "--max-memory", "1G", "run.csv"],
+    );
     use_for(&studio, "look");
     until_saved("\"look\"");
     // Killed at rest, and around the time at which it writes, 300 ms after a change.
     for wait in [0, 290, 300, 305, 310] {
         let before = studio.overview();
         studio.kill();
-        studio = Studio::start(folder.path(), &["--session", "kept.json"]);
+        studio = Studio::start(
+            folder.path(),
+            &["--session", "kept.json", "--max-memory", "1G"],
+        );
         assert_eq!(studio.overview(), before);
         use_for(&studio, "look");
         std::thread::sleep(Duration::from_millis(wait));
     }
     studio.kill();
     // The next one to write in this folder removes what killed ones left.
-    studio = Studio::start(folder.path(), &["--session", "kept.json"]);
+    studio = Studio::start(
+        folder.path(),
+        &["--session", "kept.json", "--max-memory", "1G"],
+    );
     use_for(&studio, "validate");
     until_saved("\"validate\"");
     studio.kill();

@@ -270,7 +270,9 @@ mod tests {
             assert_eq!(found["found"]["Err"]["code"], 104);
         }
         assert_eq!(told(&host), before);
-        assert_eq!(host.admits(MEMORY).0, Outcome::Answered);
+        assert_eq!(host.admits(MEMORY / 2).0, Outcome::Answered);
+        // What is open counts, too.
+        assert_eq!(host.admits(MEMORY).0, Outcome::Refused);
         assert_eq!(host.admits(u64::MAX).0, Outcome::Refused);
     }
 }

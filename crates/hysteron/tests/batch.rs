@@ -13,7 +13,7 @@ use std::sync::Arc;
 const LOADED: &str = r#"{"format": "hysteron-model", "version": 2, "operator": "mkp",
   "plane": {"min": 30.0, "max": 60.0, "levels": 3},
   "input": {"name": "duty"}, "output": {"name": "lift", "offset": 2.0, "sign": -1},
-  "weights": [1.0, 0.5, 1.0, 0.25, 0.5, 1.0],
+  "weights": [1.0, 0.5, 1.25, 0.25, 0.5, 1.5],
   "load": {"name": "stress", "min": 50.0, "max": 200.0,
     "parts": [{"offset": 2.0, "weights": [1.0, 0.5, 1.0, 0.25, 0.5, 1.0]},
       {"offset": 2.0, "weights": [1.0, 0.5, 1.5, 0.25, 0.5, 2.0]}]}}"#;

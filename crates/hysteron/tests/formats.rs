@@ -224,8 +224,8 @@ fn rows_are_mended() {
     assert_eq!(recording.load.unwrap(), [1.0, 1.0, 3.0, 5.0, 1.0, 1.0]);
     let expected = [
         "lines 3 and 9 without a number: dropped",
-        "line 6 going back in time: sorted",
-        "lines 7 and 8 at the time of the row before: merged to their mean",
+        "line 6 with a time that fits none around: dropped",
+        "lines 7 and 8 at the time of the row before: kept",
         "line 10 after a gap of over three times the median time step",
     ];
     assert_eq!(notes, expected);

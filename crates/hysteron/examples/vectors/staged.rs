@@ -95,13 +95,19 @@ fn with(operator: Operator, stages: &[Stage], line: (f64, Sign)) -> Result<Model
             }
             Stage::Lag => text["lag"] = 0.0625.into(),
             Stage::Weights => {
-                let part = |part: usize| {
+                let offset = |part: usize| plain.offset() + [0.0, 1.5, -0.25][part];
+                let weights = |part: usize| -> Vec<f64> {
                     let factor = |n: usize| 1.0 + ((n + 3 * part) % 4) as f64 / 4.0;
                     let weights = plain.weights().iter().enumerate();
-                    let weights: Vec<f64> = weights.map(|(n, mu)| factor(n) * mu).collect();
-                    let offset = plain.offset() + [0.0, 1.5, -0.25][part];
-                    json!({"offset": offset, "weights": weights})
+                    weights.map(|(n, mu)| factor(n) * mu).collect()
                 };
+                let part = |part| json!({"offset": offset(part), "weights": weights(part)});
+                // The file says them a second time, in the middle of the loads.
+                let middle = |of: [f64; 3]| (of[0] + 2.0 * of[1] + of[2]) / 4.0;
+                let all = [0, 1, 2].map(weights);
+                let weight = |n: usize| middle([0, 1, 2].map(|part: usize| all[part][n]));
+                text["weights"] = (0..all[0].len()).map(weight).collect();
+                text["output"]["offset"] = middle([0, 1, 2].map(offset)).into();
                 let load = &mut text["load"];
                 if load.is_null() {
                     *load = json!({"name": "stress", "unit": "MPa"});

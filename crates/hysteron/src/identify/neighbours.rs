@@ -9,6 +9,8 @@ const SAME: f64 = 1e-4;
 
 /// Beyond the end of a branch, the output may go on this many times as steeply.
 const STEEPER: f64 = 2.0;
+/// And for at most this many times the distance of the readings that it is known from.
+const REACH: f64 = 2.0;
 
 /// The readings of a recording, of which some are suspect.
 pub(super) struct Neighbours<'a> {
@@ -93,7 +95,10 @@ impl<'a> Neighbours<'a> {
             0.0 => 0.0,
             run => (self.output(near) - self.output(far)) / run,
         };
-        self.output(near) + STEEPER * slope * (input[sample] - input[near])
+        // Two readings close together tell nothing about an input far away.
+        let reach = REACH * run.abs();
+        let way = (input[sample] - input[near]).clamp(-reach, reach);
+        self.output(near) + STEEPER * slope * way
     }
 
     fn branch_of(&self, sample: usize) -> Option<usize> {

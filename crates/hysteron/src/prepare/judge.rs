@@ -2,9 +2,9 @@
 //!
 //! The recording is divided into blocks. A small model is fitted without a fifth of them, and
 //! predicts the output there; so each block is left out once. The predictions are compared with the
-//! output as it was measured. A step is kept only if they come closer to it. The mean distance is
-//! compared, not its square: a reading that is wrong then counts the same with and without the
-//! step, and decides nothing.
+//! output as it was measured. A step is kept only if they come closer to it where it changes the
+//! input, and no further from it elsewhere. The mean distance is compared, not its square: a reading
+//! of the output that is wrong then counts the same with and without the step, and decides nothing.
 
 use crate::identify::{FitOptions, SOME_SMOOTHNESS, predicted_without};
 use crate::model::Start;
@@ -14,8 +14,9 @@ use crate::recording::Recording;
 use crate::series::range;
 use serde::Serialize;
 
-/// Levels of the model: enough to resolve the loops, and few enough for many fits.
-const LEVELS: usize = 12;
+/// Levels of the model: enough to resolve the loops, and few enough for many fits. With 12, noise of
+/// the input hid the steps of a grid that is too coarse, and a filter seemed to do harm.
+const LEVELS: usize = 20;
 /// Number of blocks of a recording, and number of groups of blocks that are left out in turn.
 const BLOCKS: usize = 20;
 const FOLDS: usize = 5;
@@ -25,7 +26,8 @@ const SHORTEST: usize = 3;
 const WORTH: f64 = 1e-3;
 
 /// What a step was worth. The errors are those of a small model on parts of the recording that it
-/// was not fitted to: mean distances from the output as measured, in its unit.
+/// was not fitted to: mean distances from the output as measured, in its unit, over the samples whose
+/// input the step changes; over all, if it changes none or the times.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
     /// The step, and the series that it changes.
@@ -45,8 +47,8 @@ pub(super) struct Judge<'a> {
     measured: &'a Recording,
     /// What was judged so far.
     pub(super) judged: Vec<Judged>,
-    /// The error of the last recording that was kept, once it is needed.
-    error: Option<Option<f64>>,
+    /// The distances of the last recording that was kept, once they are needed.
+    distances: Option<Option<Vec<f64>>>,
 }
 
 impl<'a> Judge<'a> {
@@ -54,7 +56,7 @@ impl<'a> Judge<'a> {
         Self {
             measured,
             judged: Vec::new(),
-            error: None,
+            distances: None,
         }
     }
 
@@ -69,26 +71,34 @@ impl<'a> Judge<'a> {
     ) -> bool {
         if how != Step::Auto {
             *work = candidate;
-            self.error = None;
+            self.distances = None;
             return true;
         }
         if *work == candidate {
             return false;
         }
-        let before = *self.error.get_or_insert_with(|| error(self.measured, work));
-        let after = before.and_then(|_| error(self.measured, &candidate));
-        let pair = before.zip(after);
-        let kept = pair.is_some_and(|(before, after)| after < (1.0 - WORTH) * before);
+        let before = self
+            .distances
+            .get_or_insert_with(|| distances(self.measured, work))
+            .as_deref();
+        let after = before.and_then(|_| distances(self.measured, &candidate));
+        let touched = touched(work, &candidate);
+        let here = |distances: &[f64]| mean(touched.iter().map(|n| distances[*n]));
+        let all = |distances: &[f64]| mean(distances.iter().copied());
+        let pair = before.zip(after.as_deref());
+        let kept = pair.is_some_and(|(before, after)| {
+            here(after) < (1.0 - WORTH) * here(before) && all(after) <= (1.0 + WORTH) * all(before)
+        });
         self.judged.push(Judged {
             step,
             samples: changed(work, &candidate),
-            before,
-            after,
+            before: before.map(here),
+            after: after.as_deref().map(here),
             kept,
         });
         if kept {
             *work = candidate;
-            self.error = Some(after);
+            self.distances = Some(after);
         }
         kept
     }
@@ -105,9 +115,24 @@ fn changed(work: &Recording, candidate: &Recording) -> usize {
     (0..work.len()).filter(|n| !same(n)).count()
 }
 
-/// The mean distance of the output as measured from what models predict that did not see it. The
+/// The samples whose input differs; all, if none does or the times differ.
+fn touched(work: &Recording, candidate: &Recording) -> Vec<usize> {
+    let differs = |n: &usize| work.time == candidate.time && work.input[*n] != candidate.input[*n];
+    let found: Vec<usize> = (0..work.len()).filter(differs).collect();
+    match found.is_empty() {
+        true => (0..work.len()).collect(),
+        false => found,
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+/// The distances of the output as measured from what models predict that did not see it. The
 /// candidate may have other samples in time. `None` if no model can be fitted.
-fn error(measured: &Recording, candidate: &Recording) -> Option<f64> {
+fn distances(measured: &Recording, candidate: &Recording) -> Option<Vec<f64>> {
     let len = measured.len();
     let predicted = match (&measured.time, &candidate.time) {
         (Some(old), Some(new)) if old != new => {
@@ -118,7 +143,8 @@ fn error(measured: &Recording, candidate: &Recording) -> Option<f64> {
         }
         _ => unseen(candidate)?,
     };
-    Some(mean_distance(&measured.output, &predicted))
+    let pairs = measured.output.iter().zip(&predicted);
+    Some(pairs.map(|(y, p)| (y - p).abs()).collect())
 }
 
 /// The output at each sample, from models that did not see it; `None` if none can be fitted.

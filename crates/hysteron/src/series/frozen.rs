@@ -1,12 +1,13 @@
 //! Finds a channel that stands still while the other one moves.
 
-use crate::series::spread::{range, usual_span};
+use crate::series::spread::usual_span;
 use std::ops::Range;
 
 /// Fewer equal readings in a row are not told from a slow signal.
 const SHORTEST: usize = 20;
-/// The other series covers at least this share of its usual range meanwhile. No material with any
-/// response is still over such a way.
+/// The other series rises and falls by at least this share of its usual range meanwhile. No material
+/// with any response is still over such a way. One way alone proves nothing: a wire without a drive
+/// cools, and its output moves all the way back.
 const FAR: f64 = 0.8;
 /// A series that often stands still is one of steps: at most this share of its other samples is in
 /// long runs.
@@ -25,8 +26,8 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
     let long: Vec<Range<usize>> = runs.filter(|run| run.len() >= SHORTEST).collect();
     let far = FAR * usual_span(other);
     let moves_far = |run: &Range<usize>| {
-        let (low, high) = range(&other[run.clone()]);
-        far > 0.0 && high - low >= far
+        let (rise, fall) = rise_and_fall(&other[run.clone()]);
+        far > 0.0 && rise.min(fall) >= far
     };
     let (still, rest): (Vec<_>, Vec<_>) = long.into_iter().partition(moves_far);
     let count = |runs: &[Range<usize>]| runs.iter().map(Range::len).sum::<usize>();
@@ -35,6 +36,17 @@ pub(crate) fn frozen(values: &[f64], other: &[f64]) -> Vec<Range<usize>> {
         true => Vec::new(),
         false => still,
     }
+}
+
+/// How far a series rises from a value before, at most, and how far it falls.
+fn rise_and_fall(values: &[f64]) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut rise, mut fall) = (0.0_f64, 0.0_f64);
+    for &value in values {
+        (low, high) = (low.min(value), high.max(value));
+        (rise, fall) = (rise.max(value - low), fall.max(high - value));
+    }
+    (rise, fall)
 }
 
 #[cfg(test)]
@@ -49,6 +61,19 @@ mod tests {
         output[1200..1500].fill(held);
         assert_eq!(frozen(&output, &input), vec![1200..1500]);
         assert_eq!(frozen(&input, &output), vec![]);
+        // A drive that is off, while the actuator goes back.
+        let mut off = input.clone();
+        off[1000..].fill(0.0);
+        let back: Vec<f64> = (0..2000)
+            .map(|n| {
+                if n < 1000 {
+                    input[n]
+                } else {
+                    1.0 - f64::from(n as i32 - 1000) / 500.0
+                }
+            })
+            .collect();
+        assert_eq!(frozen(&off, &back), vec![]);
         // Shorter than the way over the range.
         let mut short = input.clone();
         short[1200..1260].fill(held);

@@ -45,18 +45,21 @@ impl History {
             let count = before.len() - from;
             let copied = (1..=time.len() - n).contains(&count)
                 && before[from..].iter().zip(n..).all(|(&row, n)| same(row, n));
-            if copied {
+            if same(last, n) {
+                copies.push(n);
+                n += 1;
+            } else if copied {
                 copies.extend(n..n + count);
                 n += count;
             } else if time[n] == time[last] {
                 repeated.push(n);
                 kept.push(n);
                 n += 1;
-            } else if before.len() > 1 && time[n] >= time[before[before.len() - 2]] {
-                alone.extend(kept.pop());
             } else if time.get(n + 1).is_some_and(|next| *next >= time[last]) {
                 alone.push(n);
                 n += 1;
+            } else if before.len() > 1 && time[n] >= time[before[before.len() - 2]] {
+                alone.extend(kept.pop());
             } else {
                 begin = kept.len();
                 back.push(n);
@@ -113,6 +116,6 @@ mod tests {
             assert_eq!((found.alone, found.back.len()), (vec![2], 0), "{wrong}");
         }
         let found = of(&[0.0, 1.0, 1.0, 1.0], &[1.0, 2.0, 3.0, 3.0]);
-        assert_eq!((found.repeated, found.copies), (vec![2], vec![]));
+        assert_eq!((found.repeated, found.copies), (vec![2], vec![3]));
     }
 }
