@@ -345,7 +345,6 @@ fn after_line(model: &Model, args: &args::Fit) -> Option<String> {
     }
 }
 
-/// How well the model simulates from the start that was found.
 fn prior_line(fit: &FitSummary) -> Option<String> {
     let models = fit.other.get("prior")?.get("models")?;
     Some(format!(
@@ -353,12 +352,13 @@ fn prior_line(fit: &FitSummary) -> Option<String> {
     ))
 }
 
+/// The start that was found; what the weights alone would fit, where that says more.
 fn start_line(fit: &FitSummary) -> Option<String> {
     let found = fit.other.get("start_found")?;
-    let percent = found.get("nrmse_percent")?.as_f64()?;
+    let free = found.get("free_nrmse_percent")?.as_f64()?;
     Some(format!(
-        "start found from the first {} samples and kept in the model: from it the model simulates \
-         this recording to {percent:.2} % of the range",
+        "start found from the first {} samples and kept in the model: all errors are from it; with \
+         every operator free at the start, which no input may lead to, {free:.2} % of the range",
         found.get("samples")?
     ))
 }
