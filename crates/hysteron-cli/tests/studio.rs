@@ -139,5 +139,6 @@ fn a_killed_studio_goes_on_from_its_session() {
     let names = std::fs::read_dir(folder.path()).unwrap();
     let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, ["kept.json", "run.csv"]);
+    // The lock file of one that was killed stays; it holds nobody out.
+    assert_eq!(names, ["kept.json", "kept.json.lock", "run.csv"]);
 }

@@ -14,8 +14,7 @@ use crate::recording::Recording;
 use crate::series::range;
 use serde::Serialize;
 
-/// Levels of the model: enough to resolve the loops, and few enough for many fits. With 12, noise of
-/// the input hid the steps of a grid that is too coarse, and a filter seemed to do harm.
+/// Levels of the model: enough to resolve the loops, and few enough for many fits.
 const LEVELS: usize = 20;
 /// Number of blocks of a recording, and number of groups of blocks that are left out in turn.
 const BLOCKS: usize = 20;
@@ -82,7 +81,7 @@ impl<'a> Judge<'a> {
             .get_or_insert_with(|| distances(self.measured, work))
             .as_deref();
         let after = before.and_then(|_| distances(self.measured, &candidate));
-        let touched = touched(work, &candidate);
+        let touched = touched(self.measured, work, &candidate);
         let here = |distances: &[f64]| mean(touched.iter().map(|n| distances[*n]));
         let all = |distances: &[f64]| mean(distances.iter().copied());
         let pair = before.zip(after.as_deref());
@@ -115,13 +114,16 @@ fn changed(work: &Recording, candidate: &Recording) -> usize {
     (0..work.len()).filter(|n| !same(n)).count()
 }
 
-/// The samples whose input differs; all, if none does or the times differ.
-fn touched(work: &Recording, candidate: &Recording) -> Vec<usize> {
-    let differs = |n: &usize| work.time == candidate.time && work.input[*n] != candidate.input[*n];
-    let found: Vec<usize> = (0..work.len()).filter(differs).collect();
-    match found.is_empty() {
-        true => (0..work.len()).collect(),
-        false => found,
+/// The samples as measured whose input differs; all, if none does or the times are others.
+fn touched(measured: &Recording, work: &Recording, candidate: &Recording) -> Vec<usize> {
+    let all = 0..measured.len();
+    if work.time != measured.time || candidate.time != measured.time {
+        return all.collect();
+    }
+    let differs = |n: &usize| work.input[*n] != candidate.input[*n];
+    match all.clone().any(|n| differs(&n)) {
+        true => all.filter(differs).collect(),
+        false => all.collect(),
     }
 }
 
