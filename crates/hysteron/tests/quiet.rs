@@ -1,5 +1,5 @@
 //! A damaged file ends in an error. The panic of a library on the way prints nothing.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use hysteron::{Columns, ReadOptions, Recording, Simulate, TableReader, TableWriter};
 use hysteron::{Model, Operator, Plane, Sign, simulate_table};

@@ -55,11 +55,9 @@ impl Guard {
         let entry = path == "/";
         let shown = only(headers, &HeaderName::from_static("sec-fetch-dest")) == Some("document");
         let page = request.method() == Method::GET && shown && path.matches('/').count() == 2;
-        if headers.contains_key(&site)
-            && !entry
-            && !(page && path.ends_with('/'))
-            && !only(headers, &site).is_some_and(own)
-        {
+        let open_to_all = entry || page && path.ends_with('/');
+        let called_by = headers.contains_key(&site).then(|| only(headers, &site));
+        if !open_to_all && called_by.is_some_and(|by| !by.is_some_and(own)) {
             return Some("another page may not call the studio");
         }
         let first = path.split('/').nth(1).unwrap_or_default();

@@ -134,10 +134,7 @@ fn dates(text: &str) -> Option<[Option<Date>; 2]> {
     }
     let month = |text: &str| {
         let known = |names: &&[&str]| names.iter().any(|name| text.starts_with(name));
-        MONTHS
-            .iter()
-            .position(|names| known(&names))
-            .map(|n| n as i32 + 1)
+        MONTHS.iter().position(known).map(|n| n as i32 + 1)
     };
     let year = |text: &str| match (text.len(), number(text)?) {
         (4, year) => Some(year),

@@ -100,7 +100,9 @@ fn read_as<T: DataType>(
         if records == 0 {
             break;
         }
-        (values.clear(), defined.clear(), repeated.clear());
+        values.clear();
+        defined.clear();
+        repeated.clear();
     }
     match found == rows {
         true => Ok(()),
