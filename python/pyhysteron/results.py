@@ -892,6 +892,26 @@ class Sampling(_Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Doubt(_Result):
+    """A reason not to believe a recording. `prepare` refuses it, unless `believe` is set.
+
+    Attributes
+    ----------
+    kind : str
+        'frozen': a series stands still while the other covers most of its range. 'repeated': rows
+        are the same as earlier ones. 'disagree': no model follows these rows and the others.
+    rows : tuple of (int, int)
+        First and last row of each stretch, counted from 1.
+    text : str
+        The same in words.
+    """
+
+    kind: str
+    rows: tuple[tuple[int, int], ...]
+    text: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class RecordingSummary(_Result):
     """A recording in short: `Recording.summary`.
 
@@ -934,26 +954,6 @@ class RecordingSummary(_Result):
     rank: int | _MaybeNone
     determined: int | _MaybeNone
     doubts: tuple[Doubt, ...]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Doubt(_Result):
-    """A reason not to believe a recording. `prepare` refuses it, unless `believe` is set.
-
-    Attributes
-    ----------
-    kind : str
-        'frozen': a series stands still while the other covers most of its range. 'repeated': rows
-        are the same as earlier ones. 'disagree': no model follows these rows and the others.
-    rows : tuple of (int, int)
-        First and last row of each stretch, counted from 1.
-    text : str
-        The same in words.
-    """
-
-    kind: str
-    rows: tuple[tuple[int, int], ...]
-    text: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)
