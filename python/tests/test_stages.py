@@ -295,7 +295,7 @@ def test_stages_are_identified():
     assert len(pyhysteron.fit(lagged, levels=6, bootstrap=0, creep=2).creep) == 2
     spaced = pyhysteron.fit(input, np.tanh((input - 50) / 2), levels=6, bootstrap=0, spacing="auto")
     assert spaced.spacing.shape == (7,)
-    with pytest.raises(pyhysteron.ThermalError, match="`time`"):
+    with pytest.raises(pyhysteron.FitError, match="`time`"):
         pyhysteron.fit(input, lagged.output, levels=6, lag=0.05)
 
 
@@ -406,7 +406,7 @@ def test_a_regressor_with_columns_for_time_and_load():
     assert regressor.score(X, output) > 0.99
     with pytest.raises(ValueError, match="`load_column` is 7"):
         clone(regressor).set_params(load_column=7).fit(X, output)
-    with pytest.raises(pyhysteron.ThermalError, match="`time`"):
+    with pytest.raises(pyhysteron.FitError, match="`time`"):
         clone(regressor).set_params(time_column=None).fit(X, output)
 
 

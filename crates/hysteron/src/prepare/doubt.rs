@@ -202,9 +202,13 @@ fn without_spikes(recording: &Recording) -> Vec<Doubt> {
     found
 }
 
-/// Refuses a recording that cannot be believed.
-pub(super) fn refuse(recording: &Recording) -> Result<()> {
-    match without_spikes(recording).first() {
+/// Refuses a recording that cannot be believed. Spikes that are to stay are no reason.
+pub(super) fn refuse(recording: &Recording, spikes: Step) -> Result<()> {
+    let found = match spikes {
+        Step::Off => doubts(recording)?,
+        _ => without_spikes(recording),
+    };
+    match found.first() {
         Some(doubt) => Err(Error::Preparation(doubt.to_string()).remedied(doubt.remedy())),
         None => Ok(()),
     }

@@ -79,7 +79,7 @@ pub fn prepare(
     progress.tell("spikes", f64::NAN)?;
     let spikes = single::repair(&mut work, options, &mut judge);
     if !options.believe {
-        doubt::refuse(&work)?;
+        doubt::refuse(&work, options.spikes)?;
     }
     let sigma = [noise(&work.input), noise(&work.output)];
     progress.tell("filters", f64::NAN)?;
