@@ -68,6 +68,7 @@ impl Asked {
             low_pass: self.low_pass.into(),
             lag,
             dead_band: self.dead_band.into(),
+            ..PrepareOptions::default()
         };
         match prepare(&recording, &options, Progress::NONE) {
             Err(error) => worded(&error),

@@ -13,7 +13,11 @@ pub fn read(data: &[u8]) {
     };
     let fits: Vec<_> = session.overview().fits.iter().map(|fit| fit.id).collect();
     for fit in fits {
-        for take in [Take::Command { fit }, Take::Python { fit }, Take::Rust { fit }] {
+        for take in [
+            Take::Command { fit },
+            Take::Python { fit },
+            Take::Rust { fit },
+        ] {
             let taken = session.handle(Request::Take(take));
             assert!(taken.is_ok(), "{:?}", taken.err());
         }
