@@ -40,7 +40,7 @@ def rust(model, input):
         folder = pathlib.Path(folder)
         model.save(folder / "model.json")
         input.astype("<f8").tofile(folder / "samples")
-        command = "cargo run --release --quiet --package hysteron --example simulate-speed --"
+        command = "cargo run --release --quiet --package hysteron-measure -- simulate-speed"
         command = [*command.split(), folder / "model.json", folder / "samples"]
         try:
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)

@@ -1,6 +1,6 @@
 //! Thermal cycles of one recording.
 
-use super::Result;
+use crate::Result;
 use hysteron::{Direction, PrepareOptions, Progress, Recording, Step, Turning, prepare};
 
 /// Cycles from one highest input to the next. Lost signs and spikes are repaired before.

@@ -1,8 +1,8 @@
 //! The methods of the leaderboard. Each sees what was fitted, and the input and load of the test.
 
-use super::Result;
 use super::prandtl::{PrandtlIshlinskii, Shape};
 use super::splits::Split;
+use crate::Result;
 use crate::scipy;
 use hysteron::{Fit, FitOptions, Operator, Recording, Rival, RivalKind, Surroundings, plane_of};
 

@@ -1,7 +1,7 @@
 //! What is fitted and what is predicted: fixed, and the same for every method.
 
-use super::Result;
 use super::cycles::cycles;
+use crate::Result;
 use crate::genuine;
 use hysteron::{Columns, Recording, Repair, branches, usual_tolerance};
 use std::path::Path;

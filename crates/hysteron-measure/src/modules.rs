@@ -1,0 +1,99 @@
+//! Prints which modules of each crate import each other in a circle, at every depth:
+//! `cargo run -p hysteron-measure -- modules`. `modules all` prints the graphs, too.
+//!
+//! In each folder, the files and folders in it are the modules, and `mod.rs` (`lib.rs`, `main.rs`)
+//! is one of them. A module imports another where a path in it ends there. A path to a name that is
+//! re-exported counts for the module that defines the name. What tests alone import does not count.
+
+mod paths;
+mod tree;
+
+use crate::Result;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use tree::Tree;
+
+/// The modules of a folder, and which of the others each imports.
+type Graph = BTreeMap<String, BTreeSet<String>>;
+
+pub(crate) fn run(arguments: &[String]) -> Result<()> {
+    let all = arguments.first().is_some_and(|word| word == "all");
+    let mut circles = 0;
+    for folder in sorted(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))? {
+        let source = folder.join("src");
+        if !source.is_dir() {
+            continue;
+        }
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        for (place, graph) in Tree::read(&source)?.graphs() {
+            let place = [&[name.as_ref().to_owned()], &place[..]].concat().join("/");
+            if all {
+                println!("{place}");
+                for (module, imports) in &graph {
+                    let imports: Vec<&str> = imports.iter().map(String::as_str).collect();
+                    println!("  {module} -> {}", imports.join(" "));
+                }
+            }
+            for circle in circles_of(&graph) {
+                println!("{place}: CIRCLE of {}", circle.join(" "));
+                circles += 1;
+            }
+        }
+    }
+    match circles {
+        0 => {
+            println!("no circles");
+            Ok(())
+        }
+        _ => Err(format!("{circles} circles: move what their modules share below them").into()),
+    }
+}
+
+/// The files and folders in a folder, by name.
+fn sorted(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+/// The groups of modules that reach each other.
+fn circles_of(graph: &Graph) -> Vec<Vec<String>> {
+    let reached: BTreeMap<&String, BTreeSet<&String>> = graph
+        .keys()
+        .map(|module| (module, reach(graph, module)))
+        .collect();
+    let mut circles: Vec<Vec<String>> = Vec::new();
+    for (module, reach) in &reached {
+        let placed = circles.iter().flatten().any(|other| other == *module);
+        if placed || !reach.contains(*module) {
+            continue;
+        }
+        let both = |other: &&&String| {
+            let back = reached.get(**other);
+            back.is_some_and(|back| back.contains(module))
+        };
+        circles.push(
+            reach
+                .iter()
+                .filter(both)
+                .map(|other| (*other).clone())
+                .collect(),
+        );
+    }
+    circles
+}
+
+/// All modules that a module imports, itself or through others.
+fn reach<'a>(graph: &'a Graph, module: &'a String) -> BTreeSet<&'a String> {
+    let (mut seen, mut next) = (BTreeSet::new(), vec![module]);
+    while let Some(at) = next.pop() {
+        for import in graph.get(at).into_iter().flatten() {
+            if seen.insert(import) {
+                next.push(import);
+            }
+        }
+    }
+    seen
+}

@@ -1,0 +1,88 @@
+//! The modules of a crate, what they import and what they re-export.
+
+use super::paths::{Found, gather};
+use super::{Graph, sorted};
+use crate::Result;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A module's place: its names from the crate's root on. The root has none.
+pub(super) type Place = Vec<String>;
+
+/// The modules of a crate.
+pub(super) struct Tree(BTreeMap<Place, Found>);
+
+/// The module of a folder that stands for the folder itself.
+const OWN: &str = "mod.rs";
+
+impl Tree {
+    /// Reads the modules below a folder `src`.
+    pub(super) fn read(source: &Path) -> Result<Self> {
+        let mut modules = BTreeMap::new();
+        read_folder(source, &[], &mut modules)?;
+        Ok(Tree(modules))
+    }
+
+    /// For each folder its place and the graph of its modules.
+    pub(super) fn graphs(&self) -> BTreeMap<Place, Graph> {
+        let mut graphs: BTreeMap<Place, Graph> = BTreeMap::new();
+        for (place, found) in &self.0 {
+            for path in &found.imports {
+                let to = self.definer(path, 0);
+                let shared = place.iter().zip(&to).take_while(|(a, b)| a == b).count();
+                let name = |place: &Place| place.get(shared).map_or(OWN, String::as_str).to_owned();
+                let (from, to) = (name(place), name(&to));
+                if from != to {
+                    let graph = graphs.entry(place[..shared].to_vec()).or_default();
+                    graph.entry(from).or_default().insert(to);
+                }
+            }
+        }
+        graphs
+    }
+
+    /// The module that defines what a path names. `depth` counts the re-exports on the way.
+    fn definer(&self, path: &[String], depth: usize) -> Place {
+        let within = (0..=path.len())
+            .rev()
+            .find(|n| self.0.contains_key(&path[..*n]))
+            .unwrap_or(0);
+        let (module, rest) = path.split_at(within);
+        let exported = rest
+            .first()
+            .and_then(|name| self.0.get(module)?.exports.get(name));
+        match exported {
+            // A name that is re-exported in a circle does not compile; ten is more than enough.
+            Some(further) if depth < 10 => {
+                self.definer(&[&further[..], &rest[1..]].concat(), depth + 1)
+            }
+            _ => module.to_vec(),
+        }
+    }
+}
+
+fn read_folder(
+    folder: &Path,
+    place: &[String],
+    modules: &mut BTreeMap<Place, Found>,
+) -> Result<()> {
+    for path in sorted(folder)? {
+        let stem = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let below = [place, std::slice::from_ref(&stem)].concat();
+        if path.is_dir() {
+            read_folder(&path, &below, modules)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let own = ["mod", "lib", "main"].contains(&&*stem);
+            let place = if own { place.to_vec() } else { below };
+            let file = syn::parse_file(&std::fs::read_to_string(&path)?)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+            let found = gather(&file, &place);
+            modules.insert(place, found);
+        }
+    }
+    Ok(())
+}
