@@ -1,7 +1,8 @@
 //! Adapts models over measured recordings, and prints `docs/adaptation.md`:
 //! `cargo run --release -p hysteron-measure -- adaptation ../shared/data`
 
-use crate::{Result, folder};
+use crate::folder;
+use crate::result::Result;
 use hysteron::{
     AdaptOptions, Adaptive, Columns, Direction, DriftBasis, Errors, Fit, FitOptions, Learner,
     Model, Plane, PrepareOptions, Progress, Recording, Repair, Sign, Start, State, Step, Turning,

@@ -4,7 +4,7 @@
 //! Both run in turn on the same inputs, and the shortest time of each counts. The first lines are
 //! of one model with many inputs, the last ones of a model of its own for each lane.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{BatchModel, Model, Operator, Plane, Sign};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

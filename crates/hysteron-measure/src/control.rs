@@ -4,7 +4,7 @@
 //! cargo run --release -p hysteron-measure -- control > docs/control.md
 //! ```
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::Progress;
 use hysteron_sim::track::{Comparison, Scenario, Score, Tuning, track};
 

@@ -3,7 +3,8 @@
 
 mod synthetic;
 
-use crate::{Result, folder};
+use crate::folder;
+use crate::result::Result;
 use hysteron::{Fit, Model, Recording, Start, branches, evaluate_from, usual_tolerance};
 
 /// Which quarter of the branches a branch belongs to, by its number modulo 8. No two neighbours are

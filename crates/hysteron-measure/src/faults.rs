@@ -5,7 +5,7 @@ mod advised;
 mod clean;
 mod fault;
 
-use crate::Result;
+use crate::result::Result;
 use advised::{Came, advised, plain};
 use fault::{FAULTS, Fault};
 use hysteron::{Fit, Recording};

@@ -1,7 +1,8 @@
 //! How fast weights are identified, against SciPy's dense way in the same run, and how time and
 //! memory grow: `cargo run --release -p hysteron-measure -- fit-speed`
 
-use crate::{Result, scipy};
+use crate::result::Result;
+use crate::scipy;
 use hysteron::{Fit, FitOptions, Model, Operator, Plane, Recording, Sign};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! What a fleet tells about the next actuator, on **simulated** actuators. Prints
 //! `docs/fleet-prior.md`: `cargo run --release -p hysteron-measure -- fleet-prior`
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{Fit, Model, Operator, Plane, Recording, Sign, Spacing, WeightPrior, operators};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,7 @@
 //! The recordings of a folder, with the columns that they are known to have.
 
-use crate::{Result, genuine};
+use crate::genuine;
+use crate::result::Result;
 use hysteron::{Columns, Recording, TableReader};
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! The rows of a table that were measured. Some recordings hold copies of other rows, and a column
 //! that marks them.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{Columns, Recording, Repair, TableReader};
 use std::path::Path;
 

@@ -4,7 +4,7 @@
 //!
 //! With the name of a task it does that task once, for callgrind to count.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{AdaptOptions, Learner, Model, Operator, Plane, Sign, Target};
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;

@@ -10,7 +10,7 @@ mod methods;
 mod prandtl;
 mod splits;
 
-use crate::Result;
+use crate::result::Result;
 use entry::Entry;
 use hysteron::range;
 use methods::Method;

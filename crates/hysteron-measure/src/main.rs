@@ -16,14 +16,14 @@ mod modules;
 mod profiles;
 mod recordings;
 mod refit_speed;
+mod result;
 mod scipy;
 mod simulate_speed;
 mod stages;
 mod wire;
 
+use result::Result;
 use std::process::ExitCode;
-
-type Result<T, E = Box<dyn std::error::Error>> = std::result::Result<T, E>;
 
 /// A program: its name, what it prints, and what runs it with the words behind its name.
 type Program = (&'static str, &'static str, fn(&[String]) -> Result<()>);

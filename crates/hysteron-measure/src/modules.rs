@@ -8,13 +8,10 @@
 mod paths;
 mod tree;
 
-use crate::Result;
+use crate::result::Result;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use tree::Tree;
-
-/// The modules of a folder, and which of the others each imports.
-type Graph = BTreeMap<String, BTreeSet<String>>;
+use std::path::Path;
+use tree::{Graph, Tree, sorted};
 
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let all = arguments.first().is_some_and(|word| word == "all");
@@ -47,15 +44,6 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         }
         _ => Err(format!("{circles} circles: move what their modules share below them").into()),
     }
-}
-
-/// The files and folders in a folder, by name.
-fn sorted(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<_, _>>()?;
-    paths.sort();
-    Ok(paths)
 }
 
 /// The groups of modules that reach each other.

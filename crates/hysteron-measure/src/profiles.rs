@@ -1,7 +1,7 @@
 //! Compares designed profiles with other experiments at the same rates, and prints
 //! `docs/profiles.md`: `cargo run --release -p hysteron-measure -- profiles`
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{DesignOptions, Excitation, Operator, Plane, Rates, design, excitation, ramps};
 use hysteron_sim::rig::{Experiment, LEVELS, RANGE_DEGC};
 

@@ -1,7 +1,8 @@
 //! Fits every recording of a folder, leaves out branches, and prints `docs/recordings.md`:
 //! `cargo run --release -p hysteron-measure -- recordings ../shared/data`
 
-use crate::{Result, folder, scipy};
+use crate::result::Result;
+use crate::{folder, scipy};
 use hysteron::{
     Candidates, FitOptions, LeftOut, Operator, Progress, Recording, Start, left_out, plane_of,
 };

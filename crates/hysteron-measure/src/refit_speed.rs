@@ -1,7 +1,7 @@
 //! Time of a sample of an adaptation, in a loop of 200 samples a cycle; medians:
 //! `cargo run --release -p hysteron-measure -- refit-speed`
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{AdaptOptions, Learner, Model, Operator, Outcome, Plane, Sign};
 use std::time::Instant;
 

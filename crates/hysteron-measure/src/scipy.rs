@@ -1,6 +1,6 @@
 //! Runs `docs/scipy-baseline.py` on a recording.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{Plane, Recording};
 use serde::Deserialize;
 use serde_json::json;

@@ -2,7 +2,7 @@
 //! run --release -p hysteron-measure -- simulate-speed MODEL SAMPLES`. `SAMPLES` is a file of
 //! 64-bit numbers, least significant byte first.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::Model;
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,7 +1,8 @@
 //! Measures the stages of a model on recordings, and prints `docs/stages.md`:
 //! `cargo run --release -p hysteron-measure -- stages ../shared/data`
 
-use crate::{Result, folder};
+use crate::folder;
+use crate::result::Result;
 use hysteron::{
     Auto, Columns, Fit, FitOptions, LoadLaw, Model, Policy, Recording, Repair, Spacing, Start,
     Status, Surroundings, evaluate_from,

@@ -1,7 +1,7 @@
 //! Runs the scenario `wire` of `track` with both ways to tune the PID, and prints `docs/wire.md`:
 //! `cargo run --release -p hysteron-measure -- wire`
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::Progress;
 use hysteron_sim::track::{Comparison, Kind, Scenario, Tuning, track};
 

@@ -1,6 +1,6 @@
 //! Thermal cycles of one recording.
 
-use crate::Result;
+use crate::result::Result;
 use hysteron::{Direction, PrepareOptions, Progress, Recording, Step, Turning, prepare};
 
 /// Cycles from one highest input to the next. Lost signs and spikes are repaired before.

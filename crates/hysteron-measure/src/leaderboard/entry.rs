@@ -1,7 +1,7 @@
 //! Files for methods of others: the tasks as tables, and the predictions that come back.
 
 use super::splits::{Set, Split};
-use crate::Result;
+use crate::result::Result;
 use hysteron::{Columns, Recording, Repair};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

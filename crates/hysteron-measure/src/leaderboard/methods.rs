@@ -2,7 +2,7 @@
 
 use super::prandtl::{PrandtlIshlinskii, Shape};
 use super::splits::Split;
-use crate::Result;
+use crate::result::Result;
 use crate::scipy;
 use hysteron::{Fit, FitOptions, Operator, Recording, Rival, RivalKind, Surroundings, plane_of};
 

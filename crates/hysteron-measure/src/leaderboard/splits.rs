@@ -1,8 +1,8 @@
 //! What is fitted and what is predicted: fixed, and the same for every method.
 
 use super::cycles::cycles;
-use crate::Result;
 use crate::genuine;
+use crate::result::Result;
 use hysteron::{Columns, Recording, Repair, branches, usual_tolerance};
 use std::path::Path;
 

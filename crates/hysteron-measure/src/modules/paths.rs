@@ -1,9 +1,11 @@
 //! The paths that a file names.
 
-use super::tree::Place;
 use std::collections::{BTreeMap, BTreeSet};
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, UseTree, Visibility};
+
+/// A module's place: its names from the crate's root on. The root has none.
+pub(super) type Place = Vec<String>;
 
 /// What a file imports and re-exports, by paths from the crate's root on.
 #[derive(Default)]
@@ -93,6 +95,10 @@ impl<'ast> Visit<'ast> for Paths<'_> {
 
     fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
         self.leaves(&item.tree, &[], !matches!(item.vis, Visibility::Inherited));
+    }
+
+    fn visit_visibility(&mut self, _: &'ast Visibility) {
+        // The path in `pub(super)` is no import.
     }
 
     fn visit_macro(&mut self, call: &'ast syn::Macro) {

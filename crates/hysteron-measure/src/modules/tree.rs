@@ -1,13 +1,12 @@
 //! The modules of a crate, what they import and what they re-export.
 
-use super::paths::{Found, gather};
-use super::{Graph, sorted};
-use crate::Result;
-use std::collections::BTreeMap;
-use std::path::Path;
+use super::paths::{Found, Place, gather};
+use crate::result::Result;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
-/// A module's place: its names from the crate's root on. The root has none.
-pub(super) type Place = Vec<String>;
+/// The modules of a folder, and which of the others each imports.
+pub(super) type Graph = BTreeMap<String, BTreeSet<String>>;
 
 /// The modules of a crate.
 pub(super) struct Tree(BTreeMap<Place, Found>);
@@ -85,4 +84,13 @@ fn read_folder(
         }
     }
     Ok(())
+}
+
+/// The files and folders in a folder, by name.
+pub(super) fn sorted(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()?;
+    paths.sort();
+    Ok(paths)
 }
