@@ -511,6 +511,24 @@ class Model:
         time: _Times | None = None,
         load: float | ArrayLike | None = None,
     ) -> tuple[_Array, _Array]: ...
+    @overload
+    def bounds(
+        self,
+        input: _S,
+        *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
+        start: Literal["fitted", "off", "on"] = "fitted",
+    ) -> tuple[_S, _S]: ...
+    @overload
+    def bounds(
+        self,
+        input: ArrayLike,
+        *,
+        time: _Times | None = None,
+        load: float | ArrayLike | None = None,
+        start: Literal["fitted", "off", "on"] = "fitted",
+    ) -> tuple[_Array, _Array]: ...
     def evaluate(
         self,
         recording: Recording | ArrayLike,

@@ -1371,6 +1371,8 @@ class CExport(_Result):
         The model's name in C.
     inverse : bool
         Whether there is an inverse.
+    rounding : float
+        What a target may be missed by that the inverse reports as reached, in the output's unit.
     flash_bytes : int
         Constants, bytes.
     ram_bytes : int
@@ -1384,6 +1386,7 @@ class CExport(_Result):
     files: tuple[Path, ...]
     name: str
     inverse: bool
+    rounding: float
     flash_bytes: int
     ram_bytes: int
     step_loop: int

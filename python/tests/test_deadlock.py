@@ -44,6 +44,7 @@ FORKED = {
     "Model.excitation": lambda: fitted().excitation(INPUT),
     "Model.evaluate": lambda: fitted().evaluate(INPUT, 0.5 * INPUT, start="unknown"),
     "Model.band": lambda: fitted().band(INPUT),
+    "Model.bounds": lambda: fitted().bounds(INPUT),
     "design": lambda: pyhysteron.design((20, 80), LEVELS, heating_rate=1, cooling_rate=1),
 }
 

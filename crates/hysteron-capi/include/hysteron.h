@@ -1454,6 +1454,14 @@ int32_t hysteron_state_save(uint64_t state, double *points, size_t capacity, siz
 int32_t hysteron_state_restore(uint64_t state, const double *points, size_t count, double input);
 
 /**
+ * Writes how far the output may really be from the modelled one where the state is, in the
+ * output's unit: half the width of the model's 95 % band, or 1.96 times its error on what was held
+ * out of its fit, whichever is wider. `NAN` for a model that has neither. After an inverse step it
+ * says how far the target may be missed that the status reports as reached.
+ */
+int32_t hysteron_state_half_width(uint64_t state, double *half_width);
+
+/**
  * As `hysteron_step`, for any model.
  *
  * `input` is the one held since the sample before. `dt` is the time since that sample in seconds,

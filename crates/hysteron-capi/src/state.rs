@@ -312,3 +312,22 @@ pub unsafe extern "C" fn hysteron_state_restore(
         Ok(())
     })
 }
+
+/// Writes how far the output may really be from the modelled one where the state is, in the
+/// output's unit: half the width of the model's 95 % band, or 1.96 times its error on what was held
+/// out of its fit, whichever is wider. `NAN` for a model that has neither. After an inverse step it
+/// says how far the target may be missed that the status reports as reached.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_state_half_width(state: u64, half_width: *mut f64) -> i32 {
+    guard(|| {
+        // SAFETY: the contract of the crate.
+        let half_width = unsafe { Arguments::default().out(half_width, "half_width")? };
+        let running = STATES.get(state, "state")?;
+        let bounds = running.model.bounds()?;
+        let half = bounds
+            .map(|bounds| bounds.at(&running.state()))
+            .transpose()?;
+        half_width.set(half.unwrap_or(f64::NAN));
+        Ok(())
+    })
+}

@@ -76,6 +76,12 @@ impl Both {
         // SAFETY: live memory.
         ok(unsafe { hysteron_state_temperature(self.state, &mut temperature) });
         assert_eq!(temperature.to_bits(), self.own.temperature().to_bits());
+        let mut half = 0.0;
+        // SAFETY: live memory.
+        ok(unsafe { hysteron_state_half_width(self.state, &mut half) });
+        let bounds = self.model.bounds().unwrap();
+        let expected = bounds.map_or(f64::NAN, |bounds| bounds.at(&self.own).unwrap());
+        assert_eq!(half.to_bits(), expected.to_bits());
     }
 
     /// The output of one more sample, which shows where the state is. It moves it.

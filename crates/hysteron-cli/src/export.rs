@@ -35,6 +35,7 @@ fn c(args: &args::ExportC) -> Result<()> {
             "real": export.real.name(),
             "levels": export.levels,
             "inverse": export.inverse,
+            "rounding": export.rounding,
             "stages": export.stages,
             "dt": export.dt,
             "flash_bytes": memory.constants,

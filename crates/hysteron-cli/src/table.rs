@@ -67,7 +67,16 @@ pub(crate) fn invert(args: &args::Invert) -> Result<()> {
         &args.force,
         (args.json.json, args.memory.limit()),
         what,
-        |table, out, progress| hysteron::invert_table(&model, state, table, how, out, progress),
+        |table, out, progress| {
+            let counts = hysteron::invert_table(&model, state, table, how, out, progress)?;
+            if counts.samples > 0 && counts.half_width.is_none() {
+                say(format_args!(
+                    "the model does not know how far it errs, so there are no columns output_low \
+                     and output_high: fit it with --bootstrap 200 or --hold-out branches:20%"
+                ));
+            }
+            Ok(counts)
+        },
     )
 }
 
@@ -129,6 +138,7 @@ fn through(
             "low": counts.low,
             "passed": counts.passed,
             "limited": counts.limited,
+            "half_width": counts.half_width,
             "table": out,
         });
         print(&object.to_string())?;

@@ -141,7 +141,8 @@ fn from_a_recording_to_a_model_and_back() {
         0
     );
     let back = bench.read("back.csv");
-    assert!(back.starts_with("t,x,y,output_model,input_model,status\n"));
+    let header = "t,x,y,output_model,input_model,output_low,output_high,status\n";
+    assert!(back.starts_with(header), "{back:.80}");
     bench.file("again.csv", &back.replace("output_model", "wanted"));
     assert_eq!(
         bench
@@ -151,9 +152,52 @@ fn from_a_recording_to_a_model_and_back() {
     );
     for line in bench.read("again-out.csv").lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!(cells[5], "ok");
-        let (wanted, got): (f64, f64) = (cells[3].parse().unwrap(), cells[6].parse().unwrap());
+        assert_eq!(cells[7], "ok");
+        let (wanted, got): (f64, f64) = (cells[3].parse().unwrap(), cells[8].parse().unwrap());
         assert!((wanted - got).abs() < 1e-11, "{line}");
+    }
+}
+
+#[test]
+fn invert_says_where_the_output_may_really_be_or_that_nobody_knows() {
+    let bench = Bench::new();
+    let fit = "fit run.csv --input x --output y --levels 20 --spacing uniform --smooth off";
+    let invert = "invert model.json run.csv --target y --json -o inputs.csv";
+    assert_eq!(
+        bench
+            .run(&format!("{fit} --bootstrap 0 -o model.json"))
+            .code,
+        0
+    );
+    let done = bench.run(invert);
+    assert!(
+        done.err.contains("no columns output_low and output_high"),
+        "{}",
+        done.err
+    );
+    assert!(done.err.contains("--hold-out"), "{}", done.err);
+    assert_eq!(done.json()["half_width"], Value::Null);
+    assert!(
+        bench
+            .read("inputs.csv")
+            .starts_with("t,x,y,input_model,status\n")
+    );
+    let knows = format!("{fit} --bootstrap 0 --hold-out branches:20% -o model.json");
+    assert_eq!(bench.run(&knows).code, 0);
+    // The table of the run before is the command's own, and so is that of this run.
+    bench.run(invert);
+    let done = bench.run(invert);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!done.err.contains("output_low"), "{}", done.err);
+    let half = done.json()["half_width"].as_f64().unwrap();
+    let inputs = bench.read("inputs.csv");
+    let header = "t,x,y,input_model,output_low,output_high,status\n";
+    assert!(inputs.starts_with(header), "{inputs:.60}");
+    for line in inputs.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [y, low, high] = [2, 4, 5].map(|n| cells[n].parse::<f64>().unwrap());
+        assert!((high - low - 2.0 * half).abs() < 1e-12, "{line}");
+        assert!(cells[6] != "ok" || (low <= y && y <= high), "{line}");
     }
 }
 
@@ -577,7 +621,8 @@ fn ended_in_the_middle_it_leaves_nothing() {
     std::io::Write::write_all(&mut stdin, b"x\n1\n2\n").unwrap();
     let names = || entries(bench.folder.path());
     let started = |names: Vec<String>| names.iter().any(|name| name.starts_with(".hysteron-"));
-    for _ in 0..500 {
+    // A minute is for a machine with much other work.
+    for _ in 0..6000 {
         if started(names()) {
             break;
         }

@@ -117,9 +117,10 @@ int hys_actuator_step(hys_actuator_state *state, hys_real drive, hys_real load, 
 /* Finds the drive that gives `target` at the end of one sample time, within the range of the drive,
  * moves there and writes it. Heading and tolerance as for hys_inverse_step.
  *
- * `*status` becomes HYS_REACHED if the output is the target, up to tolerance and rounding, which is
- * at most a thousandth of the range of outputs. It becomes HYS_LOW or HYS_HIGH for a target below or above every output at rest,
- * HYS_PASSED as for hys_inverse_step, and else HYS_LIMITED.
+ * `*status` becomes HYS_REACHED if the output is the target, up to tolerance and rounding. The
+ * model's header says what rounding may amount to in the unit of the output: at most a thousandth
+ * of the range of outputs. It becomes HYS_LOW or HYS_HIGH for a target below or above every output
+ * at rest, HYS_PASSED as for hys_inverse_step, and else HYS_LIMITED.
  *
  * Errors: HYS_VALUE, HYS_NEGATIVE_WEIGHTS, HYS_INPUT_NOT_FINITE, HYS_LOAD. */
 int hys_actuator_inverse_step(hys_actuator_state *state, hys_real target, int heading,

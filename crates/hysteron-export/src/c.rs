@@ -2,6 +2,7 @@
 
 mod constants;
 mod name;
+mod rounding;
 mod seal;
 mod stage_text;
 mod stages;
@@ -115,6 +116,10 @@ pub struct CExport {
     pub levels: usize,
     /// Whether there is an inverse: no weight is below zero.
     pub inverse: bool,
+    /// What a target may be missed by that the inverse reports as reached, beside its tolerance, in
+    /// the output's unit: the rounding of the number type, at most a thousandth of the range of
+    /// outputs. Zero without an inverse.
+    pub rounding: f64,
     /// The stages around the operators, in the order of the signal: `body`, `load`, `spacing`,
     /// `creep`, `lag`.
     pub stages: Vec<&'static str>,
@@ -181,7 +186,8 @@ impl CWorstCase {
 ///
 /// # Errors
 /// [`Error::Export`] for a model that depends on time, or has weights of more than the seventh
-/// order in a load, or does not fit the number type; for a name that cannot be one in C; for files
+/// order in a load, or does not fit the number type, be it that its rounding would be more than a
+/// thousandth of the range of outputs ([`CExport::rounding`]); for a name that cannot be one in C; for files
 /// in the folder that are of the other number type. [`Error::File`].
 pub fn c<'a>(
     model: &Model,
@@ -297,6 +303,7 @@ fn texts<T: Number>(
         real: options.real,
         levels,
         inverse: constants.rounding.is_some(),
+        rounding: constants.missed.unwrap_or_default(),
         stages: constants
             .stages
             .as_ref()

@@ -93,6 +93,7 @@ impl Model {
         dict.set_item("files", export.files)?;
         dict.set_item("name", export.name)?;
         dict.set_item("inverse", export.inverse)?;
+        dict.set_item("rounding", export.rounding)?;
         dict.set_item("flash_bytes", export.memory.constants)?;
         dict.set_item("ram_bytes", export.memory.state + export.memory.turns)?;
         dict.set_item("step_loop", export.worst_case.step)?;

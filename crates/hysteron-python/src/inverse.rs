@@ -115,7 +115,8 @@ impl Inverse {
     /// status : ndarray of int8 or pandas.Series, shape (n,)
     ///     0 where the input gives the target, up to the tolerance, -1 and 1 where it lies below or
     ///     above every output, 2 where a relay model jumps past it, 3 where the range of the drive
-    ///     does not reach it in this sample.
+    ///     does not reach it in this sample. It speaks of the model; `Model.bounds` of these inputs
+    ///     says where the output may really be.
     ///
     /// Raises
     /// ------

@@ -15,6 +15,10 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Where a simulation begins, for [`Model::begin`].
+const BEGINS: [(&str, Option<bool>); 3] =
+    [("fitted", None), ("off", Some(false)), ("on", Some(true))];
+
 #[pymethods]
 impl Model {
     /// The outputs for `input`.
@@ -65,8 +69,7 @@ impl Model {
         load: Option<&Bound<'py, PyAny>>,
         start: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let on = [("fitted", None), ("off", Some(false)), ("on", Some(true))];
-        self.start(choice("start", start, &on)?)
+        self.start(choice("start", start, &BEGINS)?)
             .run(py, input, time, load)
     }
 
@@ -109,6 +112,58 @@ impl Model {
         let around = Around::of(&self.inner, samples.len(), time, load)?;
         let band = detached(py, || self.inner.band_in(samples, around.lent()));
         let (low, high) = band.raise_of("input", samples)?;
+        Ok((
+            like(input, low.into_pyarray(py), "lower")?,
+            like(input, high.into_pyarray(py), "upper")?,
+        ))
+    }
+
+    /// Where the output may really be around `simulate`, and where `Inverse.run` reports a target
+    /// as reached: the wider of `band` and 1.96 times the error on what was held out.
+    ///
+    /// Parameters
+    /// ----------
+    /// input, time, load, start
+    ///     As for `simulate`.
+    ///
+    /// Returns
+    /// -------
+    /// lower, upper : ndarray or pandas.Series, shape (n,)
+    ///     In the output's unit, as `simulate`.
+    ///
+    /// Raises
+    /// ------
+    /// FitError
+    ///     For a model that was fitted without a bootstrap, with nothing held out and nothing left
+    ///     to the data; otherwise as `simulate`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> temperature = 50 - 30 * np.cos(np.linspace(0, 40, 800))
+    /// >>> lift = 0.1 * temperature + 0.01 * np.sin(np.arange(800))
+    /// >>> options = {'levels': 6, 'bootstrap': 0, 'hold_out': 'branches:20%'}
+    /// >>> model = pyhysteron.fit(pyhysteron.Recording(temperature, lift), **options)
+    /// >>> inputs, status = model.inverse().run(lift)
+    /// >>> lower, upper = model.bounds(inputs)
+    /// >>> half = (upper - lower) / 2
+    /// >>> bool(np.all(half >= 1.95 * model.fit.hold_out.model.rmse))
+    /// True
+    #[pyo3(signature = (input, *, time=None, load=None, start="fitted"))]
+    #[allow(clippy::type_complexity)]
+    fn bounds<'py>(
+        &self,
+        py: Python<'py>,
+        input: &Bound<'py, PyAny>,
+        time: Option<&Bound<'py, PyAny>>,
+        load: Option<&Bound<'py, PyAny>>,
+        start: &str,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let begin = self.begin(choice("start", start, &BEGINS)?);
+        let array = samples(input, "input")?;
+        let samples = array.as_slice()?;
+        let around = Around::of(&self.inner, samples.len(), time, load)?;
+        let bounds = detached(py, || self.inner.bounds_in(&begin, samples, around.lent()));
+        let (low, high) = bounds.raise_of("input", samples)?;
         Ok((
             like(input, low.into_pyarray(py), "lower")?,
             like(input, high.into_pyarray(py), "upper")?,

@@ -317,12 +317,12 @@ fn uploads_share_one_account() {
     let open: Vec<_> = (0..20).map(|_| upload()).collect();
     let wait = || std::thread::sleep(std::time::Duration::from_millis(20));
     assert!(
-        (0..500).inspect(|_| wait()).any(|_| taken() == 6_000_000),
+        (0..3000).inspect(|_| wait()).any(|_| taken() == 6_000_000),
         "two have room"
     );
     drop(open);
     assert!(
-        (0..500).inspect(|_| wait()).any(|_| taken() == 0),
+        (0..3000).inspect(|_| wait()).any(|_| taken() == 0),
         "given back"
     );
     studio.end();

@@ -53,7 +53,7 @@ pub use batch::BatchModel;
 #[cfg(feature = "data")]
 pub use data::{
     Added, Around, AtomicFile, AtomicFolder, Budget, Column, ColumnSummary, Columns, Counts,
-    Destination, Growing, Invert, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
+    Destination, Growing, Invert, Locked, Memory, Note, NoteKind, Others, Own, PICTURE, Places,
     ReadOptions, Remark, Repair, Roles, Row, STANDARD_OUTPUT, Segment, Simulate, TablePreview,
     TableReader, TableSummary, TableWriter, discard_unfinished, inspect_table, invert_table,
     preview_table, printable, python_literal, refuse_one_file, shell_word, simulate_table,
@@ -85,10 +85,10 @@ pub use inspect::{
     inspect_model, inspect_recording,
 };
 pub use model::{
-    Band, BandEvaluation, Confidence, CreepTerm, Criterion, Excitation, FirstOrder, FitSummary,
-    FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model, OperatorState,
-    Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth, Solver, Start,
-    State, Surroundings, Validation, Wanted,
+    Band, BandEvaluation, Bounds, Confidence, CreepTerm, Criterion, Excitation, FirstOrder,
+    FitSummary, FittedStart, INTERVAL, Inverse, LoadCurves, LoadDependence, LoadPart, Model,
+    OperatorState, Operators, Plane, Policy, RivalScore, Sample, Score, SeenFile, Sign, Smooth,
+    Solver, Start, State, Surroundings, Validation, Wanted,
 };
 pub use prepare::{
     DeadBand, Doubt, Judged, LowPass, Preparation, PrepareOptions, RateDependence, Repairs,

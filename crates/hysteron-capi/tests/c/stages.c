@@ -76,6 +76,8 @@ static void save_and_restore(uint64_t model) {
             OK(hysteron_state_restore_stages(broken, &stages));
         }
     }
+    OK(hysteron_state_half_width(whole, &a));
+    REQUIRE(a != a); /* the model does not say how far it errs */
     OK(hysteron_state_temperature(whole, &a));
     OK(hysteron_state_temperature(broken, &b));
     REQUIRE(a == b && a > 20.0 && a < 120.0);

@@ -61,7 +61,8 @@ pub(crate) enum Command {
         \x20 hysteron simulate spring.json run2.csv --input temperature -o modelled.csv")]
     Simulate(Simulate),
     /// Find the input for a wanted output: adds the columns `input_model` (the drive, for a model
-    /// with a thermal body) and `status` (ok, low, high, limited)
+    /// with a thermal body) and `status` (ok, low, high, limited); `output_low` and `output_high`,
+    /// where the output may really be, if the model knows how far it errs
     #[command(after_help = "Example:\n\
         \x20 hysteron invert spring.json wanted.csv --target displacement -o inputs.csv")]
     Invert(Invert),

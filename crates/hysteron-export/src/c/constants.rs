@@ -1,5 +1,6 @@
 //! A model in the number type of the target.
 
+use super::rounding::missed;
 use super::stages::{CSampling, Staged};
 use super::{CMemory, CReal};
 use hysteron::{Error, Model, Operator, Remedy, Result, Setting, Sign};
@@ -9,6 +10,10 @@ use hysteron_core::{MAX_CREEP, Plane, Real, table_len, turn_capacity};
 pub(super) trait Number: Real {
     /// Its size and alignment.
     const BYTES: usize;
+    /// Its name in C.
+    const REAL: CReal;
+    /// [`Real::EPSILON`].
+    const DISTANCE: f64;
     /// The smallest number that has all its digits.
     const SMALLEST: Self;
     /// The nearest number; none where digits are lost beyond that: too large, or too small to be
@@ -20,6 +25,8 @@ pub(super) trait Number: Real {
 
 impl Number for f32 {
     const BYTES: usize = 4;
+    const REAL: CReal = CReal::Float;
+    const DISTANCE: f64 = f32::EPSILON as f64;
     const SMALLEST: Self = f32::MIN_POSITIVE;
 
     fn of(number: f64) -> Option<Self> {
@@ -34,6 +41,8 @@ impl Number for f32 {
 
 impl Number for f64 {
     const BYTES: usize = 8;
+    const REAL: CReal = CReal::Double;
+    const DISTANCE: f64 = f64::EPSILON;
     const SMALLEST: Self = 0.0;
 
     fn of(number: f64) -> Option<Self> {
@@ -53,6 +62,8 @@ pub(super) struct Constants<T> {
     pub(super) falls: bool,
     /// That of the inverse, where there is one.
     pub(super) rounding: Option<T>,
+    /// What a target may be missed by that its inverse reports as reached, in the output's unit.
+    pub(super) missed: Option<f64>,
     /// The stages around the operators, where there are any.
     pub(super) stages: Option<Staged<T>>,
     /// Turning points and input that the model starts with, where its fit found them.
@@ -98,12 +109,16 @@ impl<T: Number> Constants<T> {
             offset,
             falls: model.sign() == Sign::Negative,
             rounding,
+            missed: None,
             stages: None,
             start: start.transpose()?,
         };
         constants.stages = Staged::of(model, &constants, sampling)?;
         if constants.stages.as_ref().is_some_and(Staged::is_negative) {
             constants.rounding = None;
+        }
+        if constants.rounding.is_some() {
+            constants.missed = Some(missed::<T>(model, sampling)?);
         }
         Ok(constants)
     }

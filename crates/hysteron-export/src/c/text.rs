@@ -57,7 +57,15 @@ pub(super) fn header<T: Number>(
             },
         ),
         match export.inverse {
-            true => "inverse: yes".to_owned(),
+            true => format!(
+                "inverse: a target that is HYS_REACHED is met up to its tolerance and {:.1e}{}",
+                export.rounding,
+                model
+                    .output
+                    .unit
+                    .as_deref()
+                    .map_or(String::new(), |unit| format!(" {}", plain(unit))),
+            ),
             false => format!(
                 "inverse: none, for there are weights below zero ({} returns HYS_NEGATIVE_WEIGHTS)",
                 match constants.stages {

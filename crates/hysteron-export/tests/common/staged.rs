@@ -7,7 +7,7 @@ use hysteron_core::{
     Axis, Body, Creep, Direction, Load, Plane, Rates, StageState, Stages, State, Target, Turn,
     Wanted, mix, table_len, turn_capacity,
 };
-use hysteron_export::CSampling;
+use hysteron_export::{COptions, CReal, CSampling, c_texts};
 use rand::RngExt;
 use rand::rngs::StdRng;
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ pub struct Case {
     pub sampling: CSampling,
     /// What the drive moves over.
     pub drives: (f64, f64),
-    loads: (f64, f64),
+    pub loads: (f64, f64),
 }
 
 fn sorted(rng: &mut StdRng, count: usize, low: f64, high: f64) -> Vec<f64> {
@@ -150,6 +150,45 @@ impl Case {
             model,
             sampling,
         }
+    }
+
+    /// Whether the digits of the number type keep the model.
+    pub fn is_kept(&self, real: CReal) -> bool {
+        let options = COptions {
+            real,
+            name: Some("m"),
+            source: "m.json".as_ref(),
+            adaptation: false,
+        };
+        c_texts(&self.model, &options, &self.sampling).is_ok()
+    }
+
+    /// The same model sampled at up to 10 kHz, with a body that takes up to 10⁶ samples.
+    pub fn fast(&mut self, rng: &mut StdRng) {
+        let Some(body) = &mut self.model.thermal else {
+            return;
+        };
+        let dt = 10f64.powf(rng.random_range(-4.0..-2.0));
+        for tau in [&mut body.tau_heating, &mut body.tau_cooling] {
+            *tau = dt * 10f64.powf(rng.random_range(-1.0..6.0));
+        }
+        self.sampling.dt = Some(dt);
+    }
+
+    /// The range of outputs, at the load where it is widest, after creep.
+    pub fn widest(&self) -> f64 {
+        let stages = self.model.stages();
+        let gains = stages.axis.load.gains.iter().copied();
+        let gain = gains.reduce(f64::max).unwrap_or(1.0) * stages.creep.gain();
+        let sum = |weights: &[f64]| weights.iter().sum::<f64>();
+        let parts = self.model.load.iter().flat_map(|load| load.parts());
+        let own = sum(self.model.weights());
+        let largest = parts.map(|part| sum(&part.weights)).fold(own, f64::max);
+        let span = match self.model.operator() {
+            Operator::Mkp => 1.0,
+            _ => 2.0,
+        };
+        span * gain * largest
     }
 }
 
@@ -321,7 +360,7 @@ impl<T: Number> Parts<T> {
     }
 }
 
-struct Reference<T> {
+pub struct Reference<T> {
     model: hysteron_core::Model<T, Vec<T>>,
     parts: Option<Parts<T>>,
     numbers: Numbers<T>,
@@ -333,7 +372,7 @@ struct Reference<T> {
 }
 
 impl<T: Number> Reference<T> {
-    fn new(case: &Case) -> Self {
+    pub fn new(case: &Case) -> Self {
         let (model, plane) = (&case.model, case.model.plane());
         let k = plane.levels();
         let plane = Plane::new(T::of(plane.min()), T::of(plane.max()), k).unwrap();
@@ -374,7 +413,7 @@ impl<T: Number> Reference<T> {
         }
     }
 
-    fn invert(&mut self, target: Target<T>, load: T) -> Result<(T, i8), i32> {
+    pub fn invert(&mut self, target: Target<T>, load: T) -> Result<(T, i8), i32> {
         if self.parts.as_ref().is_some_and(|parts| parts.negative) {
             return Err(5);
         }

@@ -1,8 +1,8 @@
 //! The file that keeps the session: one studio at a time, and nothing of others is replaced.
 
 use crate::{Fault, Session};
-use hysteron::{AtomicFile, Error, Own};
-use std::fs::{File, Metadata, TryLockError};
+use hysteron::{AtomicFile, Error, Locked, Own};
+use std::fs::{File, Metadata};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -14,7 +14,7 @@ pub(super) struct Kept {
     /// The file as this studio left it; `None` if there was none.
     left: Option<Stamp>,
     /// Beside the session, because that is replaced as a whole.
-    _lock: File,
+    _lock: Locked,
 }
 
 /// Changes with the length and the time of a file.
@@ -47,15 +47,11 @@ impl Kept {
             .append(true)
             .create(true)
             .open(path.with_file_name(name));
-        let lock = lock.map_err(failed)?;
-        match lock.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                let problem = format!("another studio keeps its session in {}", path.display());
-                return Err(Fault::not_kept(&problem));
-            }
-            // Some file systems have no locks. Then changes of the file are all that is seen.
-            Ok(()) | Err(TryLockError::Error(_)) => {}
-        }
+        // Some file systems have no locks. Then changes of the file are all that is seen.
+        let lock = Locked::new(lock.map_err(failed)?).map_err(|_| {
+            let problem = format!("another studio keeps its session in {}", path.display());
+            Fault::not_kept(&problem)
+        })?;
         let left = match std::fs::metadata(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
             about => {

@@ -25,7 +25,7 @@ mod trace;
 pub use columns::{ColumnSummary, TableSummary, inspect_table};
 pub use guess::{PICTURE, Roles, TablePreview, preview_table};
 pub use output::{
-    Added, AtomicFile, AtomicFolder, Destination, Own, STANDARD_OUTPUT, TableWriter,
+    Added, AtomicFile, AtomicFolder, Destination, Locked, Own, STANDARD_OUTPUT, TableWriter,
     discard_unfinished, refuse_one_file,
 };
 pub(crate) use output::{Entry, Kind, Partial, RecordWriter, Schema, Value, read_records};

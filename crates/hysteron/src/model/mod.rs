@@ -4,13 +4,14 @@
 //! `operators` are the weighted operators; `body`, `load` and `after` are the constants of the
 //! stages around them, and `stages` hands them to the core. `state` moves a model sample by sample
 //! from its `start`, `surroundings` simulates it with time and load, and `inverse` inverts it
-//! (`policy` says how). `band` is the interval around the output. `file` reads and writes models;
+//! (`policy` says how). `band` is the interval around the output, and `bounds` where it may really be. `file` reads and writes models;
 //! `summary`, `smooth`, `validation`, `confidence` and `excitation` are the record of the
 //! fit.
 
 mod after;
 mod band;
 mod body;
+mod bounds;
 mod confidence;
 mod excitation;
 mod file;
@@ -35,6 +36,7 @@ pub(crate) use band::add_variance;
 pub use band::{Band, BandEvaluation};
 pub use body::FirstOrder;
 pub(crate) use body::needs_time;
+pub use bounds::Bounds;
 pub use confidence::{Confidence, INTERVAL};
 pub use excitation::Excitation;
 #[cfg(feature = "data")]

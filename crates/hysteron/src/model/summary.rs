@@ -130,6 +130,25 @@ impl FitSummary {
         Some((self.rmse.powi(2) - noise.powi(2)).max(0.0).sqrt())
     }
 
+    /// Root mean squared error on what took no part in the fit, in the output's unit: on what was
+    /// held out of it, and on the branches that the choice of levels and smoothness left out; the
+    /// larger of both. `None` where nothing was.
+    #[must_use]
+    pub fn held_out(&self) -> Option<f64> {
+        let apart = self
+            .other
+            .get("hold_out")
+            .map(|entry| &entry["model"]["rmse"]);
+        let apart = apart.and_then(serde_json::Value::as_f64);
+        let chosen = self.validation.as_ref();
+        let chosen = chosen.filter(|found| found.criterion == super::Criterion::LeftOut);
+        let errors = apart.into_iter().chain(chosen.map(|found| found.rmse));
+        // What a file says is believed only if it can be an error: it is squared elsewhere.
+        errors
+            .filter(|rmse| (0.0..=1e140).contains(rmse))
+            .reduce(f64::max)
+    }
+
     /// Whether the recording comes from a file that was fitted, by the digest of that file. A model
     /// file of an earlier version knows only the first one of several.
     #[must_use]

@@ -15,12 +15,15 @@ const PAUSE: Duration = Duration::from_millis(50);
 /// system makes it until it runs a program of its own. Closing a file in the parent then leaves the
 /// lock with the child. So the lock is given back by name, which ends it for both. A parent that is
 /// killed gives nothing back: who finds a lock waits a moment for its child.
-pub(super) struct Locked(File);
+#[derive(Debug)]
+pub struct Locked(File);
 
 impl Locked {
+    /// Locks the file, or waits for up to two seconds.
+    ///
     /// # Errors
-    /// Another process keeps the lock.
-    pub(super) fn new(file: File) -> io::Result<Self> {
+    /// [`io::ErrorKind::ResourceBusy`]: another process keeps the lock.
+    pub fn new(file: File) -> io::Result<Self> {
         Self::waiting(file, || std::thread::sleep(PAUSE))
     }
 
@@ -33,7 +36,7 @@ impl Locked {
             }
         }
         let problem = "another process is writing this file: let it end, or name another file";
-        Err(io::Error::other(problem))
+        Err(io::Error::new(io::ErrorKind::ResourceBusy, problem))
     }
 }
 

@@ -50,6 +50,7 @@ pub(crate) use added::AddedCells;
 pub use atomic::AtomicFile;
 pub use destination::{Destination, Own, refuse_one_file};
 pub use folder::AtomicFolder;
+pub use lock::Locked;
 pub(crate) use partial::{Entry, Partial};
 pub(crate) use records::{Kind, RecordWriter, Schema, Value, read_records};
 pub(crate) use sign::is_our_model;

@@ -10,10 +10,19 @@ use std::path::Path;
 
 /// The columns that commands add to tables. In CSV they are the last ones. Columns of words come
 /// together with columns of numbers.
-const ADDED: [&[&str]; 4] = [
+const ADDED: [&[&str]; 7] = [
     &["output_model"],
     &["output_model", "output_low", "output_high"],
     &["input_model", "status"],
+    &["input_model", "temperature_model", "status"],
+    &["input_model", "output_low", "output_high", "status"],
+    &[
+        "input_model",
+        "temperature_model",
+        "output_low",
+        "output_high",
+        "status",
+    ],
     &["output_model", "error", "outcome"],
 ];
 /// Those columns that hold words.

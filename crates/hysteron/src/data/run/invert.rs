@@ -6,7 +6,8 @@ use super::{Around, Counts};
 use crate::data::output::{Added, AddedCells, TableWriter};
 use crate::data::table::{Block, TableReader};
 use crate::error::Result;
-use crate::model::{Inverse, Model, Policy, Preview, Sample, State, Surroundings, Wanted};
+use crate::model::{Bounds, Inverse, Model, OperatorState, Policy};
+use crate::model::{Preview, Sample, State, Surroundings, Wanted};
 use crate::series::Headings;
 use hysteron_core::{Solution, StageState};
 use std::collections::VecDeque;
@@ -36,8 +37,10 @@ pub struct Invert<'a> {
 
 /// Copies `table` to `out` with the columns `input_model` and `status`: the input that gives the
 /// wanted output, from `state`. For a model with a thermal body the input is the drive to hold since
-/// the row before, and `temperature_model` follows it. `out` is finished at the end. `progress` gets
-/// the bytes read.
+/// the row before, and `temperature_model` follows it. A model that knows how far it errs
+/// ([`Model::bounds`]) also gets the columns `output_low` and `output_high`: where the output may
+/// really be with this input, also where the status is `ok`. `out` is finished at the end.
+/// `progress` gets the bytes read.
 ///
 /// # Errors
 /// As [`crate::simulate_table`]; [`crate::Error::Core`] for a model with negative weights;
@@ -63,10 +66,20 @@ pub fn invert_table(
         Some(_) => Some(Preview::new(model, &inner, drive, seconds, state.clone())?),
     };
     let heated = model.thermal.is_some();
-    let mut added = vec![Added::Numbers("input_model"), Added::Words("status")];
-    if heated {
-        added.insert(1, Added::Numbers("temperature_model"));
-    }
+    let around_output = match model.bounds()? {
+        Some(bounds) => Some(AroundOutput::new(model, bounds, &state)?),
+        None => None,
+    };
+    let bounded = around_output.is_some();
+    let names = [
+        ("input_model", true),
+        ("temperature_model", heated),
+        ("output_low", bounded),
+        ("output_high", bounded),
+    ];
+    let numbers = names.into_iter().filter(|(_, there)| *there);
+    let numbers = numbers.map(|(name, _)| Added::Numbers(name));
+    let added: Vec<Added> = numbers.chain([Added::Words("status")]).collect();
     let inverse = model
         .inverse()?
         .drive_range(drive.0, drive.1)?
@@ -86,6 +99,7 @@ pub fn invert_table(
             state,
             preview,
             heated,
+            around_output,
             counts: Counts::default(),
         },
     };
@@ -106,7 +120,8 @@ struct Inverting<'m> {
 impl Work for Inverting<'_> {
     fn rows(&mut self, block: &Block, cells: &mut AddedCells) -> Result<()> {
         let plain = self.model.is_plain();
-        if plain && self.headings.is_none() {
+        // Without bounds, which have a state of their own.
+        if plain && self.headings.is_none() && self.solving.around_output.is_none() {
             let targets = &block.numbers()[self.samples.value];
             if self.solving.series(targets, self.tolerance, cells).is_ok() {
                 return Ok(());
@@ -158,7 +173,35 @@ struct Solving<'m> {
     state: State,
     preview: Option<Preview<'m>>,
     heated: bool,
+    around_output: Option<AroundOutput<'m>>,
     counts: Counts,
+}
+
+/// Follows the inputs found, and says where the output may really be.
+struct AroundOutput<'m> {
+    model: &'m Model,
+    bounds: Bounds,
+    state: State,
+    of_bounds: Vec<OperatorState>,
+}
+
+impl<'m> AroundOutput<'m> {
+    fn new(model: &'m Model, bounds: Bounds, state: &State) -> Result<Self> {
+        let of_bounds = bounds.states(state)?;
+        Ok(Self {
+            model,
+            bounds,
+            state: state.clone(),
+            of_bounds,
+        })
+    }
+
+    /// The modelled output for the next input, and half the width around it.
+    fn step(&mut self, sample: Sample) -> Result<(f64, f64)> {
+        let output = self.model.step(&mut self.state, sample)?.output;
+        let half = self.bounds.step(&mut self.of_bounds, self.state.input())?;
+        Ok((output, half))
+    }
 }
 
 impl Solving<'_> {
@@ -209,10 +252,21 @@ impl Solving<'_> {
             None => self.inverse.step(&mut self.state, wanted)?,
         };
         self.counts.add(status);
-        match self.heated {
-            true => cells.push(&[input, self.state.temperature()]),
-            false => cells.push(&[input]),
+        let mut numbers = [input, 0.0, 0.0, 0.0];
+        let mut count = 1;
+        if self.heated {
+            numbers[1] = self.state.temperature();
+            count = 2;
         }
+        if let Some(around_output) = &mut self.around_output {
+            let Wanted { dt, load, .. } = wanted;
+            let (output, half) = around_output.step(Sample { input, dt, load })?;
+            let widest = self.counts.half_width.unwrap_or_default();
+            self.counts.half_width = Some(widest.max(half));
+            numbers[count..count + 2].copy_from_slice(&[output - half, output + half]);
+            count += 2;
+        }
+        cells.push(&numbers[..count]);
         cells.words.push(status.name());
         Ok(())
     }

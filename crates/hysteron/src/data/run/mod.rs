@@ -16,7 +16,7 @@ use hysteron_core::Status;
 use serde::Serialize;
 
 /// Counts of the rows processed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Counts {
     /// Rows read and written.
     pub samples: u64,
@@ -28,6 +28,9 @@ pub struct Counts {
     pub passed: u64,
     /// Targets that the drive, within its range, cannot reach in time.
     pub limited: u64,
+    /// Of an inversion: the largest distance from the modelled output to where it may really be, in
+    /// its unit ([`crate::Bounds`]); `None` where the model does not know.
+    pub half_width: Option<f64>,
 }
 
 impl Counts {
