@@ -146,6 +146,60 @@ def binary(*names):
     return generate
 
 
+def copies(*names):
+    """Damaged tables of columns that are copied, converted or read as a whole."""
+
+    def generate(rng):
+        while True:
+            source = FIXTURES / rng.choice(names)
+            name = f"table{source.suffix}"
+            out = f"out{rng.choice((source.suffix, source.suffix, '.parquet', '.arrow', '.csv'))}"
+            kept = rng.choice(
+                (
+                    ["simulate", "model.json", name, "--input", "x"],
+                    ["invert", "model.json", name, "--target", "y"],
+                )
+            )
+            read = Case(["inspect", name, "--json"])
+            case = read if rng.random() < 0.2 else Case([*kept, "-o", out], out)
+            case.set_up = files(**{name.replace(".", "_"): mutated(rng, source.read_bytes())})
+            yield case
+
+    return generate
+
+
+# What a shell or Python would run, if it stood in a command as it stands in a session. It needs no
+# other program.
+PAYLOADS = [
+    "'; : > PAYLOAD #",
+    '"; : > PAYLOAD #',
+    "$(: > PAYLOAD)",
+    "`: > PAYLOAD`",
+    "x\n: > PAYLOAD",
+    "rows:1-9; : > PAYLOAD #",
+    "'); open('PAYLOAD', 'w') #",
+    "--output=PAYLOAD",
+]
+
+
+def sessions(whole):
+    """Sessions of the studio: each field left out and with every wrong value; then mutated texts."""
+
+    def generate(rng):
+        texts = [
+            json.dumps(replaced(whole, at, other))
+            for at in places(whole)
+            if at
+            for other in (..., *WRONG, *PAYLOADS)
+        ]
+        rng.shuffle(texts)
+        while True:
+            given = texts.pop().encode() if texts else mutated(rng, json.dumps(whole).encode(), PIECES)
+            yield Case(["studio", "given.json", "--no-open"], None, files(given_json=given))
+
+    return generate
+
+
 WRONG = [
     None,
     True,

@@ -30,6 +30,7 @@ from collections import Counter
 from pathlib import Path
 
 import cases
+from studio import Studio
 
 SECONDS = 60
 MEMORY = 4 << 30
@@ -64,13 +65,13 @@ def contents(folder):
     return found
 
 
-def not_whole_table(path):
+def not_whole_table(hysteron, path):
     """What a table lacks that a command has written."""
     if path.suffix in (".xlsx", ".mat"):
         return "a format that is not written"
-    if path.suffix == ".parquet":
-        data = path.read_bytes()
-        return None if data[:4] == data[-4:] == b"PAR1" else "Parquet that is none"
+    if path.suffix in (".parquet", ".arrow"):
+        read = subprocess.run([hysteron, "inspect", path], capture_output=True, check=False)
+        return None if read.returncode == 0 else f"a copy that is damaged: {read.stderr.decode()}"
     with path.open(newline="", encoding="utf-8", errors="replace") as text:
         rows = list(csv.reader(text))
     if not rows or any(len(row) != len(rows[0]) for row in rows):
@@ -81,10 +82,10 @@ def not_whole_table(path):
     return None
 
 
-def not_whole(command, path):
+def not_whole(hysteron, command, path):
     """The same for any result."""
     if command in ("simulate", "invert", "prepare"):
-        return not_whole_table(path)
+        return not_whole_table(hysteron, path)
     if command == "fit":
         try:
             json.loads(path.read_text())
@@ -93,7 +94,7 @@ def not_whole(command, path):
     return None
 
 
-def fault(case, done, before, folder):
+def fault(hysteron, case, done, before, folder):
     """What is wrong with how a case ended, or None."""
     if done.returncode < 0:
         return f"signal {-done.returncode}"
@@ -111,7 +112,9 @@ def fault(case, done, before, folder):
         if done.returncode != 0 and not done.stderr.strip():
             return "a failure without words"
         broken = [
-            not_whole(case.arguments[0], folder / name) for name in new if after[name] is not None
+            not_whole(hysteron, case.arguments[0], folder / name)
+            for name in new
+            if after[name] is not None
         ]
         return next(filter(None, broken), None)
     if not done.stderr.strip():
@@ -125,6 +128,8 @@ def run(hysteron, case):
         folder = Path(name)
         case.set_up(folder)
         before = contents(folder)
+        if case.arguments[0] == "studio":
+            return visited(hysteron, case, before, folder)
         with open(case.stdout or os.devnull, "wb") as stdout:
             try:
                 done = subprocess.run(
@@ -139,7 +144,25 @@ def run(hysteron, case):
                 )
             except subprocess.TimeoutExpired:
                 return f"more than {SECONDS} s"
-        return fault(case, done, before, folder)
+        return fault(hysteron, case, done, before, folder)
+
+
+def visited(hysteron, case, before, folder):
+    """A studio that opens a session: what is in it is asked for, and its commands are run by a shell
+    in which there is no program. The fault, or None."""
+    studio = Studio(hysteron, case.arguments[1:], folder, limited(case.limits))
+    problem = None
+    if studio.address:
+        try:
+            problem = "words that a shell runs" if not studio.quotes(folder) else None
+        except (OSError, ValueError) as error:
+            problem = f"no answer: {error}"
+    code, stderr = studio.end(SECONDS)
+    if code not in (0, 1, 2) or b"panicked" in stderr:
+        return f"exit code {code}"
+    if not studio.address and (code == 0 or not stderr.strip()):
+        return "a failure without words"
+    return problem or next((f"{n} changed" for n in before if contents(folder).get(n, ...) != before[n]), None)
 
 
 def through_the_command(title, generate, count, seed, hysteron):
@@ -211,6 +234,9 @@ def main():
     classes = {
         "delimited text": cases.text,
         **{title: cases.binary(*names) for title, names in fixtures.items()},
+        "Parquet, copied": cases.copies(*fixtures["Parquet"], "kinds.parquet"),
+        "Arrow, copied": cases.copies(*fixtures["Arrow"]),
+        "studio sessions": cases.sessions(Studio.session(hysteron, cases.recording())),
         "model files": cases.model_files,
         "scenarios": cases.scenarios,
         "arguments": cases.arguments(hysteron),
