@@ -4,6 +4,9 @@
 //! In each folder, the files and folders in it are the modules, and `mod.rs` (`lib.rs`, `main.rs`)
 //! is one of them. A module imports another where a path in it ends there. A path to a name that is
 //! re-exported counts for the module that defines the name. What tests alone import does not count.
+//!
+//! `text/circles.txt` has those that are known. Another one fails, and so does a known one that is
+//! gone, so that the list only gets shorter.
 
 mod paths;
 mod tree;
@@ -13,9 +16,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use tree::{Graph, Tree, sorted};
 
+/// A known circle in each line: its folder, and its modules.
+const KNOWN: &str = include_str!("text/circles.txt");
+
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let all = arguments.first().is_some_and(|word| word == "all");
-    let mut circles = 0;
+    let mut found = BTreeSet::new();
     for folder in sorted(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))? {
         let source = folder.join("src");
         if !source.is_dir() {
@@ -31,18 +37,26 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
                     println!("  {module} -> {}", imports.join(" "));
                 }
             }
-            for circle in circles_of(&graph) {
-                println!("{place}: CIRCLE of {}", circle.join(" "));
-                circles += 1;
-            }
+            let circles = circles_of(&graph);
+            found.extend(
+                circles
+                    .iter()
+                    .map(|circle| format!("{place}: {}", circle.join(" "))),
+            );
         }
     }
-    match circles {
-        0 => {
-            println!("no circles");
-            Ok(())
-        }
-        _ => Err(format!("{circles} circles: move what their modules share below them").into()),
+    let known: BTreeSet<String> = KNOWN.lines().map(str::to_owned).collect();
+    let (new, gone) = (found.difference(&known), known.difference(&found));
+    new.clone()
+        .for_each(|circle| println!("new circle: {circle}"));
+    gone.clone()
+        .for_each(|circle| println!("known circle that is gone: {circle}"));
+    println!("{} circles, {} known", found.len(), known.len());
+    match new.count() + gone.count() {
+        0 => Ok(()),
+        _ => Err("move what the modules of a circle share below them; \
+                  take what is gone from text/circles.txt"
+            .into()),
     }
 }
 

@@ -1,11 +1,12 @@
-//! The modules of each crate import each other in one direction only.
+//! The modules of each crate import each other in one direction, but for circles that are known.
 #![allow(clippy::unwrap_used)]
 
 use std::process::Command;
 
 #[test]
-fn no_module_imports_itself_through_others() {
-    let found = Command::new(env!("CARGO_BIN_EXE_modules"))
+fn no_new_module_imports_itself_through_others() {
+    let found = Command::new(env!("CARGO_BIN_EXE_hysteron-measure"))
+        .args(["modules", "all"])
         .output()
         .unwrap();
     let graph = String::from_utf8(found.stdout).unwrap();

@@ -2,8 +2,8 @@
 //! elsewhere.
 
 use super::fault::Fault;
+use super::id::Id;
 use super::job::{Finished, Job, Watch};
-use super::request::Id;
 use super::saved::SavedFit;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

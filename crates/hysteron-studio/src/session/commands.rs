@@ -1,13 +1,14 @@
 //! What was clicked, as commands: for the shell, in Python and in Rust.
 
-use super::Session;
-use super::design::Wish;
+use super::argument::{option, path};
 use super::fitted::Fitted;
 use super::fitting::FILES;
+use super::id::Id;
 use super::opened::Opened;
 use super::prepare::Steps;
-use super::request::Id;
-use hysteron::{Operator, Plane, python_literal, shell_word};
+use super::state::Session;
+use super::wish::Wish;
+use hysteron::{Operator, Plane, python_literal};
 
 /// The files of a fit that are still open.
 fn files<'s>(session: &'s Session, ids: &[Id]) -> Vec<&'s Opened> {
@@ -28,20 +29,6 @@ fn roles(file: &Opened) -> Vec<(&'static str, &str)> {
     named
         .filter_map(|(name, column)| Some((name, column.as_deref()?)))
         .collect()
-}
-
-/// An option and its value. A value that begins with a hyphen is no option.
-pub(super) fn option(name: &str, value: &str) -> String {
-    let between = if value.starts_with('-') { '=' } else { ' ' };
-    format!("--{name}{between}{}", shell_word(value))
-}
-
-/// A file as an argument: one that begins with a hyphen is no option.
-fn path(name: &str) -> String {
-    match name.starts_with('-') {
-        true => shell_word(&format!("./{name}")),
-        false => shell_word(name),
-    }
 }
 
 pub(super) fn shell(session: &Session, fit: &Fitted) -> String {

@@ -1,29 +1,13 @@
 //! The profile of input that the data of a fit lack.
 
-use super::Session;
 use super::fault::Fault;
+use super::id::Id;
 use super::plane::cells;
-use super::request::Id;
+use super::state::Session;
 use super::thinned::{Shape, thinned};
+use super::wish::Wish;
 use hysteron::{Design, DesignOptions, Excitation, Plane, Rates, design};
-use serde::{Deserialize, Serialize};
-
-/// What an experiment has to keep to.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct Wish {
-    /// The fit whose plane is to be determined.
-    pub fit: Id,
-    /// How fast the input can rise, in its unit per second.
-    pub heating: f64,
-    /// How fast it can fall.
-    pub cooling: f64,
-    /// Longest duration in minutes.
-    #[serde(default)]
-    pub budget: Option<f64>,
-    /// A profile for the whole plane, as if nothing were recorded.
-    #[serde(default)]
-    pub whole: bool,
-}
+use serde::Serialize;
 
 /// A profile, and what the data determine with it.
 #[derive(Debug, Clone, Serialize)]

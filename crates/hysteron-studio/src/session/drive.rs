@@ -3,8 +3,8 @@
 //! beside it.
 
 use super::fault::Fault;
-use super::request::Id;
-use super::{MOST, Session};
+use super::fitted::Fitted;
+use super::id::Id;
 use hysteron::{Direction, Model, Policy, Sample, State, Target, Wanted, headings};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -121,12 +121,15 @@ pub struct RivalView {
     pub trail: Vec<[f64; 2]>,
 }
 
-impl Session {
-    pub(super) fn drive(&mut self, fit: Id) -> Result<DriveView, Fault> {
-        let fitted = self.fitted(fit)?;
+impl Drive {
+    /// The model of a fit, with every operator off and at its lowest input.
+    ///
+    /// # Errors
+    /// [`Fault`] for a model that cannot take a step.
+    pub(super) fn new(fitted: &Fitted) -> Result<Self, Fault> {
         let model = fitted.model.clone();
-        let mut drive = Drive {
-            fit,
+        let mut drive = Self {
+            fit: fitted.id,
             dt: fitted.dt.unwrap_or(1.0),
             load: model.load.as_ref().map(|load| {
                 let (low, high) = load.range();
@@ -147,20 +150,15 @@ impl Session {
             model,
         };
         drive.push(drive.inputs.0)?;
-        let id = self.next()?;
-        if self.drives.len() >= MOST {
-            self.drives.pop_first();
-        }
-        let view = drive.view(id);
-        self.drives.insert(id, drive);
-        Ok(view)
+        Ok(drive)
     }
 
-    pub(super) fn pull(&mut self, pull: &Pull) -> Result<DriveView, Fault> {
-        let drive = self.drives.get_mut(&pull.drive);
-        let drive = drive.ok_or_else(|| Fault::gone("drive", pull.drive))?;
-        // A path that is refused at its middle moves nothing.
-        let mut moved = drive.clone();
+    /// Moves the model. A path that is refused at its middle moves nothing.
+    ///
+    /// # Errors
+    /// [`Fault`] for a move that cannot be.
+    pub(super) fn moved(&mut self, pull: &Pull) -> Result<(), Fault> {
+        let mut moved = self.clone();
         if let Some(dt) = pull.dt {
             moved.dt = dt;
         }
@@ -197,8 +195,8 @@ impl Session {
                 ));
             }
         }
-        *drive = moved;
-        Ok(drive.view(pull.drive))
+        *self = moved;
+        Ok(())
     }
 }
 
@@ -345,7 +343,7 @@ impl Drive {
         Some((edges.0.min(edges.1), edges.0.max(edges.1)))
     }
 
-    fn view(&self, id: Id) -> DriveView {
+    pub(super) fn view(&self, id: Id) -> DriveView {
         DriveView {
             drive: id,
             input: self.way.input,

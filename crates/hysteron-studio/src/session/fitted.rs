@@ -1,6 +1,6 @@
 //! What a fit found, and which fit is the best.
 
-use super::request::Id;
+use super::id::Id;
 use hysteron::{Budget, Errors, HeldOut, Model, Quantity, State};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -1,9 +1,10 @@
 //! Fits that are asked for, and what becomes of them.
 
 use super::fault::Fault;
-use super::job::{Finished, Job, Watch, build};
-use super::request::{Id, Purpose, Response};
-use super::{Answer, MOST, Running, Session};
+use super::id::Id;
+use super::job::{Finished, Job, JobView, Watch, build};
+use super::opened::{Purpose, numbers_of};
+use super::state::{MOST, Running, Session};
 use hysteron::{HoldOut, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -38,18 +39,12 @@ pub(super) fn part(words: &str) -> Result<String, Fault> {
     Ok(words.split_whitespace().collect())
 }
 
-/// Memory of the numbers of a recording.
-pub(super) fn numbers_of(recording: &Recording) -> u64 {
-    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
-    series * (size_of::<f64>() * recording.len()) as u64
-}
-
 impl Session {
     pub(super) fn fit(
         &mut self,
         options: BTreeMap<String, String>,
         held: Held,
-    ) -> Result<Answer, Fault> {
+    ) -> Result<(JobView, Job), Fault> {
         if self.fits.len() + self.running.len() >= MOST {
             return Err(Fault::missing(
                 &format!("there are {MOST} fits in this session"),
@@ -133,10 +128,7 @@ impl Session {
             validated,
             watch,
         };
-        Ok(Answer {
-            response: Response::Started(started),
-            job: Some(job),
-        })
+        Ok((started, job))
     }
 
     /// Takes what a job found. Its fit is then in the list.

@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, spelt};
 use super::fitted::Fitted;
-use super::request::Id;
+use super::id::Id;
 use hysteron::{Advice, Fit, HeldOut, HoldOut, Progress, Recording, advice, fit_holding_out};
 use serde::Serialize;
 use std::borrow::Cow;

@@ -1,9 +1,9 @@
 //! Pictures: lines with no more points than the page can show.
 
 use super::fault::Fault;
-use super::request::Id;
+use super::id::Id;
+use super::state::{MOST, Session};
 use super::thinned::{Shape, histogram, rows, thinned, when};
-use super::{MOST, Session};
 use hysteron::{Recording, Start, forward};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

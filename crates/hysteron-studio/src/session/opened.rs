@@ -1,9 +1,8 @@
 //! A file that is open: its bytes, its columns, and the recording that they make.
 
 use super::fault::Fault;
-use super::fitting::numbers_of;
+use super::id::Id;
 use super::prepare::Steps;
-use super::request::{Id, Purpose};
 use super::thinned::when;
 use bytes::Bytes;
 use hysteron::{
@@ -13,6 +12,25 @@ use hysteron::{
 use serde::{Deserialize, Serialize};
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
+
+/// What a file is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Purpose {
+    /// It is fitted.
+    #[default]
+    Fit,
+    /// It tests the fits.
+    Validate,
+    /// It is only looked at.
+    Look,
+}
+
+/// Memory of the numbers of a recording.
+pub(super) fn numbers_of(recording: &Recording) -> u64 {
+    let series = 2 + u64::from(recording.time.is_some()) + u64::from(recording.load.is_some());
+    series * (size_of::<f64>() * recording.len()) as u64
+}
 
 /// Columns by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

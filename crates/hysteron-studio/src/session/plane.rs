@@ -1,9 +1,9 @@
 //! The plane of a fit, and one sample of a file.
 
-use super::Session;
 use super::fault::Fault;
+use super::id::Id;
 use super::look::few;
-use super::request::Id;
+use super::state::Session;
 use super::thinned::when;
 use hysteron::{Model, Recording, State, Surroundings, operators};
 use serde::{Deserialize, Serialize};

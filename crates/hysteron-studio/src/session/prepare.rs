@@ -1,6 +1,6 @@
 //! The preparation of a file: its steps as texts, as on the command line.
 
-use super::commands::option;
+use super::argument::option;
 use super::fault::Fault;
 use hysteron::{PrepareOptions, Step, python_literal};
 use serde::{Deserialize, Serialize};

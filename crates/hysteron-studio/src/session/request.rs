@@ -1,35 +1,21 @@
 //! The requests of a session and its responses.
 
-use super::design::{DesignView, Wish};
+use super::design::DesignView;
 use super::drive::{DriveView, Pull};
 use super::fault::Fault;
 use super::fitted::FitView;
 use super::fitting::Held;
+use super::id::Id;
 use super::job::JobView;
 use super::look::{Curves, View};
-use super::opened::{FileView, Part};
+use super::opened::{FileView, Part, Purpose};
 use super::plane::{PlaneKind, PlaneView, SampleView};
 use super::prepare::Steps;
 use super::take_home::{Download, Take};
+use super::wish::Wish;
 use hysteron::FitOption;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// The number of a file, a fit, a job or a drive. None is given twice in a session.
-pub type Id = u64;
-
-/// What a file is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Purpose {
-    /// It is fitted.
-    #[default]
-    Fit,
-    /// It tests the fits.
-    Validate,
-    /// It is only looked at.
-    Look,
-}
 
 /// What is asked of a session.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

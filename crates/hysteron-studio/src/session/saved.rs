@@ -3,11 +3,11 @@
 use super::fault::Fault;
 use super::fitted::Fitted;
 use super::fitting::{FILES, part};
+use super::id::{Id, LAST};
 use super::job::build;
-use super::opened::{Opened, Part, plain_name};
+use super::opened::{Opened, Part, Purpose, plain_name};
 use super::prepare::Steps;
-use super::request::{Id, Purpose};
-use super::{LAST, MOST, Session};
+use super::state::{MOST, Session};
 use base64::Engine;
 use base64::display::Base64Display;
 use base64::engine::general_purpose::STANDARD;

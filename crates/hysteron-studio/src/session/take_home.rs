@@ -1,12 +1,13 @@
 //! What can be taken home: the model, code, a report, the numbers of a picture, the same work as
 //! commands, the session.
 
-use super::design::Wish;
+use super::commands;
 use super::fault::Fault;
+use super::id::Id;
 use super::look::View;
-use super::request::Id;
+use super::state::Session;
 use super::thinned::rows;
-use super::{Session, commands};
+use super::wish::Wish;
 use base64::Engine;
 use hysteron::{Recording, TableWriter, evaluate};
 use hysteron_export::{COptions, CReal, CSampling, FmuOptions};

@@ -2,13 +2,14 @@
 //! the fit under it.
 
 use crate::error::{Error, Result};
+use crate::identify::fixed::described;
 use crate::identify::options::FitOptions;
 use crate::identify::pivoting;
 use crate::identify::weights::corner_system::eliminate;
-use crate::identify::weights::fit::described;
 use crate::identify::weights::gram::dot;
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::problem::{Fitted, Problem};
-use crate::identify::weights::solve::{Solution, dense_factor, not_definite};
+use crate::identify::weights::solve::{Solution, dense_factor};
 use crate::model::{Model, Smooth, Solver, Start, Surroundings};
 use crate::progress::Progress;
 use crate::recording::Recording;

@@ -1,6 +1,7 @@
 //! One predictor for each load, and interpolation between them.
 
-use super::{Measured, Predictor};
+use super::path::Measured;
+use super::predictor::Predictor;
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 

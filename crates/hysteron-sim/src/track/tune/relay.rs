@@ -1,6 +1,6 @@
 //! The relay test (Åström & Hägglund 1984), and gains by Tyreus & Luyben 1992.
 
-use super::{TESTS, middle, refused};
+use super::plant_test::{TESTS, middle, refused};
 use crate::track::scenario::Scenario;
 use crate::track::score::median;
 use hysteron::Result;

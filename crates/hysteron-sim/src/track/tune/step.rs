@@ -5,7 +5,7 @@
 //! command steps by a little on the rising branch at the middle of the reference
 //! ([`Gains::from_step`]).
 
-use super::{TESTS, middle, no_answer};
+use super::plant_test::{TESTS, middle, no_answer};
 use crate::track::scenario::Scenario;
 use hysteron::Result;
 use hysteron::control::{Controller, Gains, InnerLoop, Scheme};

@@ -2,9 +2,10 @@
 
 use crate::error::Result;
 use crate::identify::doubt::excitation::centred_gram;
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::problem::check_gram;
-use crate::identify::weights::solve::not_definite;
-use crate::identify::weights::sparse::{Initial, SparseForm};
+use crate::identify::weights::rows::Initial;
+use crate::identify::weights::sparse::SparseForm;
 use crate::model::Plane;
 use crate::recording::Recording;
 use crate::series::noise::noise;

@@ -14,8 +14,8 @@ pub(crate) use after::check_time;
 
 use crate::error::Result;
 use crate::identify::choose::{Open, Seen};
+use crate::identify::fixed::fit_weights_without;
 use crate::identify::options::{FitOptions, LoadLaw, Spacing};
-use crate::identify::weights::fit::fit_weights_without;
 use crate::model::{Found, Model, Outlier, Plane};
 use crate::progress::Progress;
 use crate::recording::Recording;

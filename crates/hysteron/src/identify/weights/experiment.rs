@@ -4,7 +4,6 @@
 use crate::error::{Error, Result};
 use crate::identify::options::FitOptions;
 use crate::identify::weights::of_load::OfLoad;
-use crate::identify::weights::regressor::MOST_RECORDINGS;
 use crate::model::Plane;
 use crate::model::bernstein;
 use crate::recording::Recording;
@@ -140,6 +139,9 @@ impl<'a> Experiment<'a> {
         Ok(plane)
     }
 }
+
+/// Largest number of recordings in one experiment: a pattern of starts has one bit for each.
+pub(crate) const MOST_RECORDINGS: usize = 64;
 
 /// The Bernstein polynomials of a degree at each of the shares of the load range.
 fn functions(shares: impl Iterator<Item = f64>, degree: usize) -> Vec<OfLoad> {

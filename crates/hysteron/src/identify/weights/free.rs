@@ -5,12 +5,18 @@
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::dot;
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::of_load::OfLoad;
 use crate::identify::weights::regressor::Regressor;
-use crate::identify::weights::solve::Mixed;
 use crate::identify::weights::units::Units;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+
+/// A Gram matrix from which free columns are to be eliminated: `Aᵀ z` of each, and `(Zᵀ Z)⁻¹`.
+pub(crate) struct Mixed {
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) inverse: Vec<Vec<f64>>,
+}
 
 /// `Z`, the free columns at the samples kept, and `(Zᵀ Z)⁻¹`.
 pub(crate) struct FreeColumns {
@@ -41,9 +47,7 @@ impl FreeColumns {
         for n in 0..count {
             gram[(n, n)] = gram[(n, n)] * (1.0 + 1e-14) + f64::MIN_POSITIVE;
         }
-        let factor = gram
-            .llt(Side::Lower)
-            .map_err(|_| super::solve::not_definite())?;
+        let factor = gram.llt(Side::Lower).map_err(|_| not_definite())?;
         let inverse = factor.solve(&Mat::<f64>::identity(count, count));
         let inverse = (0..count)
             .map(|a| (0..count).map(|b| inverse[(a, b)]).collect())

@@ -4,7 +4,7 @@
 //! The sums over samples are sparse over the corners, `Wᵀ W`, and dense over the weights,
 //! `Sᵀ Wᵀ W S`. `S` adds weights up and `S⁻¹` takes differences of four corners, so both are cheap.
 
-use crate::identify::weights::regressor::Column;
+use crate::identify::weights::column::Column;
 use crate::identify::weights::rows::Term;
 use crate::identify::weights::sparse::SparseForm;
 use hysteron_core::operators;

@@ -9,15 +9,16 @@
 //! Everett corners: `layout`, `corner_gram`, `corner_system` and `grid_factor`.
 
 pub(super) mod cholesky;
+pub(super) mod column;
 pub(super) mod corner_gram;
 pub(super) mod corner_system;
 pub(super) mod experiment;
-pub(super) mod fit;
 pub(super) mod free;
 pub(super) mod gram;
 pub(super) mod grid_factor;
 pub(super) mod layout;
 pub(crate) mod nnls;
+pub(super) mod not_definite;
 pub(super) mod of_load;
 pub(crate) mod pivoting;
 pub(super) mod problem;

@@ -12,48 +12,20 @@
 //! reduce the error.
 
 use crate::error::Result;
+use crate::identify::weights::column::Column;
 use crate::identify::weights::corner_gram::{CornerGram, CornerSums, OfBlocks};
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::gram::{Gram, MANY};
 use crate::identify::weights::layout::{Block, Layout};
+use crate::identify::weights::rows::Initial;
 use crate::identify::weights::rows::Term;
-use crate::identify::weights::sparse::{Initial, OPEN, SparseForm, Square};
+use crate::identify::weights::sparse::{OPEN, SparseForm, Square};
 use crate::model::Plane;
 use crate::model::Start;
 use crate::progress::Progress;
 use hysteron_core::Operator;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Largest number of recordings in one experiment: a pattern of starts has one bit for each.
-pub(crate) const MOST_RECORDINGS: usize = 64;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Column {
-    /// Index of the function of the load that the column is multiplied by.
-    pub(crate) part: usize,
-    /// Index of the operator, in the order of the weights.
-    pub(crate) operator: usize,
-    /// Bit `s` is set if the column starts on in recording `s`.
-    on: u64,
-}
-
-impl Column {
-    /// The column of an operator that starts off.
-    #[cfg(test)]
-    pub(crate) fn known(part: usize, operator: usize) -> Self {
-        let on = 0;
-        Self { part, operator, on }
-    }
-
-    pub(super) fn initial_in(&self, recording: usize) -> Initial {
-        if self.on >> recording & 1 == 1 {
-            Initial::On
-        } else {
-            Initial::Off
-        }
-    }
-}
 
 /// Columns in blocks, and the function of the load and the start of each block.
 type Blocks = (Arc<Layout>, Vec<(usize, Initial)>);

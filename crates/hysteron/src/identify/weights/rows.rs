@@ -2,9 +2,15 @@
 //! current branch, which are constant along it, and three factors of the branch itself.
 
 use crate::error::Result;
-use crate::identify::weights::sparse::Initial;
 use crate::model::OperatorState;
 use hysteron_core::{Model, Turn, turn_capacity};
+
+/// State of the operators before the first sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Initial {
+    Off,
+    On,
+}
 
 /// A non-zero element of `W`: its column and its value.
 #[derive(Debug, Clone, Copy)]

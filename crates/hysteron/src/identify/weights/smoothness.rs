@@ -7,7 +7,7 @@
 //! difference to the neighbour one level on, `λ ∫∫ (∂ρ)² = λ K⁴ Σ Δ²` inside and
 //! `λ ∫ ρ'² = λ K³ Σ Δ²` on the diagonal. It is added to the mean squared error.
 
-use crate::identify::weights::regressor::Column;
+use crate::identify::weights::column::Column;
 use crate::model::Smooth;
 use hysteron_core::operator_index;
 

@@ -6,13 +6,14 @@
 //! model, not from the Gram matrix. Started from zero, the steps converge to the solution of
 //! smallest norm.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::identify::options::Prior;
 use crate::identify::weights::corner_system::{CornerSystem, eliminate};
 use crate::identify::weights::experiment::Experiment;
-use crate::identify::weights::free::FreeColumns;
+use crate::identify::weights::free::{FreeColumns, Mixed};
 use crate::identify::weights::gram::Gram;
 use crate::identify::weights::nnls::Quadratic;
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::regressor::Regressor;
 use crate::identify::weights::smoothness::Smoothness;
 use crate::identify::weights::{nnls, pivoting};
@@ -80,12 +81,6 @@ pub(crate) enum WholeFactor {
     Dense(Llt<f64>),
     /// Computed where it is used, because it is sparse.
     Corners,
-}
-
-/// A Gram matrix from which free columns are to be eliminated: `Aᵀ z` of each, and `(Zᵀ Z)⁻¹`.
-pub(crate) struct Mixed {
-    pub(crate) columns: Vec<Vec<f64>>,
-    pub(crate) inverse: Vec<Vec<f64>>,
 }
 
 impl Penalised {
@@ -446,12 +441,4 @@ pub(crate) fn dense_factor(matrix: &[f64]) -> Result<Llt<f64>> {
     let count = matrix.len().isqrt();
     let matrix = Mat::from_fn(count, count, |i, j| matrix[i * count + j]);
     matrix.llt(Side::Lower).map_err(|_| not_definite())
-}
-
-pub(crate) fn not_definite() -> Error {
-    Error::Fit(
-        "the normal equations cannot be factorised, because values in the data are too large or \
-         too small: use another unit"
-            .into(),
-    )
 }

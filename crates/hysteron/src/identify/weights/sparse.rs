@@ -7,18 +7,11 @@
 //! the turning points once per branch.
 
 use crate::error::Result;
-use crate::identify::weights::rows::{Rows, Term, branch_terms, memory_terms};
+use crate::identify::weights::rows::{Initial, Rows, Term, branch_terms, memory_terms};
 use crate::model::{OperatorState, Plane};
 use crate::progress::Progress;
 use hysteron_core::Operator;
 use hysteron_core::{Model, operator_index, operators, table_index, table_len};
-
-/// State of the operators before the first sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Initial {
-    Off,
-    On,
-}
 
 /// An operator is undetermined if more than this share of it is. Smaller shares are rounding of a
 /// first sample at the edge of the plane.

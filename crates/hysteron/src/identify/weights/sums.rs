@@ -3,10 +3,12 @@
 
 use crate::error::Result;
 use crate::identify::options::Prior;
+use crate::identify::weights::free::Mixed;
 use crate::identify::weights::gram::{Gram, dot};
+use crate::identify::weights::not_definite::not_definite;
 use crate::identify::weights::of_load::OfLoad;
 use crate::identify::weights::problem::Problem;
-use crate::identify::weights::solve::{Mixed, Penalised, not_definite};
+use crate::identify::weights::solve::Penalised;
 use crate::model::{Sign, Solver};
 use crate::parallel;
 use crate::progress::Progress;

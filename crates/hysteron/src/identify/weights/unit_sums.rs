@@ -8,8 +8,8 @@
 use crate::error::Result;
 use crate::identify::weights::experiment::Experiment;
 use crate::identify::weights::regressor::Regressor;
+use crate::identify::weights::rows::Initial;
 use crate::identify::weights::rows::Term;
-use crate::identify::weights::sparse::Initial;
 use crate::identify::weights::units::Units;
 
 /// The sums of every unit.

@@ -1,11 +1,11 @@
 //! Searches the shift of each load, and finds stroke and offset at it.
 
 use crate::error::Result;
+use crate::identify::fixed::fit_weights;
 use crate::identify::options::FitOptions;
 use crate::identify::stages::load::behind;
 use crate::identify::stages::load::groups::{Groups, Samples};
 use crate::identify::stages::thin;
-use crate::identify::weights::fit::fit_weights;
 use crate::identify::weights::problem::Problem;
 use crate::model::LoadCurves;
 use crate::progress::Progress;
