@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs hostile cases through the command, and prints a table: class, cases, faults.
 
-    fuzz/hostile.py [CASES] [--seed N] [--hysteron COMMAND]
+    fuzz/hostile.py [CASES] [--seed N] [--only CLASS] [--hysteron COMMAND]
 
 By default there are 200 cases of each class, and the command is target/release/hysteron.
 
@@ -150,7 +150,10 @@ def run(hysteron, case):
 def visited(hysteron, case, before, folder):
     """A studio that opens a session: what is in it is asked for, and its commands are run by a shell
     in which there is no program. The fault, or None."""
-    studio = Studio(hysteron, case.arguments[1:], folder, limited(case.limits))
+    try:
+        studio = Studio(hysteron, case.arguments[1:], folder, limited(case.limits))
+    except ValueError as error:
+        return str(error)
     problem = None
     if studio.address:
         try:
@@ -210,6 +213,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("cases", type=int, nargs="?", default=200)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", metavar="CLASS", help="cases of this class alone")
     parser.add_argument("--hysteron", type=Path)
     given = parser.parse_args()
     count, seed = given.cases, given.seed
@@ -245,9 +249,11 @@ def main():
     rows = [
         through_the_command(title, generate, count, seed, hysteron)
         for title, generate in classes.items()
+        if given.only in (None, title)
     ]
     # A call in the same process is a thousand times as quick.
-    rows += [through_a_target(name, 1000 * count, seed, target) for name in TARGETS]
+    targets = [name for name in TARGETS if given.only in (None, name)]
+    rows += [through_a_target(name, 1000 * count, seed, target) for name in targets]
     print("| class | cases | faults |\n| --- | ---: | ---: |")
     for title, number, faults in filter(None, rows):
         print(f"| {title} | {number:,} | {faults} |")

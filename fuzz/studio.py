@@ -26,14 +26,18 @@ class Studio:
         # The address is the first line; nothing, where the studio ends without one.
         line = self.process.stdout.readline().decode().strip()
         self.address = urlsplit(line) if line else None
+        tokens = parse_qs(self.address.query).get("token") if line else None
+        if line and not tokens:
+            self.end(20)
+            raise ValueError(f"no address: {line!r}")
+        self.token = tokens and tokens[0]
 
     def call(self, path, body, media="application/json"):
         """The answer to what the page sends, as JSON."""
         where = self.address.netloc
         connection = HTTPConnection(where, timeout=20)
-        token = parse_qs(self.address.query)["token"][0]
         headers = {"Content-Type": media, "Origin": f"http://{where}"}
-        connection.request("POST", f"/{token}/api/{path}", body, headers)
+        connection.request("POST", f"/{self.token}/api/{path}", body, headers)
         response = connection.getresponse()
         answer = json.loads(response.read())
         connection.close()

@@ -70,6 +70,7 @@ impl Fault {
     }
 
     /// Why the session is not written to its file.
+    #[cfg(feature = "server")]
     pub(crate) fn not_kept(problem: &str) -> Self {
         let remedy = "take the session home, and begin again with another file";
         Self {
