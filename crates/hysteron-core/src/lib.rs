@@ -42,8 +42,8 @@ mod state;
 mod target;
 
 pub use adapt::{
-    Adaptation, Estimator, Gate, Learning, Method, Outcome, ShiftEstimator, ShiftOptions, Verdict,
-    estimator_len, estimator_len_of_basis,
+    Adaptation, Channel, Estimator, Gate, Learning, Method, Outcome, Reading, ShiftEstimator,
+    ShiftOptions, Verdict, Watch, Watched, estimator_len, estimator_len_of_basis,
 };
 pub use branch::Turn;
 pub use definition::Definition;

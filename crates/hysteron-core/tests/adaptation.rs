@@ -67,7 +67,7 @@ fn the_fast_paths_stay_exact_while_weights_change() {
             if matches!(method, Method::Increments { .. }) {
                 match learning.outcome {
                     Outcome::Learned => due = 2 * k,
-                    Outcome::RolledBack => {
+                    Outcome::RolledBack | Outcome::OutputStuck | Outcome::InputStuck => {
                         // This method writes the whole table at once.
                         (row, due) = (1, 0);
                         acting.copy_from_slice(now);

@@ -153,15 +153,16 @@ fn weights_memory_and_offset() {
 fn no_more_memory_than_the_arrays_need() {
     for levels in 2..20 {
         let n = operator_count(levels);
-        // Parameters with the offset: now, off-line, good, candidate, regressor; states.
-        let common = 5 * (n + 1) + n;
+        // Parameters with the offset: now, off-line, good, candidate, trusted, pending, regressor;
+        // states.
+        let common = 7 * (n + 1) + n;
         let triangle = operator_count(n + 1);
         assert_eq!(estimator_len(levels, GRADIENT), common);
         assert_eq!(estimator_len(levels, INCREMENTS), common + n);
         let matrices = 2 * triangle + 2 * (n + 1);
         assert_eq!(estimator_len(levels, LEAST_SQUARES), common + matrices);
         for count in 1..5 {
-            let common = 5 * (count + 1) + count * table_len(levels);
+            let common = 7 * (count + 1) + count * table_len(levels);
             let matrices = 2 * operator_count(count + 1) + 2 * (count + 1);
             let len = |method| estimator_len_of_basis(levels, method, count);
             assert_eq!(len(GRADIENT), common);

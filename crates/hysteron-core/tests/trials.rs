@@ -23,6 +23,7 @@ fn rolled_back_and_realigned_it_goes_on_as_a_new_one() {
         let offline = weights(&mut rng, k);
         let guards = Adaptation {
             trial: u32::MAX,
+            gate: 0.0,
             ..options(method)
         };
         let new = || Learner::new(plane, operator, &offline, guards);

@@ -23,7 +23,17 @@ fn statuses() {
 #[test]
 fn outcomes() {
     let names = Outcome::ALL.map(Outcome::name);
-    for name in ["learned", "waiting", "at-rest", "frozen", "rolled-back"] {
-        assert_eq!(names.iter().filter(|found| **found == name).count(), 1);
-    }
+    assert_eq!(
+        names,
+        [
+            "learned",
+            "waiting",
+            "at-rest",
+            "frozen",
+            "rolled-back",
+            "rejected",
+            "output-stuck",
+            "input-stuck"
+        ]
+    );
 }

@@ -4,6 +4,7 @@ use super::gate::Gate;
 use super::increments::Increment;
 use super::memory::{Layout, Slices};
 use super::trial::Trial;
+use super::watch::{Channel, Watch};
 use super::{Adaptation, Learning, Method, Outcome, operators, parameters};
 use crate::branch::Position;
 use crate::branch::Turn;
@@ -77,6 +78,11 @@ pub struct Estimator<T, M> {
     /// The trial of the offset alone, for [`Method::Increments`].
     pub(super) level: Trial<T>,
     pub(super) gate: Gate<T>,
+    pub(super) watch: Watch<T>,
+    /// The output expected by the off-line weights, but for a constant. Unused with a basis.
+    pub(super) expected: T,
+    /// Whether the watch took parameters back that the model's table still has.
+    pub(super) undone: bool,
     pub(super) frozen: bool,
 }
 
@@ -168,6 +174,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
     pub fn freeze(&mut self, frozen: bool) {
         self.frozen = frozen;
         self.increment = None;
+        self.watch.restart();
     }
 
     /// Whether the estimator is frozen.
@@ -176,10 +183,17 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         self.frozen
     }
 
+    /// The channel that stands still while the other one moves: [`Watch`](crate::Watch).
+    #[must_use]
+    pub fn stuck(&self) -> Option<Channel> {
+        self.watch.stuck()
+    }
+
     /// Takes the present parameters as the last good ones and starts a new trial.
     pub fn keep(&mut self) {
         let all = 0..self.layout.parameters;
         self.slices().contest(all).keep();
+        self.watch_anew();
         (self.trial, self.level) = (Trial::default(), Trial::default());
     }
 
@@ -187,6 +201,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
     pub fn roll_back<C: Memory<T>>(&mut self, model: &mut Model<T, C>) {
         self.take_back();
         self.gate.restart();
+        self.watch_anew();
         self.rewrite(model);
     }
 
@@ -222,6 +237,16 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         }
         self.learned = state.position();
         self.increment = None;
+        self.watch_anew();
+    }
+
+    /// Starts the watch again, from the present parameters.
+    fn watch_anew(&mut self) {
+        let slices = self.slices();
+        slices.trusted.copy_from_slice(slices.theta);
+        slices.pending.copy_from_slice(slices.theta);
+        self.expected = T::ZERO;
+        self.watch.restart();
     }
 
     /// Moves the operators' states from position `from` to that of `state`.
@@ -229,10 +254,12 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
     where
         S: Memory<Turn<T>>,
     {
-        let levels = self.levels;
-        let slices = self.slices();
-        if !slices.gamma.is_empty() {
-            operators::follow(slices.gamma, levels, from, state.position());
+        let (levels, operator) = (self.levels, self.operator);
+        let Slices { gamma, offline, .. } = self.slices();
+        if !gamma.is_empty() {
+            let change = operators::follow(gamma, offline, levels, from, state.position());
+            let factor = operator.output(T::ONE) - operator.output(T::ZERO);
+            self.expected = self.expected + factor * change;
         }
         self.aligned = Some(state.branch_position());
     }
@@ -249,6 +276,10 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         let by_rows = matches!(self.options.method, Method::Increments { .. });
         let sound = match outcome {
             Outcome::RolledBack => false,
+            _ if core::mem::take(&mut self.undone) => {
+                self.rewrite(model);
+                return (outcome, true);
+            }
             Outcome::Learned if by_rows => {
                 // At most the rest of the pass under way, and one whole pass.
                 self.rows_due = 2 * self.levels;

@@ -9,7 +9,6 @@
 //! taken as a jump of the plant and accepted. Refused readings that do not agree are taken as more
 //! noise, and the scale grows step by step.
 
-use crate::model::Model;
 use crate::scalar::Real;
 
 /// Length of the running mean, in samples. It is shorter than a branch of some hundred samples,
@@ -66,12 +65,6 @@ pub struct Gate<T> {
 }
 
 impl<T: Real> Gate<T> {
-    /// A gate for `model`, before the first error.
-    pub(super) fn over<C: AsRef<[T]>>(model: &Model<T, C>) -> Self {
-        let (off, on) = model.output_range();
-        Self::new(on - off)
-    }
-
     /// A gate for a model whose output has this range, before the first error.
     #[must_use]
     pub fn new(range: T) -> Self {

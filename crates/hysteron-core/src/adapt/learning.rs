@@ -6,6 +6,7 @@ use super::increments::Increment;
 use super::least_squares::{self, Law};
 use super::trial::{Errors, Trial};
 use super::vector::dot;
+use super::watch::{Channel, Reading, Watched};
 use super::{Adaptation, Method, gradient, parameters};
 use crate::branch::Turn;
 use crate::memory::Memory;
@@ -43,21 +44,28 @@ pub enum Outcome {
     RolledBack,
     /// The reading is taken as an outlier: [`Adaptation::gate`](super::Adaptation::gate).
     Rejected,
+    /// The output stands still while the input moves. What was learned since is undone.
+    OutputStuck,
+    /// The input stands still while the output moves. What was learned since is undone.
+    InputStuck,
 }
 
 impl Outcome {
     /// All outcomes.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Learned,
         Self::Waiting,
         Self::AtRest,
         Self::Frozen,
         Self::RolledBack,
         Self::Rejected,
+        Self::OutputStuck,
+        Self::InputStuck,
     ];
 
     /// The name of the outcome in tables: `learned`, `waiting`, `at-rest`, `frozen`, `rolled-back`,
-    /// `rejected`.
+    /// `rejected`, `output-stuck`,
+    /// `input-stuck`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -67,12 +75,20 @@ impl Outcome {
             Self::Frozen => "frozen",
             Self::RolledBack => "rolled-back",
             Self::Rejected => "rejected",
+            Self::OutputStuck => "output-stuck",
+            Self::InputStuck => "input-stuck",
         }
     }
 
     /// Whether the gate accepted the reading.
     pub(super) fn is_of_believed(self) -> bool {
-        matches!(self, Self::Learned | Self::Waiting | Self::RolledBack)
+        matches!(self, Self::Learned | Self::Waiting | Self::RolledBack) || self.is_stuck()
+    }
+
+    /// Whether a channel stands still.
+    #[must_use]
+    pub fn is_stuck(self) -> bool {
+        matches!(self, Self::OutputStuck | Self::InputStuck)
     }
 }
 
@@ -98,7 +114,13 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             return Outcome::AtRest;
         }
         let Adaptation { gate, burst, .. } = self.options;
-        if self.gate.judge(error, gate, burst) == Verdict::Refused {
+        let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
+        if gate > T::ZERO
+            && let Some(channel) = self.find_stuck(state, measured, believed)
+        {
+            return channel.outcome();
+        }
+        if !believed {
             // An increment from before a jump to after it would take the jump for a slope.
             self.increment = None;
             return Outcome::Rejected;
@@ -116,6 +138,52 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             Outcome::Waiting if !moved => Outcome::AtRest,
             outcome => outcome,
         }
+    }
+
+    /// The channel that stands still. If one begins to, the parameters from before return; the
+    /// model's table is not written.
+    fn find_stuck<S>(&mut self, state: &State<T, S>, measured: T, believed: bool) -> Option<Channel>
+    where
+        S: Memory<Turn<T>>,
+    {
+        let already = self.watch.stuck().is_some();
+        let reading = Reading {
+            position: state.position(),
+            expected: self.expected(state),
+            measured,
+        };
+        let slices = self.layout.cut(self.memory.as_mut());
+        match self.watch.look(reading, believed) {
+            Watched::Moving => return None,
+            Watched::Piece { alive } => {
+                if alive {
+                    slices.trusted.copy_from_slice(slices.pending);
+                }
+                slices.pending.copy_from_slice(slices.theta);
+                return None;
+            }
+            Watched::Stuck(channel) if already => return Some(channel),
+            Watched::Stuck(_) => {}
+        }
+        slices.good.copy_from_slice(slices.trusted);
+        slices.pending.copy_from_slice(slices.trusted);
+        self.take_back();
+        self.gate.restart();
+        (self.increment, self.undone) = (None, true);
+        self.watch.stuck()
+    }
+
+    /// The output expected by the parameters that the estimator began with, but for a constant.
+    fn expected<S>(&mut self, state: &State<T, S>) -> T
+    where
+        S: Memory<Turn<T>>,
+    {
+        let mut slices = self.layout.cut(self.memory.as_mut());
+        if slices.tables.is_empty() {
+            return self.expected;
+        }
+        parameters::regressor(&mut slices, self.operator, self.levels, T::ZERO, state);
+        dot(slices.offline, slices.phi)
     }
 
     /// Learns from a sample with a method whose regressor is that of the whole output.

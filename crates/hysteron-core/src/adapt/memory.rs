@@ -46,6 +46,10 @@ pub(super) struct Slices<'a, T> {
     pub(super) good: &'a mut [T],
     /// The parameters on trial to become the good ones.
     pub(super) candidate: &'a mut [T],
+    /// The parameters before the last piece of the watch in which the output moved.
+    pub(super) trusted: &'a mut [T],
+    /// The parameters before the present piece.
+    pub(super) pending: &'a mut [T],
     /// The regressor: the derivative of the output with respect to each parameter.
     pub(super) phi: &'a mut [T],
     /// The operators' states; empty with a basis.
@@ -110,7 +114,7 @@ impl Layout {
 
     /// Length of all arrays together.
     pub(super) const fn len(self) -> usize {
-        5 * self.parameters
+        7 * self.parameters
             + self.gamma
             + self.anchor
             + 2 * self.covariance
@@ -131,6 +135,8 @@ impl Layout {
             offline: next(self.parameters),
             good: next(self.parameters),
             candidate: next(self.parameters),
+            trusted: next(self.parameters),
+            pending: next(self.parameters),
             phi: next(self.parameters),
             gamma: next(self.gamma),
             anchor: next(self.anchor),

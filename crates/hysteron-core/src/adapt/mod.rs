@@ -22,6 +22,7 @@ mod shift_options;
 mod start;
 mod trial;
 mod vector;
+mod watch;
 
 pub use estimator::Estimator;
 pub use gate::{Gate, Verdict};
@@ -30,3 +31,4 @@ pub use memory::{estimator_len, estimator_len_of_basis};
 pub use options::{Adaptation, Method};
 pub use shift::ShiftEstimator;
 pub use shift_options::ShiftOptions;
+pub use watch::{Channel, Reading, Watch, Watched};

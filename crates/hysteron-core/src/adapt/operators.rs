@@ -17,27 +17,33 @@ pub(super) fn touched<T: Real>(x: T, to: T, levels: usize) -> (usize, usize) {
 }
 
 /// Moves the states `gamma` from the normalised position `x` to `to`, equation (5). `O(K)` for each
-/// level crossed.
+/// level crossed. Returns the change of `Σ weights γ`.
 ///
 /// A rising input changes only rows, a falling one only columns.
-pub(super) fn follow<T: Real>(gamma: &mut [T], levels: usize, x: T, to: T) {
+pub(super) fn follow<T: Real>(gamma: &mut [T], weights: &[T], levels: usize, x: T, to: T) -> T {
     let (first, last) = touched(x, to, levels);
+    let mut change = T::ZERO;
+    let mut lead = |n: usize, limit: fn(T, T) -> T, to: T| {
+        let moved = limit(gamma[n], to);
+        change = change + weights[n] * (moved - gamma[n]);
+        gamma[n] = moved;
+    };
     if to > x {
         for j in first..=last {
             let on = ridge(to, j);
-            for gamma in &mut gamma[operator_index(1, j)..][..j] {
-                *gamma = gamma.max(on);
+            for i in 1..=j {
+                lead(operator_index(i, j), T::max, on);
             }
         }
     } else if to < x {
         for i in first..=last {
             let off = ridge(to, i);
             for j in i..=levels {
-                let gamma = &mut gamma[operator_index(i, j)];
-                *gamma = gamma.min(off);
+                lead(operator_index(i, j), T::min, off);
             }
         }
     }
+    change
 }
 
 /// Computes the states of all operators from the turning points of `state`. `O(K²)` for each

@@ -103,6 +103,11 @@ pub enum Method<T> {
 /// size. So a wrong reading that lasts for `burst` samples or longer is learned like a jump of the
 /// plant: readings cannot tell the two apart. Where `burst` readings in a row are refused and do
 /// not agree, for example because noise grew, the usual size doubles.
+///
+/// **Stuck.** A sensor that goes on with one value looks like a plant whose output no longer
+/// depends on its input. A [`Watch`](crate::Watch) finds that, unless `gate` is 0. The parameters
+/// then return to those from before the last stretch in which both channels moved, and nothing is
+/// learned until both move again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptation<T> {
     /// How the weights follow the error.
@@ -128,7 +133,7 @@ pub struct Adaptation<T> {
     /// become good, if the burst is shorter than half a trial.
     pub trial: u32,
     /// The largest surprise that is learned from, as a multiple of the usual one: from 2, or 0 to
-    /// accept every reading.
+    /// accept every reading, also those of a stuck channel.
     pub gate: T,
     /// So many refused readings in a row that agree are a jump of the plant, from 1. Fewer are a
     /// burst of wrong readings, and nothing is learned from them.

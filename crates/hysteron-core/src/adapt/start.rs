@@ -4,6 +4,7 @@ use super::estimator::Estimator;
 use super::gate::Gate;
 use super::memory::Layout;
 use super::trial::Trial;
+use super::watch::Watch;
 use super::{Adaptation, Method, least_squares, parameters};
 use crate::error::Error;
 use crate::everett;
@@ -40,7 +41,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         refuse_negative(levels, weights)?;
         estimator.begin(weights);
         model.set_weights(weights)?;
-        estimator.gate = Gate::over(model);
+        estimator.guard(model);
         Ok(estimator)
     }
 
@@ -103,7 +104,7 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         }
         estimator.begin(coefficients);
         estimator.rewrite(model);
-        estimator.gate = Gate::over(model);
+        estimator.guard(model);
         Ok(estimator)
     }
 
@@ -138,8 +139,20 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
             trial: Trial::default(),
             level: Trial::default(),
             gate: Gate::new(T::ZERO),
+            watch: Watch::new(T::ZERO, T::ZERO),
+            expected: T::ZERO,
+            undone: false,
             frozen: false,
         })
+    }
+
+    /// Sets the guards up for the range of `model`.
+    fn guard<C: AsRef<[T]>>(&mut self, model: &Model<T, C>) {
+        let (off, on) = model.output_range();
+        (self.gate, self.watch) = (
+            Gate::new(on - off),
+            Watch::new(on - off, T::from_index(self.levels)),
+        );
     }
 
     /// Writes the off-line parameters, and what follows from them.
@@ -152,6 +165,8 @@ impl<T: Real, M: Memory<T>> Estimator<T, M> {
         slices.offline.copy_from_slice(slices.theta);
         slices.good.copy_from_slice(slices.theta);
         slices.candidate.copy_from_slice(slices.theta);
+        slices.trusted.copy_from_slice(slices.theta);
+        slices.pending.copy_from_slice(slices.theta);
         parameters::start_covariance(&mut slices, levels, method);
         least_squares::restart(&mut slices);
         self.floor = parameters::full_norm(&slices, levels) / T::from_index(100);
