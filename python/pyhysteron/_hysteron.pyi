@@ -87,7 +87,16 @@ _Path: TypeAlias = str | PathLike[str]
 _Range: TypeAlias = tuple[float, float]
 _Operator: TypeAlias = Literal["mkp", "kp", "relay"]
 _Heading: TypeAlias = Literal["rising", "falling"] | None
-_Outcome: TypeAlias = Literal["learned", "waiting", "at-rest", "frozen", "rolled-back", "rejected"]
+_Outcome: TypeAlias = Literal[
+    "learned",
+    "waiting",
+    "at-rest",
+    "frozen",
+    "rolled-back",
+    "rejected",
+    "output-stuck",
+    "input-stuck",
+]
 _Progress: TypeAlias = Callable[[str, float | None], object] | bool | None
 # Dates and durations are no ArrayLike for NumPy's stubs.
 _Times: TypeAlias = ArrayLike | Sequence[Any] | _Series
@@ -804,6 +813,8 @@ class Trace:
     def adapted(self) -> _Flags: ...
     @property
     def rejected(self) -> _Flags: ...
+    @property
+    def stuck(self) -> _Flags: ...
     @property
     def snapshots(self) -> list[Snapshot]: ...
     def to_csv(self, path: _Path) -> None: ...

@@ -53,6 +53,7 @@ __all__ = [
     "Median",
     "ModelSummary",
     "OutcomeCounts",
+    "Stuck",
     "Outlier",
     "Preparation",
     "RateDependence",
@@ -1204,6 +1205,8 @@ class OutcomeCounts(_Result):
         Times that the weights returned to the last good ones.
     rejected : int
         Readings rejected.
+    stuck : int
+        Samples at which a channel stood still while the other one moved.
     outside : int
         Inputs outside the plane; they are counted among the others too.
     """
@@ -1213,6 +1216,7 @@ class OutcomeCounts(_Result):
     at_rest: int
     rolled_back: int
     rejected: int
+    stuck: int
     outside: int
 
 
@@ -1228,11 +1232,37 @@ class Drift(_Result):
         Offset before and after, in the output's unit.
     moved : float or None
         Sum of the absolute changes over the sum before; None where that sum is zero.
+    lift : float
+        How far the output with all operators off moved, as a share of the range before.
+    gain : float or None
+        The stroke after over the stroke before, less 1.
+    shift : float
+        How far the operators moved along the input's axis, in the mean, as a share of the plane.
     """
 
     weights: tuple[float, float]
     offset: tuple[float, float]
     moved: float | None
+    lift: float
+    gain: float | None
+    shift: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stuck(_Result):
+    """Where a channel stood still while the other one moved: an entry of `AdaptedComparison.stuck`.
+
+    Attributes
+    ----------
+    channel : str
+        'input' or 'output'.
+    start, end : int
+        The samples `start` to `end - 1`.
+    """
+
+    channel: str
+    start: int
+    end: int
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1257,6 +1287,8 @@ class AdaptedComparison(_Result):
         How often each outcome was.
     drift : Drift
         How far weights and offset moved.
+    stuck : tuple of Stuck
+        Where a channel stood still; what was learned from there is undone.
     """
 
     whole: Compared
@@ -1267,6 +1299,7 @@ class AdaptedComparison(_Result):
     again: Errors
     counts: OutcomeCounts
     drift: Drift
+    stuck: tuple[Stuck, ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1597,6 +1630,8 @@ class TraceTable(TypedDict):
         As in `control.Trace`.
     rejected : ndarray of bool
         As in `control.Trace`.
+    stuck : ndarray of bool
+        As in `control.Trace`.
     """
 
     time: _Array
@@ -1612,3 +1647,4 @@ class TraceTable(TypedDict):
     sensor_fault: NDArray[np.bool_]
     adapted: NDArray[np.bool_]
     rejected: NDArray[np.bool_]
+    stuck: NDArray[np.bool_]

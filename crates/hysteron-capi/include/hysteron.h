@@ -327,6 +327,18 @@
 #define HYSTERON_REJECTED 5
 
 /**
+ * Outcome of a sample: the output stands still while the input moves. What was learned since is
+ * undone.
+ */
+#define HYSTERON_OUTPUT_STUCK 6
+
+/**
+ * Outcome of a sample: the input stands still while the output moves. What was learned since is
+ * undone.
+ */
+#define HYSTERON_INPUT_STUCK 7
+
+/**
  * An estimator in the caller's memory.
  */
 typedef struct HysteronCoreEstimator HysteronCoreEstimator;
@@ -427,7 +439,7 @@ typedef struct HysteronLearning {
    */
   double error;
   /**
-   * Outcome: `HYSTERON_LEARNED` to `HYSTERON_REJECTED`.
+   * Outcome: `HYSTERON_LEARNED` to `HYSTERON_INPUT_STUCK`.
    */
   int32_t outcome;
   /**
@@ -1321,6 +1333,13 @@ int32_t hysteron_core_shift_read(const struct HysteronCoreShift *shift,
  * within.
  */
 int32_t hysteron_core_shift_reset(struct HysteronCoreShift *shift, double value);
+
+/**
+ * Tells the output that the model left alone expects at the next `hysteron_core_shift_step`, from a
+ * state of its own and at the load that the shift departs from. A channel that stands still is found
+ * by that, and what was learned from it is undone. Without this call none is found.
+ */
+int32_t hysteron_core_shift_expect(struct HysteronCoreShift *shift, double output);
 
 /**
  * Stops learning (`frozen` not 0), or resumes it (0).

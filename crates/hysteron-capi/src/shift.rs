@@ -256,6 +256,22 @@ pub unsafe extern "C" fn hysteron_core_shift_reset(
     })
 }
 
+/// Tells the output that the model left alone expects at the next `hysteron_core_shift_step`, from a
+/// state of its own and at the load that the shift departs from. A channel that stands still is found
+/// by that, and what was learned from it is undone. Without this call none is found.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hysteron_core_shift_expect(
+    shift: *mut HysteronCoreShift,
+    output: f64,
+) -> i32 {
+    guard_plain(|| {
+        // SAFETY: the contract of the crate.
+        let follower = unsafe { Arguments::default().object(shift, "shift")? };
+        follower.estimator.expect(output)?;
+        Ok(())
+    })
+}
+
 /// Stops learning (`frozen` not 0), or resumes it (0).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hysteron_core_shift_freeze(

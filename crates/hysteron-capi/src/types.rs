@@ -58,6 +58,12 @@ pub const HYSTERON_FROZEN: i32 = 3;
 pub const HYSTERON_ROLLED_BACK: i32 = 4;
 /// Outcome of a sample: the reading is taken as an outlier.
 pub const HYSTERON_REJECTED: i32 = 5;
+/// Outcome of a sample: the output stands still while the input moves. What was learned since is
+/// undone.
+pub const HYSTERON_OUTPUT_STUCK: i32 = 6;
+/// Outcome of a sample: the input stands still while the output moves. What was learned since is
+/// undone.
+pub const HYSTERON_INPUT_STUCK: i32 = 7;
 
 /// Properties of a model.
 #[repr(C)]
@@ -160,7 +166,7 @@ pub struct HysteronLearning {
     pub output: f64,
     /// Measured output less predicted output.
     pub error: f64,
-    /// Outcome: `HYSTERON_LEARNED` to `HYSTERON_REJECTED`.
+    /// Outcome: `HYSTERON_LEARNED` to `HYSTERON_INPUT_STUCK`.
     pub outcome: i32,
     /// Where the input lay: `HYSTERON_INSIDE`, `HYSTERON_LOW` or `HYSTERON_HIGH`.
     pub clipped: i32,
@@ -248,6 +254,8 @@ impl From<Learning<f64>> for HysteronLearning {
                 Outcome::Frozen => HYSTERON_FROZEN,
                 Outcome::RolledBack => HYSTERON_ROLLED_BACK,
                 Outcome::Rejected => HYSTERON_REJECTED,
+                Outcome::OutputStuck => HYSTERON_OUTPUT_STUCK,
+                Outcome::InputStuck => HYSTERON_INPUT_STUCK,
             },
             clipped: clipped(learning.clipped),
         }

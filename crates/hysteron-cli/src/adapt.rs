@@ -3,9 +3,10 @@
 use crate::terminal::{Result, print};
 use crate::{args, model, recording, text};
 use hysteron::{
-    Adapted, Columns, Compared, Errors, EstimatorOptions, Model, ShiftFound, TableWriter,
+    Adapted, Channel, Columns, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck, TableWriter,
 };
 use serde_json::{Value, json};
+use std::ops::Range;
 
 pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     if let Some(table) = &args.table {
@@ -46,21 +47,72 @@ pub(crate) fn run(args: &args::Adapt) -> Result<()> {
     if let Some(table) = table {
         adapted.write_table(&recording, table)?;
     }
-    let refused = adapted.worse && !args.force.force;
+    let faults = faults(args, &adapted);
+    let refused = !faults.is_empty() && !args.force.force;
     if !refused {
         file.commit_with(adapted.model.to_json().as_bytes())?;
     }
     match args.json.json {
         true => print(&to_json(args, &adapted, refused).to_string())?,
-        false => print(&to_text(args, &adapted, &model, refused))?,
+        false => print(&to_text(args, &adapted, &model, (refused, &faults)))?,
     }
     match refused {
-        true => Err(worse(args, &adapted).into()),
+        true => Err(format!(
+            "{}: the model is not written: {}; --force writes it",
+            args.out.display(),
+            faults.join("; ")
+        )
+        .into()),
         false => Ok(()),
     }
 }
 
-fn worse(args: &args::Adapt, adapted: &Adapted) -> String {
+/// Why the model should not replace the one that it was.
+fn faults(args: &args::Adapt, adapted: &Adapted) -> Vec<String> {
+    let frozen = |stuck| frozen(args, stuck);
+    let mut faults: Vec<String> = adapted.stuck.iter().map(frozen).collect();
+    let far = 100.0 * adapted.drift.largest();
+    if far > args.max_drift {
+        faults.push(format!(
+            "it moved by {far:.0} %, more than the {} % that --max-drift allows: {}",
+            args.max_drift,
+            drift(adapted)
+        ));
+    }
+    if adapted.worse {
+        faults.push(worse(adapted));
+    }
+    faults
+}
+
+fn frozen(args: &args::Adapt, stuck: &Stuck) -> String {
+    let (still, moves) = match stuck.channel {
+        Channel::Output => ("output", "input"),
+        Channel::Input => ("input", "output"),
+    };
+    let Range { start, end } = &stuck.samples;
+    format!(
+        "the {still} stands still from row {} of {} on, up to row {end}, while the {moves} moves: a \
+         frozen or dead sensor; nothing is learned from these rows",
+        start + 1,
+        args.data.display()
+    )
+}
+
+/// How far the model moved, in percent.
+fn drift(adapted: &Adapted) -> String {
+    let Drift {
+        lift, gain, shift, ..
+    } = adapted.drift;
+    format!(
+        "offset by {:.1} % of the range, stroke by {:.1} %, operators by {:.1} % of the plane",
+        100.0 * lift,
+        100.0 * gain,
+        100.0 * shift
+    )
+}
+
+fn worse(adapted: &Adapted) -> String {
     let error = |errors: Errors| text::with_unit(errors.rmse, &adapted.model.output);
     let found = match adapted.late {
         Some(late) => format!(
@@ -72,9 +124,8 @@ fn worse(args: &args::Adapt, adapted: &Adapted) -> String {
         None => "no reading of the last third judges it".into(),
     };
     format!(
-        "{}: the model is not written, for it ended no better: {found}: see the column `outcome` \
-         of --table, try another --method, or keep the model as it is; --force writes it",
-        args.out.display(),
+        "it ended no better: {found}: see the column `outcome` of --table, try another --method, or \
+         keep the model as it is"
     )
 }
 
@@ -86,6 +137,7 @@ fn to_json(args: &args::Adapt, adapted: &Adapted, refused: bool) -> Value {
         "thirds": adapted.thirds,
         "late": adapted.late,
         "worse": adapted.worse,
+        "stuck": adapted.stuck,
         "probation": adapted.probation,
         "again": adapted.again,
         "counts": adapted.counts,
@@ -123,7 +175,12 @@ fn shift(found: &ShiftFound, model: &Model) -> String {
     line
 }
 
-fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) -> String {
+fn to_text(
+    args: &args::Adapt,
+    adapted: &Adapted,
+    model: &Model,
+    (refused, faults): (bool, &[String]),
+) -> String {
     let output = &adapted.model.output;
     let mut rows = vec![text::row(["RMSE", "adapting", "fixed", "samples"])];
     let mut line = |name: &str, compared: &Compared| {
@@ -148,7 +205,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) 
     };
     line("last weights, over all of it again", &again);
     let counts = &adapted.counts;
-    let drift = &adapted.drift;
+    let moved = &adapted.drift;
     let told = match adapted.options {
         EstimatorOptions::Refit(refit) => format!(
             "{} refits on the way and one at the end, over {}; {} samples taken, {} at rest, {} \
@@ -176,13 +233,16 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) 
         lines.push(format!(
             "sum of the weights {} before, {} after; offset {}, {}; weights moved by {:.1} % of \
              their sum",
-            text::number(drift.weights.0),
-            text::with_unit(drift.weights.1, output),
-            text::number(drift.offset.0),
-            text::with_unit(drift.offset.1, output),
-            100.0 * drift.moved
+            text::number(moved.weights.0),
+            text::with_unit(moved.weights.1, output),
+            text::number(moved.offset.0),
+            text::with_unit(moved.offset.1, output),
+            100.0 * moved.moved
         ));
     }
+    lines.push(format!("the model moved: {}", drift(adapted)));
+    // Where they do not refuse the model, they are told all the same.
+    lines.extend(faults.iter().filter(|_| !refused).cloned());
     if adapted.probation > 0 {
         lines.push(format!(
             "the last {} samples are on probation, as none judge them: the model has nothing of \
@@ -197,7 +257,7 @@ fn to_text(args: &args::Adapt, adapted: &Adapted, model: &Model, refused: bool) 
         .shift
         .as_ref()
         .is_some_and(|found| found.shift != 0.0);
-    if drift.moved == 0.0 && drift.offset.0 == drift.offset.1 && !shifted {
+    if moved.moved == 0.0 && moved.offset.0 == moved.offset.1 && !shifted {
         lines.push("nothing was learned: the model is the one that it was".into());
     }
     lines.join("\n")

@@ -248,6 +248,52 @@ fn wrong_readings_are_refused_counted_and_in_the_table() {
     );
 }
 
+/// The output freezes two thirds through.
+#[test]
+fn a_frozen_output_is_named_and_nothing_is_learned_from_it() {
+    let folder = wires();
+    let table = fs::read_to_string(folder.path().join("after.csv")).unwrap();
+    let mut rows: Vec<String> = table.lines().map(str::to_owned).collect();
+    let held = rows[1000].rsplit(',').next().unwrap().to_owned();
+    for row in &mut rows[1001..] {
+        let cut = row.rfind(',').unwrap();
+        row.replace_range(cut + 1.., &held);
+    }
+    fs::write(folder.path().join("frozen.csv"), rows.join("\n") + "\n").unwrap();
+    for method in METHODS {
+        let line = format!("{ADAPT} --method {method}").replace("after", "frozen");
+        let said = refused(folder.path(), &line);
+        assert!(said.contains("the output stands still from row 1000"), "{said}");
+        assert!(!folder.path().join("adapted.json").exists());
+        let said = json(folder.path(), &format!("{line} --force --table table.csv"));
+        let [before, after] = [0, 1].map(|n| said["drift"]["weights"][n].as_f64().unwrap());
+        assert!(after > 0.9 * before, "{method}: {before} {after}");
+        assert_eq!(said["stuck"][0]["channel"], "output", "{method}");
+        let table = fs::read_to_string(folder.path().join("table.csv")).unwrap();
+        assert!(table.lines().last().unwrap().ends_with(",output-stuck"));
+        fs::remove_file(folder.path().join("adapted.json")).unwrap();
+    }
+}
+
+/// A plant whose offset moves by twice the model's range, slowly.
+#[test]
+fn a_model_that_moved_too_far_needs_a_word() {
+    let folder = wires();
+    let table = fs::read_to_string(folder.path().join("before.csv")).unwrap();
+    let mut rows: Vec<String> = vec!["x,y".into()];
+    for (n, row) in table.lines().skip(1).enumerate() {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        rows.push(format!("{},{}", cells[1], cells[2] + 30.0 * n as f64 / 1500.0));
+    }
+    fs::write(folder.path().join("ramp.csv"), rows.join("\n") + "\n").unwrap();
+    let line = ADAPT.replace("after", "ramp");
+    let said = refused(folder.path(), &line);
+    assert!(said.contains("--max-drift") && said.contains("offset by"), "{said}");
+    assert!(!folder.path().join("adapted.json").exists());
+    json(folder.path(), &format!("{line} --max-drift 400"));
+    assert!(folder.path().join("adapted.json").exists());
+}
+
 #[test]
 fn a_model_that_ended_worse_is_not_written_without_force() {
     let folder = wires();

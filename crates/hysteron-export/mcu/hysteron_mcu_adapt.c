@@ -9,6 +9,18 @@
 #define AT_START 50u
 #define LEAST 1000u
 
+/* Of the watch: the numbers of pieces, and of readings in each; how much narrower the span of a
+ * channel that stands still is; and the numbers by which the range is divided for a piece, for moves
+ * that are noise, and for spans that say something, and the plane's width for a wide motion. */
+#define PIECES 4u
+#define READINGS 4u
+#define STILL 5u
+#define PIECE 2u
+#define NOISE 16u
+#define FAR_PIECE 8u
+#define FAR_ALL 4u
+#define WIDE 2u
+
 /* Number of running sums of a long sum. The rounding of the library depends on it. */
 #define LANES 8u
 
@@ -31,6 +43,164 @@ static void copy(hys_real *to, const hys_real *from, size_t count)
     }
 }
 
+/* ---- Watch ---- */
+
+static hys_real size_of(hys_real x)
+{
+    return hys_max(x, -x);
+}
+
+static void begin_piece(hys_piece *piece, const hys_real *reading)
+{
+    size_t n;
+    for (n = 0u; n < 3u; n++) {
+        piece->low[n] = reading[n];
+        piece->high[n] = reading[n];
+    }
+    piece->travel = ZERO;
+    piece->readings = 0u;
+    piece->begun = 1u;
+}
+
+/* Widens the spans of a piece by those of another one. */
+static void widen(hys_piece *piece, const hys_real *low, const hys_real *high)
+{
+    size_t n;
+    for (n = 0u; n < 3u; n++) {
+        piece->low[n] = hys_min(piece->low[n], low[n]);
+        piece->high[n] = hys_max(piece->high[n], high[n]);
+    }
+}
+
+static hys_real span(const hys_piece *piece, size_t n)
+{
+    return piece->high[n] - piece->low[n];
+}
+
+static int is_still(const hys_piece *piece)
+{
+    return span(piece, 1u) * number(STILL) < span(piece, 0u);
+}
+
+/* Copied member by member, because a copy of the whole struct may become a call of memcpy. */
+static void copy_piece(hys_piece *to, const hys_piece *from)
+{
+    size_t n;
+    for (n = 0u; n < 3u; n++) {
+        to->low[n] = from->low[n];
+        to->high[n] = from->high[n];
+    }
+    to->travel = from->travel;
+    to->readings = from->readings;
+    to->begun = from->begun;
+}
+
+/* What a piece that ends says: whether both channels moved in it, whether over all pieces one moved
+ * there and back while the other one stood still, and how far the position moved in the piece and
+ * over all. */
+typedef struct {
+    int ended, alive, still;
+    hys_real moves, moved;
+} hys_ended;
+
+static void look_along(hys_trail *trail, const hys_real *reading, hys_real range, hys_ended *says)
+{
+    hys_piece *piece = trail->pieces;
+    hys_piece all;
+    hys_real step, travel = ZERO, far;
+    size_t n, begun = 0u;
+    says->ended = 0;
+    if (!piece->begun) {
+        trail->anchor = reading[0];
+        begin_piece(piece, reading);
+        return;
+    }
+    step = size_of(reading[0] - trail->anchor);
+    if (step >= range / number(NOISE)) {
+        trail->anchor = reading[0];
+        piece->travel += step;
+    }
+    widen(piece, reading, reading);
+    piece->readings += piece->readings < UINT32_MAX ? 1u : 0u;
+    if (piece->travel < range / number(PIECE) || piece->readings < READINGS) {
+        return;
+    }
+    copy_piece(&all, piece);
+    for (n = 0u; n < PIECES; n++) { /* PIECES iterations */
+        if (trail->pieces[n].begun) {
+            begun++;
+            travel += trail->pieces[n].travel;
+            widen(&all, trail->pieces[n].low, trail->pieces[n].high);
+        }
+    }
+    far = span(&all, 0u);
+    says->ended = 1;
+    says->alive = span(piece, 0u) >= range / number(FAR_PIECE) && !is_still(piece);
+    says->still = begun == PIECES && travel >= far + far * (ONE / number(2u)) &&
+                  far >= range / number(FAR_ALL) && is_still(&all);
+    says->moves = span(piece, 2u);
+    says->moved = span(&all, 2u);
+    for (n = PIECES - 1u; n > 0u; n--) { /* less than PIECES iterations */
+        copy_piece(trail->pieces + n, trail->pieces + (n - 1u));
+    }
+    begin_piece(piece, reading);
+}
+
+static void restart_watch(hys_watch *watch)
+{
+    size_t n;
+    for (n = 0u; n < PIECES; n++) {
+        watch->output.pieces[n].begun = 0u;
+        watch->input.pieces[n].begun = 0u;
+    }
+    watch->output.anchor = ZERO;
+    watch->input.anchor = ZERO;
+    watch->last = ZERO;
+    watch->stuck = 0;
+}
+
+/* Looks at a reading; `watch->stuck` becomes what stands still. Where a piece of the output ends and
+ * nothing is stuck, returns 1, and 2 if both channels moved in it. Otherwise returns 0. */
+static int look(hys_watch *watch, hys_real position, hys_real expected, hys_real measured, int believed)
+{
+    hys_real half = ONE / number(2u), step = measured - watch->last, reading[3];
+    hys_ended output, input;
+    int alive, returns, same = size_of(step) < watch->range / number(NOISE);
+    watch->last = measured;
+    if (!(believed || same)) {
+        return 0;
+    }
+    reading[0] = expected;
+    reading[1] = measured;
+    reading[2] = position;
+    look_along(&watch->output, reading, watch->range, &output);
+    reading[0] = measured;
+    reading[1] = expected;
+    look_along(&watch->input, reading, watch->range, &input);
+    alive = output.ended && output.alive;
+    returns = input.ended && input.moves >= half;
+    if ((watch->stuck == HYS_OUTPUT_STUCK && !alive) || (watch->stuck == HYS_INPUT_STUCK && !(alive || returns))) {
+        return 0;
+    }
+    watch->stuck = 0;
+    if (output.ended && output.still && output.moved >= watch->width / number(WIDE)) {
+        watch->stuck = HYS_OUTPUT_STUCK;
+    } else if (input.ended && input.still && input.moved < half) {
+        watch->stuck = HYS_INPUT_STUCK;
+    }
+    return watch->stuck != 0 || !output.ended ? 0 : (alive ? 2 : 1);
+}
+
+/* Starts the watch again, from the present parameters. */
+static void watch_anew(hys_adaptive *self)
+{
+    size_t count = operators(self) + 1u;
+    copy(self->trusted, self->theta, count);
+    copy(self->pending, self->theta, count);
+    self->expected = ZERO;
+    restart_watch(&self->watch);
+}
+
 /* ---- The operators' states ---- */
 
 /* The ridge of level k: 0 up to one step below the level, 1 from the level on, linear between. */
@@ -46,10 +216,11 @@ static size_t touched(const hys_model *model, hys_real x)
     return (cell < model->levels ? cell : model->levels - 1u) + 1u;
 }
 
-/* Moves the operators' states. A rising input changes only rows, a falling one only columns: at
- * most one pass over the operators. */
+/* Moves the operators' states, and the output that the off-line weights expect. A rising input
+ * changes only rows, a falling one only columns: at most one pass over the operators. */
 static void follow(hys_adaptive *self, hys_real from, hys_real to)
 {
+    hys_real change = ZERO;
     const hys_model *model = &self->model;
     size_t first = touched(model, hys_min(from, to)), last = touched(model, hys_max(from, to));
     size_t i, j;
@@ -57,19 +228,24 @@ static void follow(hys_adaptive *self, hys_real from, hys_real to)
         for (j = first; j <= last; j++) { /* at most K iterations */
             hys_real on = ridge(to, j);
             for (i = 1u; i <= j; i++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + operator_index(i, j);
-                *gamma = hys_max(*gamma, on);
+                size_t n = operator_index(i, j);
+                hys_real moved = hys_max(self->gamma[n], on);
+                change += self->offline[n] * (moved - self->gamma[n]);
+                self->gamma[n] = moved;
             }
         }
     } else if (to < from) {
         for (i = first; i <= last; i++) { /* at most K iterations */
             hys_real off = ridge(to, i);
             for (j = i; j <= model->levels; j++) { /* at most K iterations */
-                hys_real *gamma = self->gamma + operator_index(i, j);
-                *gamma = hys_min(*gamma, off);
+                size_t n = operator_index(i, j);
+                hys_real moved = hys_min(self->gamma[n], off);
+                change += self->offline[n] * (moved - self->gamma[n]);
+                self->gamma[n] = moved;
             }
         }
     }
+    self->expected += (model->kind == MKP ? ONE : number(2u)) * change;
 }
 
 /* Whether the operators' states belong to the present position and branch of the state. */
@@ -109,6 +285,7 @@ static void align(hys_adaptive *self)
         }
     }
     self->learned = state->x;
+    watch_anew(self);
 }
 
 /* ---- Weights and table ---- */
@@ -217,11 +394,6 @@ static void believe(hys_gate *gate, hys_real scale)
     rescale(gate, scale);
 }
 
-static hys_real size_of(hys_real x)
-{
-    return hys_max(x, -x);
-}
-
 /* Whether two surprises may come from one jump: they differ by at most half of the larger one. */
 static int agree(hys_real a, hys_real b)
 {
@@ -311,11 +483,41 @@ static void update(hys_adaptive *self, hys_real error)
     }
 }
 
+/* Whether a channel stands still. If one begins to, the parameters from before return; the table is
+ * not written. */
+static int find_stuck(hys_adaptive *self, hys_real measured, int believed)
+{
+    size_t count = operators(self) + 1u;
+    int already = self->watch.stuck;
+    int piece = look(&self->watch, self->state.x, self->expected, measured, believed);
+    if (piece == 2) {
+        copy(self->trusted, self->pending, count);
+    }
+    if (piece != 0) {
+        copy(self->pending, self->theta, count);
+    }
+    if (self->watch.stuck != 0 && already == 0) {
+        copy(self->good, self->trusted, count);
+        copy(self->pending, self->trusted, count);
+        take_back(self);
+        restart(&self->gate);
+        self->undone = 1u;
+    }
+    return self->watch.stuck;
+}
+
 static int learn(hys_adaptive *self, hys_real measured, hys_real error)
 {
     hys_real rest = measured - self->offset, zone = self->options.dead_zone, counted;
     hys_real candidate, good;
-    if (!believes(&self->gate, error, &self->options)) {
+    int believed = believes(&self->gate, error, &self->options);
+    if (self->options.gate > ZERO) {
+        int stuck = find_stuck(self, measured, believed);
+        if (stuck != 0) {
+            return stuck;
+        }
+    }
+    if (!believed) {
         return HYS_REJECTED;
     }
     candidate = rest - dot(self, self->candidate);
@@ -401,7 +603,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     levels = model->levels;
     all = levels * (levels + 1u) / 2u;
     table = all + levels + 1u;
-    if (numbers < table + 3u * (all + 1u) + all || count < 4u * levels + 8u) {
+    if (numbers < table + 5u * (all + 1u) + all || count < 4u * levels + 8u) {
         return HYS_MEMORY_TOO_SMALL;
     }
     if (!(options->gain > ZERO && options->gain < number(2u) && from_zero(options->offset_share) &&
@@ -428,7 +630,9 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     self->theta = memory + table;
     self->good = self->theta + (all + 1u);
     self->candidate = self->good + (all + 1u);
-    self->gamma = self->candidate + (all + 1u);
+    self->trusted = self->candidate + (all + 1u);
+    self->pending = self->trusted + (all + 1u);
+    self->gamma = self->pending + (all + 1u);
     self->options.gain = options->gain;
     self->options.offset_share = options->offset_share;
     self->options.dead_zone = options->dead_zone;
@@ -443,6 +647,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
     self->floor = number(all) / number(100u);
     self->aligned = 0u;
     self->frozen = 0u;
+    self->undone = 0u;
     copy(self->theta, weights, all);
     self->theta[all] = ZERO;
     copy(self->good, self->theta, all + 1u);
@@ -454,6 +659,9 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
         self->gate.range += self->model.total;
     }
     restart(&self->gate);
+    self->watch.range = self->gate.range;
+    self->watch.width = number(levels);
+    watch_anew(self);
     (void)hys_start(&self->model, &self->state, turns, count);
     self->learned = ZERO;
     return HYS_OK;
@@ -499,13 +707,15 @@ int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hy
             found = HYS_ROLLED_BACK;
         }
     }
-    if (found == HYS_ROLLED_BACK) {
+    if (found == HYS_ROLLED_BACK || self->undone) {
         rewrite(self);
     }
-    if (found == HYS_LEARNED || found == HYS_ROLLED_BACK) {
+    if (found == HYS_LEARNED || found == HYS_ROLLED_BACK || self->undone) {
         (void)hys_rebase(&self->state);
     }
-    if (found == HYS_LEARNED || found == HYS_WAITING || found == HYS_ROLLED_BACK) {
+    self->undone = 0u;
+    if (found == HYS_LEARNED || found == HYS_WAITING || found == HYS_ROLLED_BACK || found == HYS_OUTPUT_STUCK ||
+        found == HYS_INPUT_STUCK) {
         settle(&self->gate, measured - own_sum(&self->model, self->state.y) - offset_of(self));
     }
     expected = own + offset;
@@ -524,6 +734,7 @@ int hys_adapt_freeze(hys_adaptive *adaptive, int frozen)
     int code = usable(adaptive);
     if (code == HYS_OK) {
         adaptive->frozen = frozen != 0 ? 1u : 0u;
+        restart_watch(&adaptive->watch);
     }
     return code;
 }
@@ -536,6 +747,7 @@ int hys_adapt_keep(hys_adaptive *adaptive)
         copy(adaptive->good, adaptive->theta, count);
         copy(adaptive->candidate, adaptive->theta, count);
         clear_trial(adaptive);
+        watch_anew(adaptive);
     }
     return code;
 }
@@ -546,6 +758,7 @@ int hys_adapt_roll_back(hys_adaptive *adaptive)
     if (code == HYS_OK) {
         take_back(adaptive);
         restart(&adaptive->gate);
+        watch_anew(adaptive);
         rewrite(adaptive);
         (void)hys_rebase(&adaptive->state);
     }

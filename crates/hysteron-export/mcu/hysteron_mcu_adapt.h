@@ -1,7 +1,8 @@
 /* Weights that follow the plant while an exported model runs.
  *
  * The method is the normalised gradient (Goodwin & Sin 1984, section 3.3) for all weights and the
- * offset, with dead zone, leakage, a gate, and a trial against the last good weights. The results
+ * offset, with dead zone, leakage, a gate, a watch for channels that stand still, and a trial
+ * against the last good weights. The results
  * have the same bits as those of the library's `Estimator` with `Method::Gradient`. The other
  * methods of the library run on a host only: the gradient needs one table and no knowledge of the
  * noise, and its worst case does not depend on the input.
@@ -19,8 +20,8 @@
  * its inverse steps. A hys_adaptive must not be copied or moved, because states point into it.
  *
  * Worst case of hys_adapt_step, with N = K(K + 1)/2 operators: a hys_step, five passes over the
- * operators, one over the table, a hys_rebase, and at the end of a trial two copies of N + 1
- * numbers. Where others moved the state in between, one more pass over the operators for each
+ * operators, one over the table, a hys_rebase, and at the end of a trial and of a stretch of the
+ * watch two copies of N + 1 numbers each. Where others moved the state in between, one more pass over the operators for each
  * turning point, at most 4K + 3. */
 #ifndef HYSTERON_MCU_ADAPT_H
 #define HYSTERON_MCU_ADAPT_H
@@ -42,7 +43,8 @@ typedef struct {
     hys_real dead_zone;     /* 0, from 0: errors up to this are noise, in the output's unit */
     hys_real leakage;       /* 0, 0 to 1: fraction of the way back to the off-line weights */
     hys_real movement;      /* 0.05, from 0: levels between two samples that are learned from */
-    hys_real gate;          /* 12, 0 or from 2: surprises above so many usual ones are refused */
+    hys_real gate;          /* 12, 0 or from 2: surprises above so many usual ones are refused; with
+                             * 0 no channel is watched either */
     uint32_t trial;         /* 256, from 1: samples until weights are compared with the good ones */
     uint32_t burst;         /* 8, from 1: so many refused readings in a row that agree are a jump */
 } hys_adapt_options;
@@ -54,7 +56,10 @@ enum {
     HYS_AT_REST = 2,        /* the input did not move */
     HYS_FROZEN = 3,         /* the weights are frozen */
     HYS_ROLLED_BACK = 4,    /* the last good weights are back: the present ones were far worse */
-    HYS_REJECTED = 5        /* the reading is taken as an outlier */
+    HYS_REJECTED = 5,       /* the reading is taken as an outlier */
+    HYS_OUTPUT_STUCK = 6,   /* the output stands still while the input moves: what was learned since
+                             * is undone */
+    HYS_INPUT_STUCK = 7     /* the input stands still while the output moves: as well */
 };
 
 /* What the gate knows of the prediction errors. */
@@ -65,6 +70,28 @@ typedef struct {
     hys_real last;      /* surprise of the last refused reading */
     uint32_t refused, agreeing; /* readings in a row */
 } hys_gate;
+
+/* A stretch in which a channel travelled half of the range: lowest and highest values of this
+ * channel, of the one it is compared with, and of the position. */
+typedef struct {
+    hys_real low[3], high[3], travel;
+    uint32_t readings;      /* 0 before the first */
+    unsigned char begun;
+} hys_piece;
+
+/* The last stretches of a channel, the present one first. */
+typedef struct {
+    hys_piece pieces[4];
+    hys_real anchor;        /* where the travel was last counted */
+} hys_trail;
+
+/* What the watch knows of both channels. */
+typedef struct {
+    hys_real range, width;  /* of the output, and of the plane in levels */
+    hys_trail output, input;
+    hys_real last;          /* the last reading */
+    int stuck;              /* HYS_OUTPUT_STUCK, HYS_INPUT_STUCK or 0 */
+} hys_watch;
 
 /* A model that learns. Applications may use `model`, the model as it is now, and `state`. Only
  * these functions may use the other members. */
@@ -78,6 +105,8 @@ typedef struct {
     const hys_real *offline;    /* N weights */
     /* Each has N weights, and the deviation of the offset in units of offset_share. */
     hys_real *theta, *good, *candidate;
+    hys_real *trusted;          /* from before the last stretch in which the output moved */
+    hys_real *pending;          /* from before the present stretch */
     hys_real *table;
     hys_real *gamma;            /* N operator states */
     hys_real offset;            /* off-line, without sign */
@@ -86,8 +115,11 @@ typedef struct {
     /* Sums of squared errors over the trial. */
     hys_real now_squares, candidate_squares, good_squares, rounding_squares;
     hys_gate gate;
+    hys_watch watch;
+    hys_real expected;          /* output expected by the off-line weights, but for a constant */
     uint32_t samples;           /* samples in the trial */
     unsigned char aligned, frozen;
+    unsigned char undone;       /* the watch took back what the table still has */
 } hys_adaptive;
 
 /* Writes the default options. */
@@ -103,7 +135,7 @@ int hys_adapt_start(hys_adaptive *adaptive, const hys_model *model, const hys_re
                     size_t numbers, hys_turn *turns, size_t count);
 
 /* Moves `adaptive->state` to `input`, writes the output predicted there, and learns from the output
- * `measured`. `*outcome` becomes one of HYS_LEARNED to HYS_REJECTED. Error: HYS_INPUT_NOT_FINITE.
+ * `measured`. `*outcome` becomes one of HYS_LEARNED to HYS_INPUT_STUCK. Error: HYS_INPUT_NOT_FINITE.
  */
 int hys_adapt_step(hys_adaptive *adaptive, hys_real input, hys_real measured, hys_real *output,
                    int *outcome);

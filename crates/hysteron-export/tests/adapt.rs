@@ -37,7 +37,7 @@ struct Case {
 
 /// What the driver has to print: the core, with offset and sign as the façade's adaptive model has
 /// them.
-fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 6]) -> (String, String) {
+fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 8]) -> (String, String) {
     let of = T::of;
     let (k, sign) = (case.model.plane().levels(), of(case.model.sign().factor()));
     let falls = case.model.sign() == Sign::Negative;
@@ -100,6 +100,8 @@ fn script<T: Number>(n: usize, case: &Case, outcomes: &mut [usize; 6]) -> (Strin
                             Outcome::Frozen => 3,
                             Outcome::RolledBack => 4,
                             Outcome::Rejected => 5,
+                            Outcome::OutputStuck => 6,
+                            Outcome::InputStuck => 7,
                         };
                         outcomes[outcome] += 1;
                         writeln!(answers, "a 0 {} {outcome}", (sign * learning.output).hex())
@@ -245,8 +247,30 @@ fn calls(rng: &mut StdRng, model: &Model, count: usize) -> Vec<Call> {
             _ => {}
         }
     }
+    calls.push(Call::Freeze(false));
+    stuck(rng, &plant, &mut calls);
     calls.push(Call::Weights);
     calls
+}
+
+/// Loops over the whole plane; then the output stands still, and then the input, with some noise.
+fn stuck(rng: &mut StdRng, plant: &Model, calls: &mut Vec<Call>) {
+    let (plane, mut there, mut last) = (plant.plane(), plant.start(), 0.0);
+    let k = plane.levels() as f64;
+    for n in 0..1200 {
+        let way = 1.0 - (f64::from(n % 100) / 50.0 - 1.0).abs();
+        let at = |x: f64| plane.min() + (x - 1.0) * plane.step();
+        let measured = plant.step(&mut there, at(k * way)).unwrap().output;
+        let (seen, read) = match n {
+            0..250 => (k * way, measured),
+            250..700 => (k * way, last),
+            _ => (0.5 * k + rng.random_range(0.0..0.2), measured),
+        };
+        if n < 250 {
+            last = measured;
+        }
+        calls.push(Call::Learn(at(seen), read));
+    }
 }
 
 fn cases(seed: u64, count: usize) -> Vec<Case> {
@@ -274,9 +298,9 @@ fn cases(seed: u64, count: usize) -> Vec<Case> {
     .collect()
 }
 
-fn compare(exported: &Exported, program: &mut Command, cases: &[Case], what: &str) -> [usize; 6] {
+fn compare(exported: &Exported, program: &mut Command, cases: &[Case], what: &str) -> [usize; 8] {
     let (mut commands, mut expected) = (String::new(), String::new());
-    let mut outcomes = [0; 6];
+    let mut outcomes = [0; 8];
     for (n, case) in cases.iter().enumerate() {
         let (lines, answers) = match exported.real {
             CReal::Float => script::<f32>(n, case, &mut outcomes),

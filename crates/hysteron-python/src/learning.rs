@@ -15,7 +15,9 @@ pub(crate) struct Learning {
     error: f64,
     /// What was done: 'learned', 'waiting' (error within the dead zone, or an increment not
     /// finished), 'at-rest' (the input did not move), 'frozen', 'rolled-back' (the weights went
-    /// back to the last good ones) or 'rejected' (the reading is too far from what was expected).
+    /// back to the last good ones), 'rejected' (the reading is too far from what was expected),
+    /// 'output-stuck' or 'input-stuck' (a channel stands still while the other one moves; what was
+    /// learned since is undone).
     outcome: &'static str,
     /// -1 or 1 where the input lay below or above the plane, else 0.
     clipped: i8,

@@ -116,6 +116,12 @@ impl Trace {
         self.flags(py, |status| status.rejected)
     }
 
+    /// Where a channel stood still while the other one moved: the model did not learn.
+    #[getter]
+    fn stuck<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.flags(py, |status| status.stuck)
+    }
+
     /// The weights over time, of a controller that adapts.
     ///
     /// A list of `results.Snapshot`.
@@ -159,6 +165,7 @@ impl Trace {
         table.set_item("sensor_fault", self.sensor_fault(py))?;
         table.set_item("adapted", self.adapted(py))?;
         table.set_item("rejected", self.rejected(py))?;
+        table.set_item("stuck", self.stuck(py))?;
         Ok(table)
     }
 

@@ -47,7 +47,7 @@ mod series;
 
 pub use adapt::{
     AdaptOptions, Adapted, Adaptive, AdaptiveLoad, Compared, Drift, DriftBasis, EstimatorOptions,
-    Learner, OutcomeCounts, Refit, ShiftFound, Window, adapt,
+    Learner, OutcomeCounts, Refit, ShiftFound, Stuck, Window, adapt,
 };
 pub use batch::BatchModel;
 #[cfg(feature = "data")]
@@ -72,8 +72,8 @@ pub use forward::{Forward, forward};
 pub use hold_out::{HeldOut, RivalErrors, fit_holding_out, held_out};
 pub use hysteron_core::Error as CoreError;
 pub use hysteron_core::{
-    Adaptation, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator, Outcome,
-    Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
+    Adaptation, Channel, Clipped, ClippedCount, Direction, Learning, MAX_LEVELS, Method, Operator,
+    Outcome, Output, Region, ShiftOptions, Solution, Status, Target, operator_index, operators,
 };
 pub use identify::{
     AGAINST_INPUT, Advice, Auto, Candidates, Choice, FIT_OPTIONS, Fit, FitOption, FitOptions,

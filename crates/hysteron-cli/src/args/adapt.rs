@@ -36,8 +36,12 @@ pub(crate) struct Adapt {
     pub(crate) repair: Repair,
     #[command(flatten)]
     pub(crate) tuning: Tuning,
+    /// How far the model may move before it needs --force: its offset in percent of its range, its
+    /// stroke in percent, its operators in percent of the plane
+    #[arg(long, value_name = "PERCENT", default_value = "100", value_parser = parse_positive)]
+    pub(crate) max_drift: f64,
     /// Where the adapted model goes; with --force also one that ended worse than the model left
-    /// alone
+    /// alone, that moved further than --max-drift, or that saw a channel stand still
     #[arg(short, value_name = "ADAPTED")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -108,7 +112,8 @@ pub(crate) struct Tuning {
     /// Samples after which the weights are compared with the last good ones [default: 256]
     #[arg(long, value_name = "N", value_parser = up_to::<u32>(u64::from(u32::MAX)))]
     trial: Option<u32>,
-    /// Reject a reading whose error exceeds this many times the usual one, from 2; 0 rejects none
+    /// Reject a reading whose error exceeds this many times the usual one, from 2; 0 rejects none, and
+    /// takes no channel for stuck
     /// [default: 12]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = parse_finite)]
     gate: Option<f64>,

@@ -10,6 +10,7 @@
 
 use super::gate::{Gate, Verdict};
 use super::shift_options::ShiftOptions;
+use super::watch::{Channel, Reading, Watch, Watched};
 use super::{Learning, Outcome};
 use crate::branch::Turn;
 use crate::error::Error;
@@ -73,6 +74,13 @@ pub struct ShiftEstimator<T> {
     shift: T,
     variance: T,
     gate: Gate<T>,
+    watch: Watch<T>,
+    /// What the model left alone is expected to say at the next sample.
+    expected: Option<T>,
+    /// Shift and variance before the last piece of the watch in which the output moved, and before
+    /// the present piece.
+    trusted: (T, T),
+    pending: (T, T),
     /// The mean distance between levels, in the unit of the temperature.
     level: T,
     /// Below this slope of the output over the shift, a branch is flat.
@@ -115,6 +123,10 @@ impl<T: Real> ShiftEstimator<T> {
             shift: T::ZERO,
             variance: options.spread * options.spread,
             gate: Gate::new(range),
+            watch: Watch::new(range, T::from_index(model.plane().levels())),
+            expected: None,
+            trusted: (T::ZERO, options.spread * options.spread),
+            pending: (T::ZERO, options.spread * options.spread),
             level,
             flat: range / width / T::from_index(FLAT),
             learned: None,
@@ -159,7 +171,7 @@ impl<T: Real> ShiftEstimator<T> {
         Ok(Learning {
             output: output.output,
             error,
-            outcome: self.judge(at, state.is_rising(), error, slope),
+            outcome: self.judge(at, state.is_rising(), (measured, error), slope),
             clipped: output.clipped,
         })
     }
@@ -297,7 +309,30 @@ impl<T: Real> ShiftEstimator<T> {
 
     /// Tells that others moved the state: the next sample only sets out from there.
     pub fn realign(&mut self) {
-        (self.learned, self.wait) = (None, None);
+        (self.learned, self.wait, self.expected) = (None, None, None);
+        self.trusted = (self.shift, self.variance);
+        self.pending = self.trusted;
+        self.watch.restart();
+    }
+
+    /// Tells the output that the model left alone expects at the next sample, from a state of its
+    /// own. So a channel that stands still is found by a [`Watch`], unless the `gate` is 0, and what
+    /// was learned since is undone. Without it, none is found.
+    ///
+    /// # Errors
+    /// [`Error::InputNotFinite`] for an output that is not finite.
+    pub fn expect(&mut self, output: T) -> Result<(), Error> {
+        if !output.is_finite() {
+            return Err(Error::InputNotFinite { index: 0 });
+        }
+        self.expected = Some(output);
+        Ok(())
+    }
+
+    /// The channel that stands still while the other one moves.
+    #[must_use]
+    pub fn stuck(&self) -> Option<Channel> {
+        self.watch.stuck()
     }
 
     fn move_to<C, S>(
@@ -355,7 +390,14 @@ impl<T: Real> ShiftEstimator<T> {
 
     /// Learns from a reading whose prediction erred by `error`, at the temperature `a T` and the
     /// operators' position. `slope` is that of the output over the shift.
-    fn judge(&mut self, (here, position): (T, T), rising: bool, error: T, slope: T) -> Outcome {
+    fn judge(
+        &mut self,
+        (here, position): (T, T),
+        rising: bool,
+        (measured, error): (T, T),
+        slope: T,
+    ) -> Outcome {
+        let expected = self.expected.take();
         if self.frozen {
             return Outcome::Frozen;
         }
@@ -370,10 +412,21 @@ impl<T: Real> ShiftEstimator<T> {
             return Outcome::AtRest;
         }
         let most = self.options.spread * self.options.spread;
-        match self
-            .gate
-            .judge(error, self.options.gate, self.options.burst)
-        {
+        let ShiftOptions { gate, burst, .. } = self.options;
+        let verdict = self.gate.judge(error, gate, burst);
+        if let Some(expected) = expected.filter(|_| gate > T::ZERO) {
+            let reading = Reading {
+                position: here / self.level,
+                expected,
+                measured,
+            };
+            if let Some(channel) = self.find_stuck(reading, verdict != Verdict::Refused) {
+                self.learned = Some(here);
+                self.gate.settle(error);
+                return channel.outcome();
+            }
+        }
+        match verdict {
             Verdict::Refused => return Outcome::Rejected,
             Verdict::Jump => self.variance = most,
             Verdict::Usual => {}
@@ -407,6 +460,28 @@ impl<T: Real> ShiftEstimator<T> {
             self.gate.settle(error - slope * step);
         }
         Outcome::Learned
+    }
+
+    /// The channel that stands still. If one begins to, the shift from before returns.
+    fn find_stuck(&mut self, reading: Reading<T>, believed: bool) -> Option<Channel> {
+        let already = self.watch.stuck().is_some();
+        match self.watch.look(reading, believed) {
+            Watched::Moving => {}
+            Watched::Piece { alive } => {
+                if alive {
+                    self.trusted = self.pending;
+                }
+                self.pending = (self.shift, self.variance);
+            }
+            Watched::Stuck(_) if already => {}
+            Watched::Stuck(_) => {
+                (self.shift, self.variance) = self.trusted;
+                self.pending = self.trusted;
+                self.wait = None;
+                self.gate.restart();
+            }
+        }
+        self.watch.stuck()
     }
 
     /// One step of the filter. Returns how far the shift moved; `None` where numbers overflow.

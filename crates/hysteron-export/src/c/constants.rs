@@ -184,12 +184,15 @@ impl<T: Number> Constants<T> {
         };
         let options = aligned(6 * T::BYTES + 2 * WORD);
         let gate = aligned(4 * T::BYTES + 2 * WORD);
+        let piece = aligned(7 * T::BYTES + WORD + 1);
+        let watch = aligned(2 * (4 * piece + T::BYTES) + 3 * T::BYTES + WORD);
         let adaptive = aligned(
-            aligned(model + state + options + 3 * T::BYTES + 8 * WORD)
-                + 7 * T::BYTES
+            aligned(model + state + options + 3 * T::BYTES + 10 * WORD)
+                + 8 * T::BYTES
                 + gate
+                + watch
                 + WORD
-                + 2,
+                + 3,
         );
         let (table, weights) = (self.table().len(), self.weights.len());
         CMemory {
@@ -203,10 +206,10 @@ impl<T: Number> Constants<T> {
         }
     }
 
-    /// Table, three times the parameters, and the operators' states.
+    /// Table, five times the parameters, and the operators' states.
     pub(super) fn adaptation_numbers(&self) -> usize {
         let operators = self.weights.len();
-        self.table().len() + 3 * (operators + 1) + operators
+        self.table().len() + 5 * (operators + 1) + operators
     }
 }
 

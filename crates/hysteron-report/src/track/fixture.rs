@@ -139,6 +139,7 @@ fn trace(controller: &Controller, samples: usize, plane: &Plane) -> Trace {
         sensor_fault: (610.0..625.0).contains(&t),
         adapted: controller.adapts,
         rejected: controller.adapts && (500.0..504.0).contains(&t),
+        stuck: false,
     };
     Trace {
         reference: each(&reference),

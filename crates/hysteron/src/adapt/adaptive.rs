@@ -6,7 +6,8 @@ use crate::model::{Model, OperatorState, Sign};
 use crate::progress::Progress;
 use crate::progress::SAMPLES_BETWEEN;
 use hysteron_core::{
-    Adaptation, Estimator, Learning, Method, estimator_len, estimator_len_of_basis, table_len,
+    Adaptation, Channel, Estimator, Learning, Method, estimator_len, estimator_len_of_basis,
+    table_len,
 };
 use hysteron_core::{Solution, Target};
 
@@ -331,6 +332,16 @@ impl Adaptive {
         match &mut self.learner {
             Learns::Estimator { estimator, .. } => estimator.freeze(frozen),
             Learns::Refitter(refitter) => refitter.freeze(frozen),
+        }
+    }
+
+    /// The channel that stands still while the other one moves: nothing is learned then, and what
+    /// was learned since it began to is undone.
+    #[must_use]
+    pub fn stuck(&self) -> Option<Channel> {
+        match &self.learner {
+            Learns::Estimator { estimator, .. } => estimator.stuck(),
+            Learns::Refitter(refitter) => refitter.stuck(),
         }
     }
 

@@ -16,6 +16,8 @@ pub struct OutcomeCounts {
     pub rolled_back: usize,
     /// Readings rejected because they were too far from the expected output.
     pub rejected: usize,
+    /// Samples at which a channel stood still while the other one moved.
+    pub stuck: usize,
     /// Inputs outside the plane, clipped to its end. They are also counted above.
     pub outside: usize,
 }
@@ -32,6 +34,7 @@ impl OutcomeCounts {
                 Outcome::AtRest | Outcome::Frozen => &mut counts.at_rest,
                 Outcome::RolledBack => &mut counts.rolled_back,
                 Outcome::Rejected => &mut counts.rejected,
+                Outcome::OutputStuck | Outcome::InputStuck => &mut counts.stuck,
             } += 1;
         }
         counts

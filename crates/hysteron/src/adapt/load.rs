@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Model, Sample, State, Wanted};
-use hysteron_core::{Learning, ShiftEstimator, ShiftOptions, Solution, Stages};
+use hysteron_core::{Channel, Learning, ShiftEstimator, ShiftOptions, Solution, Stages};
 
 /// A [`Model`] under a load that nobody measures, with its state.
 ///
@@ -36,6 +36,8 @@ pub struct AdaptiveLoad {
     state: State,
     /// State of the inverse, at the drives that it asked for.
     wanted: State,
+    /// State of the model left alone.
+    alone: State,
     /// The load that the weights are those of.
     placed: Option<f64>,
 }
@@ -71,6 +73,7 @@ impl AdaptiveLoad {
             estimator: ShiftEstimator::new(options, core, &model.stages())?,
             state: model.off(),
             wanted: model.off(),
+            alone: model.off(),
             placed: told,
             offline: model.clone(),
         };
@@ -92,6 +95,11 @@ impl AdaptiveLoad {
     /// is changed.
     pub fn step(&mut self, sample: impl Into<Sample>, measured: f64) -> Result<Learning<f64>> {
         let sample = self.under(sample.into())?;
+        if !measured.is_finite() {
+            return Err(hysteron_core::Error::InputNotFinite { index: 1 }.into());
+        }
+        let expected = self.offline.step(&mut self.alone, sample)?.output;
+        self.estimator.expect(expected)?;
         let learning = self.with_state(|estimator, stages, core, state| {
             let State {
                 operators,
@@ -110,6 +118,7 @@ impl AdaptiveLoad {
     /// As [`Model::step`].
     pub fn simulate(&mut self, sample: impl Into<Sample>) -> Result<f64> {
         let sample = self.under(sample.into())?;
+        self.offline.step(&mut self.alone, sample)?;
         let output = self.with_state(|estimator, stages, core, state| {
             let State {
                 operators,
@@ -209,6 +218,12 @@ impl AdaptiveLoad {
         &self.offline
     }
 
+    /// The channel that stands still while the other one moves: nothing is learned.
+    #[must_use]
+    pub fn stuck(&self) -> Option<Channel> {
+        self.estimator.stuck()
+    }
+
     /// The load that the shift departs from.
     #[must_use]
     pub fn told(&self) -> Option<f64> {
@@ -244,6 +259,7 @@ impl AdaptiveLoad {
 
     fn begin(&mut self, state: State) {
         self.estimator.realign();
+        self.alone.clone_from(&state);
         self.state = state;
         self.align();
     }

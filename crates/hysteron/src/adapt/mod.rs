@@ -4,14 +4,17 @@
 //! output, then learned from. `options` are its settings. `adaptive` is the model that learns
 //! sample by sample: by an estimator of the core, all weights or a `basis` with few coefficients for
 //! drift; or by a `refit` to the samples of a `window`, from their `sums`. `load` and `unknown_load`
-//! do the same for the shift of an unknown load. `counts` counts what was done with the samples.
+//! do the same for the shift of an unknown load. `counts` counts what was done with the samples,
+//! `stuck` finds where a channel stood still, and `drift` tells how far the model moved.
 
 mod adaptive;
 mod basis;
 mod counts;
+mod drift;
 mod load;
 mod options;
 mod refit;
+mod stuck;
 mod sums;
 mod unknown_load;
 mod window;
@@ -19,9 +22,11 @@ mod window;
 pub use adaptive::Adaptive;
 pub use basis::DriftBasis;
 pub use counts::OutcomeCounts;
+pub use drift::Drift;
 pub use load::AdaptiveLoad;
 pub use options::{AdaptOptions, EstimatorOptions, Learner};
 pub use refit::Refit;
+pub use stuck::Stuck;
 pub use unknown_load::ShiftFound;
 pub use window::Window;
 
@@ -56,8 +61,9 @@ pub struct Adapted {
     /// Errors over the first, second and last third of the samples; empty for fewer than three
     /// samples.
     pub thirds: Vec<Compared>,
-    /// Errors over the last third without the rejected readings and those on probation;
-    /// [`Adapted::worse`] is based on them. `None` if there are no such samples.
+    /// Errors over the last third of the samples that are not [stuck](Adapted::stuck), without the
+    /// rejected readings and those on probation; [`Adapted::worse`] is based on them. `None` if there
+    /// are no such samples.
     pub late: Option<Compared>,
     /// Whether the model that learned is no better than the model left alone: on the last third
     /// its errors, taken before it learned from each sample, are larger than those of the fixed
@@ -68,6 +74,8 @@ pub struct Adapted {
     pub again: Errors,
     /// How the model has changed.
     pub drift: Drift,
+    /// Where a channel stood still. What was learned from there is undone.
+    pub stuck: Vec<Stuck>,
     /// What [`Learner::Load`] found; `None` for the other learners.
     pub shift: Option<ShiftFound>,
     /// The options of what learned.
@@ -89,18 +97,6 @@ impl Compared {
     fn loss(&self, (off, on): (f64, f64)) -> f64 {
         (self.adapting.rmse - self.fixed.rmse) / (on - off).abs()
     }
-}
-
-/// How far the model has changed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Drift {
-    /// Sum of the weights before and after. For MKP it is the stroke from all operators off to all
-    /// on; for KP and relay the stroke is twice this sum.
-    pub weights: (f64, f64),
-    /// Offset before and after.
-    pub offset: (f64, f64),
-    /// Sum of the absolute changes of the weights, over the sum before; infinite if that is zero.
-    pub moved: f64,
 }
 
 impl Adapted {
@@ -219,7 +215,11 @@ impl Learned {
             .collect::<Option<_>>()
             .unwrap_or_default();
         let judges = |n: usize| n + self.probation < count && outcomes[n] != Outcome::Rejected;
-        let late = compare(&|n| third(2).contains(&n) && judges(n));
+        let stuck = Stuck::all(&outcomes, recording, &fixed);
+        let alive = |n: &usize| stuck.iter().all(|stuck| !stuck.samples.contains(n));
+        let alive: Vec<usize> = (0..count).filter(alive).collect();
+        let last_third = &alive[2 * alive.len() / 3..];
+        let late = compare(&|n| last_third.binary_search(&n).is_ok() && judges(n));
         let again = run_from(&last, self.from_on, recording)?;
         let again = Errors::between(&recording.output, &again, |_| true).ok_or_else(no_samples)?;
         last.fit = Some(summary(
@@ -230,11 +230,12 @@ impl Learned {
             self.options.described(),
             (&again, counts),
         ));
-        let drift = Drift::between(&offline, &last);
-        let changed = drift.is_change(&offline) || shifted(self.shift.as_ref(), &offline);
+        let drift = Drift::between(&offline, &last, self.shift.as_ref());
+        let changed = drift.is_change() || shifted(self.shift.as_ref(), &offline);
         Ok(Adapted {
             worse: is_worse(late.as_ref(), changed, offline.output_range()),
             drift,
+            stuck,
             model: last,
             probation: self.probation,
             output_model,
@@ -439,24 +440,4 @@ fn shifted(found: Option<&ShiftFound>, offline: &Model) -> bool {
     let plane = offline.plane();
     let least = ROUNDING * (plane.max() - plane.min());
     found.is_some_and(|found| found.shift.abs() > least)
-}
-
-impl Drift {
-    /// Whether the weights or the offset differ from those of the `offline` model.
-    fn is_change(&self, offline: &Model) -> bool {
-        let (off, on) = offline.output_range();
-        let moved = (self.offset.1 - self.offset.0).abs() / (on - off).abs();
-        self.moved > ROUNDING || moved > ROUNDING
-    }
-
-    fn between(before: &Model, after: &Model) -> Self {
-        let sum = |model: &Model| model.weights().iter().sum::<f64>();
-        let pairs = before.weights().iter().zip(after.weights());
-        let moved: f64 = pairs.map(|(a, b)| (b - a).abs()).sum();
-        Self {
-            weights: (sum(before), sum(after)),
-            offset: (before.offset(), after.offset()),
-            moved: moved / sum(before),
-        }
-    }
 }

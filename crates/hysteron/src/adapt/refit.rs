@@ -7,7 +7,9 @@ use crate::error::{Error, Result};
 use crate::identify::{SparseForm, pivoting};
 use crate::model::{Model, OperatorState};
 use crate::progress::Progress;
-use hysteron_core::{Adaptation, Gate, Learning, Operator, Outcome, Verdict};
+use hysteron_core::{
+    Adaptation, Channel, Gate, Learning, Operator, Outcome, Reading, Verdict, Watch, Watched,
+};
 use serde::Serialize;
 
 /// A model whose weights are written anew.
@@ -86,6 +88,14 @@ pub(super) struct Refitter {
     offset: f64,
     good: (Vec<f64>, f64),
     gate: Gate<f64>,
+    watch: Watch<f64>,
+    /// The model left alone, and a copy of the state for it.
+    alone: Core,
+    there: OperatorState,
+    /// Weights and offset before the last piece of the watch in which the output moved, and before
+    /// the present piece.
+    trusted: (Vec<f64>, f64),
+    pending: (Vec<f64>, f64),
     /// The outputs in the window are relative to this, so that their squares stay small.
     level: f64,
     /// The position of the last sample that entered the window.
@@ -114,6 +124,11 @@ impl Refitter {
             form: SparseForm::new(plane, core.operator())?,
             samples: Samples::new(options.window, plane.levels(), plane.operators()),
             good: (weights.clone(), offset),
+            trusted: (weights.clone(), offset),
+            pending: (weights.clone(), offset),
+            alone: core.core.clone(),
+            there: core.start(),
+            watch: Watch::new((on - off).abs(), plane.levels() as f64),
             level: offset,
             weights,
             offset,
@@ -151,12 +166,17 @@ impl Refitter {
         let sum = core.step(state, input)?;
         let output = sum.output + self.offset();
         let error = measured - output;
-        let (mut outcome, due) = self.take(state, measured, error);
+        let before = self.watch.stuck();
+        let (mut outcome, due) = self.take(state, measured, error)?;
+        if outcome.is_stuck() && before.is_none() {
+            self.undo(core)?;
+            core.rebase(state)?;
+        }
         if due && self.refit(core)? {
             core.rebase(state)?;
             outcome = Outcome::Learned;
         }
-        if matches!(outcome, Outcome::Learned | Outcome::Waiting) {
+        if matches!(outcome, Outcome::Learned | Outcome::Waiting) || outcome.is_stuck() {
             self.gate
                 .settle(measured - core.output(state) - self.offset());
         }
@@ -168,21 +188,32 @@ impl Refitter {
         })
     }
 
-    /// Takes a sample into the window, unless the input is at rest or the gate refuses it. `error`
-    /// is that of its prediction. Returns what became of it, and whether a refit is due.
-    fn take(&mut self, state: &OperatorState, measured: f64, error: f64) -> (Outcome, bool) {
+    /// Takes a sample into the window, unless the input is at rest, the gate refuses it or a channel
+    /// stands still. `error` is that of its prediction. Returns what became of it, and whether a refit is due.
+    fn take(
+        &mut self,
+        state: &OperatorState,
+        measured: f64,
+        error: f64,
+    ) -> Result<(Outcome, bool)> {
         self.samples.follow(state);
         if self.frozen {
-            return (Outcome::Frozen, false);
+            return Ok((Outcome::Frozen, false));
         }
         let position = state.position();
         if (position - self.learned).abs() <= self.options.movement {
-            return (Outcome::AtRest, false);
+            return Ok((Outcome::AtRest, false));
         }
         self.learned = position;
         let Refit { gate, burst, .. } = self.options;
-        if self.gate.judge(error, gate, burst) == Verdict::Refused {
-            return (Outcome::Rejected, false);
+        let believed = self.gate.judge(error, gate, burst) != Verdict::Refused;
+        if gate > 0.0
+            && let Some(channel) = self.find_stuck(state, measured, believed)?
+        {
+            return Ok((channel.outcome(), false));
+        }
+        if !believed {
+            return Ok((Outcome::Rejected, false));
         }
         let turned = self.samples.push(&self.form, state, measured - self.level);
         self.new += 1;
@@ -190,7 +221,49 @@ impl Refitter {
             Some(every) => self.new >= every as usize,
             None => turned || NEW * self.new >= self.samples.len(),
         };
-        (Outcome::Waiting, due)
+        Ok((Outcome::Waiting, due))
+    }
+
+    /// The channel that stands still.
+    fn find_stuck(
+        &mut self,
+        state: &OperatorState,
+        measured: f64,
+        believed: bool,
+    ) -> Result<Option<Channel>> {
+        self.there.clone_from(state);
+        self.alone.rebase(&mut self.there)?;
+        let reading = Reading {
+            position: state.position(),
+            expected: self.alone.output(&self.there),
+            measured,
+        };
+        if let Watched::Piece { alive } = self.watch.look(reading, believed) {
+            let now = (self.weights.clone(), self.offset);
+            let before = std::mem::replace(&mut self.pending, now);
+            if alive {
+                self.trusted = before;
+            }
+        }
+        Ok(self.watch.stuck())
+    }
+
+    /// Returns to what it had learned before a channel stood still. The window is emptied, for it has
+    /// readings of that channel.
+    fn undo(&mut self, core: &mut Core) -> Result<()> {
+        self.good = self.trusted.clone();
+        self.pending = self.trusted.clone();
+        self.restore(core)
+    }
+
+    pub(super) fn stuck(&self) -> Option<Channel> {
+        self.watch.stuck()
+    }
+
+    fn watch_anew(&mut self) {
+        self.trusted = (self.weights.clone(), self.offset);
+        self.pending = self.trusted.clone();
+        self.watch.restart();
     }
 
     /// Fits weights and offset to the window, and writes them to `core`. Returns whether they
@@ -223,6 +296,7 @@ impl Refitter {
 
     pub(super) fn freeze(&mut self, frozen: bool) {
         self.frozen = frozen;
+        self.watch.restart();
         if frozen {
             self.samples.break_off();
         }
@@ -232,15 +306,23 @@ impl Refitter {
     pub(super) fn realign(&mut self) {
         self.samples.break_off();
         self.learned = f64::NEG_INFINITY;
+        self.watch_anew();
     }
 
     pub(super) fn keep(&mut self) {
         self.good = (self.weights.clone(), self.offset);
+        self.watch_anew();
     }
 
     /// Returns to the last good weights. The window is emptied, for the next refit would bring back
     /// what was learned from it.
     pub(super) fn roll_back(&mut self, core: &mut Core) -> Result<()> {
+        self.restore(core)?;
+        self.watch_anew();
+        Ok(())
+    }
+
+    fn restore(&mut self, core: &mut Core) -> Result<()> {
         (self.weights, self.offset) = self.good.clone();
         self.samples.clear();
         self.gate.restart();

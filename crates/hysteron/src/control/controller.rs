@@ -165,6 +165,7 @@ impl Controller {
                 self.prediction = prediction;
                 status.adapted = outcome == Some(Outcome::Learned);
                 status.rejected = outcome == Some(Outcome::Rejected);
+                status.stuck = outcome.is_some_and(Outcome::is_stuck);
             }
             self.lost |= input == Some(Sensed::Broken);
         }

@@ -19,6 +19,9 @@ pub struct LoopStatus {
     /// The reading was rejected: it was too far from the expected output, so the model did not
     /// learn from it.
     pub rejected: bool,
+    /// A channel stands still while the other one moves, so the model does not learn
+    /// ([`hysteron_core::Watch`]).
+    pub stuck: bool,
 }
 
 /// The adapted weights at one time.

@@ -8,7 +8,8 @@ use crate::recording::Recording;
 impl Adapted {
     /// Writes the recording as a table with three more columns: `output_model` (expected before the
     /// sample was learned from), `error` (measured minus expected) and `outcome` (`learned`,
-    /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`). With [`crate::Learner::Load`] also
+    /// `waiting`, `at-rest`, `frozen`, `rolled-back`, `rejected`, `output-stuck`,
+    /// `input-stuck`). With [`crate::Learner::Load`] also
     /// `shift_model` (the shift before the sample was learned from) and, if the model's load tells
     /// it, `load_model`.
     ///

@@ -26,6 +26,7 @@ impl Trace {
             "sensor_fault",
             "adapted",
             "rejected",
+            "stuck",
         ])?;
         for n in 0..self.time.len() {
             let numbers = [
@@ -45,6 +46,7 @@ impl Trace {
                 status.sensor_fault,
                 status.adapted,
                 status.rejected,
+                status.stuck,
             ];
             let flags = flags.map(|flag| u8::from(flag).to_string());
             table.row(

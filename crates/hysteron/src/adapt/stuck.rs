@@ -1,0 +1,81 @@
+//! Where a channel of a recording stood still, as a learner found it.
+
+use crate::recording::Recording;
+use hysteron_core::{Channel, Outcome};
+use serde::{Serialize, Serializer};
+use std::ops::Range;
+
+/// The learner compared pieces in which the channel that moves travelled a half of its range, and
+/// went at least so far: within them the other one stood still.
+const FAR: f64 = 0.25;
+
+/// A stretch of a recording over which a channel stood still while the other one moved. Nothing was
+/// learned there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Stuck {
+    /// The channel that stood still.
+    #[serde(serialize_with = "word")]
+    pub channel: Channel,
+    /// The samples, counted from 0. The first is where its readings begin to be those of the
+    /// stretch; with noise it may be a few samples off.
+    #[serde(flatten)]
+    pub samples: Range<usize>,
+}
+
+fn word<S: Serializer>(channel: &Channel, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match channel {
+        Channel::Input => "input",
+        Channel::Output => "output",
+    })
+}
+
+impl Stuck {
+    /// The stretches that `outcomes` tell. `fixed` is the output of the model left alone.
+    pub(super) fn all(outcomes: &[Outcome], recording: &Recording, fixed: &[f64]) -> Vec<Self> {
+        let mut found: Vec<Self> = Vec::new();
+        let mut goes_on = false;
+        for (n, outcome) in outcomes.iter().enumerate() {
+            let channel = match outcome {
+                Outcome::OutputStuck => Channel::Output,
+                Outcome::InputStuck => Channel::Input,
+                // Nothing is learned there, in whatever state the channels are.
+                Outcome::AtRest | Outcome::Rejected | Outcome::Frozen => continue,
+                _ => {
+                    goes_on = false;
+                    continue;
+                }
+            };
+            match found.last_mut() {
+                Some(last) if goes_on && last.channel == channel => last.samples.end = n + 1,
+                _ => {
+                    let (still, moving) = match channel {
+                        Channel::Output => (&recording.output[..], fixed),
+                        Channel::Input => (&recording.input[..], &recording.output[..]),
+                    };
+                    let samples = began(still, moving, n)..n + 1;
+                    found.push(Self { channel, samples });
+                }
+            }
+            goes_on = true;
+        }
+        found
+    }
+}
+
+/// Where the readings begin that are like those of the last samples up to `seen`.
+fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
+    let (low, high) = crate::series::range(moving);
+    let enough = FAR * (high - low);
+    let (mut least, mut most) = (moving[seen], moving[seen]);
+    let (mut low, mut high) = (still[seen], still[seen]);
+    let mut first = seen;
+    while first > 0 && most - least < enough {
+        first -= 1;
+        (least, most) = (least.min(moving[first]), most.max(moving[first]));
+        (low, high) = (low.min(still[first]), high.max(still[first]));
+    }
+    let margin = 0.5 * (high - low);
+    let like = |y: &f64| (low - margin..=high + margin).contains(y);
+    let before = still[..first].iter().rev().take_while(|y| like(y)).count();
+    first - before
+}
