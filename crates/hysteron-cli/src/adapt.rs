@@ -3,7 +3,8 @@
 use crate::terminal::{Result, print};
 use crate::{args, model, recording, text};
 use hysteron::{
-    Adapted, Channel, Columns, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck, TableWriter,
+    Adapted, Channel, Columns, Compared, Drift, Errors, EstimatorOptions, Model, ShiftFound, Stuck,
+    TableWriter,
 };
 use serde_json::{Value, json};
 use std::ops::Range;

@@ -263,7 +263,10 @@ fn a_frozen_output_is_named_and_nothing_is_learned_from_it() {
     for method in METHODS {
         let line = format!("{ADAPT} --method {method}").replace("after", "frozen");
         let said = refused(folder.path(), &line);
-        assert!(said.contains("the output stands still from row 1000"), "{said}");
+        assert!(
+            said.contains("the output stands still from row 1000"),
+            "{said}"
+        );
         assert!(!folder.path().join("adapted.json").exists());
         let said = json(folder.path(), &format!("{line} --force --table table.csv"));
         let [before, after] = [0, 1].map(|n| said["drift"]["weights"][n].as_f64().unwrap());
@@ -283,12 +286,19 @@ fn a_model_that_moved_too_far_needs_a_word() {
     let mut rows: Vec<String> = vec!["x,y".into()];
     for (n, row) in table.lines().skip(1).enumerate() {
         let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
-        rows.push(format!("{},{}", cells[1], cells[2] + 30.0 * n as f64 / 1500.0));
+        rows.push(format!(
+            "{},{}",
+            cells[1],
+            cells[2] + 30.0 * n as f64 / 1500.0
+        ));
     }
     fs::write(folder.path().join("ramp.csv"), rows.join("\n") + "\n").unwrap();
     let line = ADAPT.replace("after", "ramp");
     let said = refused(folder.path(), &line);
-    assert!(said.contains("--max-drift") && said.contains("offset by"), "{said}");
+    assert!(
+        said.contains("--max-drift") && said.contains("offset by"),
+        "{said}"
+    );
     assert!(!folder.path().join("adapted.json").exists());
     json(folder.path(), &format!("{line} --max-drift 400"));
     assert!(folder.path().join("adapted.json").exists());

@@ -133,7 +133,11 @@ fn a_plant_that_changes_is_not_frozen() {
             *y += if rng.random_bool(0.003) { 50.0 } else { 0.0 };
         }
         let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
-        assert!(adapted.stuck.is_empty(), "{seed} {learner:?}: {:?}", adapted.stuck);
+        assert!(
+            adapted.stuck.is_empty(),
+            "{seed} {learner:?}: {:?}",
+            adapted.stuck
+        );
     }
 }
 
@@ -144,15 +148,31 @@ fn open_recordings_are_not_frozen() {
         ("sma_flexinol_50MPa.csv", "temperature_C", "strain"),
         ("sma_flexinol_150MPa.csv", "temperature_C", "strain"),
         ("sma_flexinol_200MPa.csv", "temperature_C", "strain"),
-        ("sma_isobaric_cycles_1_to_4.csv", "temperature_C", "extension_mm"),
+        (
+            "sma_isobaric_cycles_1_to_4.csv",
+            "temperature_C",
+            "extension_mm",
+        ),
         ("sma_bend_3load.csv", "temperature_C", "extension_mm"),
         ("sma_nitico_walgren_7MPa.csv", "temperature_C", "strain"),
         ("sma_nitico_walgren_200MPa.csv", "temperature_C", "strain"),
-        ("sma_nitihf_bigelow_50MPa.csv", "temperature_C", "strain_percent"),
-        ("sma_nitihf_bigelow_200MPa.csv", "temperature_C", "strain_percent"),
+        (
+            "sma_nitihf_bigelow_50MPa.csv",
+            "temperature_C",
+            "strain_percent",
+        ),
+        (
+            "sma_nitihf_bigelow_200MPa.csv",
+            "temperature_C",
+            "strain_percent",
+        ),
         ("bh_M130_27s_loop1.csv", "H_A_per_m", "B_T"),
         ("bh_MnZn_ferrite_loop1.csv", "H_A_per_m", "B_T"),
-        ("ferro_rtwhiteA_forc5.csv", "voltage_V", "polarization_uC_cm2"),
+        (
+            "ferro_rtwhiteA_forc5.csv",
+            "voltage_V",
+            "polarization_uC_cm2",
+        ),
         ("magnet_lcls2_quad_ru3.csv", "current_A", "BL_T"),
         ("piezo_pnzt_S1_1500V.csv", "voltage_V", "displacement_nm"),
         ("sma_baraghini_Ramp02.csv", "duty", "position_m"),
@@ -170,7 +190,7 @@ fn open_recordings_are_not_frozen() {
             time: None,
             load: None,
         };
-        let (recording, _) = Recording::read(path, columns, &hysteron::Repair::default()).unwrap();
+        let (recording, _) = Recording::read(path, columns, hysteron::Repair::default()).unwrap();
         let options = FitOptions {
             levels: 10,
             ..FitOptions::default()
@@ -178,7 +198,11 @@ fn open_recordings_are_not_frozen() {
         let model = Fit::from(&options).run(&recording).unwrap();
         for learner in LEARNERS {
             let adapted = adapt(&model, &recording, &by(learner), Progress::NONE).unwrap();
-            assert!(adapted.stuck.is_empty(), "{name} {learner:?}: {:?}", adapted.stuck);
+            assert!(
+                adapted.stuck.is_empty(),
+                "{name} {learner:?}: {:?}",
+                adapted.stuck
+            );
         }
     }
 }

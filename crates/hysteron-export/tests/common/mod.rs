@@ -82,7 +82,7 @@ impl Exported {
         );
         if adaptation {
             let operators = operator_count(largest);
-            let numbers = table_len(largest) + 3 * (operators + 1) + operators;
+            let numbers = table_len(largest) + 5 * (operators + 1) + operators;
             writeln!(
                 text,
                 "#define MOST_NUMBERS {numbers}\n\

@@ -37,7 +37,7 @@ int main(void)
             k = models[n]->levels;
             /* Exactly what is asked for, in memory that held something else. */
             memset(memory, 0x55, sizeof memory);
-            needed = (k + 1) * (k + 2) / 2 + 2 * k * (k + 1) + 3;
+            needed = (k + 1) * (k + 2) / 2 + 3 * k * (k + 1) + 5;
             code = hys_adapt_start(&adaptive, models[n], weights[n], models[n]->offset, &options,
                                    memory, needed, turns, 4 * k + 8);
             printf("m %d\n",

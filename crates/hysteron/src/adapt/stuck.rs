@@ -74,7 +74,7 @@ fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
         (least, most) = (least.min(moving[first]), most.max(moving[first]));
         (low, high) = (low.min(still[first]), high.max(still[first]));
     }
-    let margin = 0.5 * (high - low);
+    let margin = high - low;
     let like = |y: &f64| (low - margin..=high + margin).contains(y);
     let before = still[..first].iter().rev().take_while(|y| like(y)).count();
     first - before
