@@ -5,9 +5,9 @@ use hysteron_core::{Channel, Outcome};
 use serde::{Serialize, Serializer};
 use std::ops::Range;
 
-/// The learner compared pieces in which the channel that moves travelled a half of its range, and
-/// went at least so far: within them the other one stood still.
-const FAR: f64 = 0.25;
+/// The learner compared pieces in which the channel that moves travelled twice its range. So over this
+/// many times its range before, the other one surely stood still.
+const TRAVEL: f64 = 1.5;
 
 /// A stretch of a recording over which a channel stood still while the other one moved. Nothing was
 /// learned there.
@@ -65,16 +65,15 @@ impl Stuck {
 /// Where the readings begin that are like those of the last samples up to `seen`.
 fn began(still: &[f64], moving: &[f64], seen: usize) -> usize {
     let (low, high) = crate::series::range(moving);
-    let enough = FAR * (high - low);
-    let (mut least, mut most) = (moving[seen], moving[seen]);
-    let (mut low, mut high) = (still[seen], still[seen]);
+    let enough = TRAVEL * (high - low);
+    let mut travel = 0.0;
     let mut first = seen;
-    while first > 0 && most - least < enough {
+    while first > 0 && travel < enough {
         first -= 1;
-        (least, most) = (least.min(moving[first]), most.max(moving[first]));
-        (low, high) = (low.min(still[first]), high.max(still[first]));
+        travel += (moving[first + 1] - moving[first]).abs();
     }
-    let margin = high - low;
+    let (low, high) = crate::series::range(&still[first..=seen]);
+    let margin = 0.5 * (high - low);
     let like = |y: &f64| (low - margin..=high + margin).contains(y);
     let before = still[..first].iter().rev().take_while(|y| like(y)).count();
     first - before
